@@ -1,0 +1,43 @@
+# One command each: `make demo`, `make test`, `make lint`, `make fuzz`, `make bench`.
+# A new machine needs only make and Python >= 3.11 with its venv module.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+DEMO ?= .demo
+SHELL := /bin/bash
+
+.PHONY: demo test lint fuzz bench wheel environment gl clean
+
+demo: environment gl
+	$(BIN)/pvfiblets demo --output $(DEMO)
+
+test: environment gl lint
+	$(BIN)/python -m pytest
+
+lint: environment
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+fuzz: environment
+	$(BIN)/python -m pytest -m hypothesis --hypothesis-profile=fuzz --timeout=3600
+
+bench: environment gl
+	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json
+
+wheel: environment
+	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .
+
+environment: $(READY)
+
+$(READY): pyproject.toml scripts/environment.sh
+	@PYTHON=$(PYTHON) VENV=$(VENV) scripts/environment.sh
+	@touch $@
+
+gl: environment
+	@PYTHON=$(BIN)/python scripts/gl_libraries.sh
+
+clean:
+	rm -rf $(VENV) $(DEMO) dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
