@@ -1,0 +1,181 @@
+"""The fiblet record: the one place that states how a fiblet is laid out in bits.
+
+Everything that packs or unpacks a record (NumPy reference, compiled kernels, shaders, the file format) takes the fields
+from here; :func:`glsl_source` writes the same table as GLSL, so that a shader cannot disagree with Python.
+
+A fiblet is at most 60 consecutive points of one streamline (paper: Schertzer et al. 2022, section 3.2.2). What culling
+reads is kept apart from what decoding reads, so that a cull pass never drags codes through memory:
+
+=============  ==================  ============================================================================
+array          shape, dtype        read by
+=============  ==================  ============================================================================
+``anchors``    (n, 2) uint32       culling: first point, streamline, begin and end flags
+``reach``      (n,) uint16         culling: radius of the bounding sphere
+``decoding``   (n, 3) uint32       decoding: direction or lattice, step, where codes and points start, count, kind
+``codes``      (n_bytes,) uint8    decoding: one byte a point (kind DIRECTION), or 1-4 bytes (lattice kinds)
+=============  ==================  ============================================================================
+
+Budget: 8 + 2 + 12 bytes of record and 58 codes for a full fiblet of 60 points (the anchor and the first direction stand
+for two of them) are 80 bytes, 1.33 bytes per point.
+
+Indices in a record are relative to its *page* of ``PAGE`` consecutive fiblets. The largest stretch of codes that one
+fiblet can have is ``WIDE_HEADER + 59 * 4 = 256`` bytes, so a page holds at most 2**22 bytes of codes and 60 * 2**14 <
+2**20 points: the widths of ``code`` and ``point`` below follow from that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+__all__ = [
+    "CAPS",
+    "FIELDS",
+    "MAX_POINTS",
+    "PAGE",
+    "PAGE_BITS",
+    "Field",
+    "Kind",
+    "glsl_source",
+    "pack",
+    "unpack",
+]
+
+MAX_POINTS = 60
+PAGE_BITS = 14
+PAGE = 1 << PAGE_BITS
+CAPS = 16
+DIRECTION_SCALE = 32767.0
+STEP_LEVELS = 1023
+WIDE_HEADER = 20
+
+
+class Kind:
+    """How a fiblet's points are coded (two bits of the record)."""
+
+    DIRECTION = 0  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2 and 3.3)
+    LATTICE8 = 1  # one byte: step between points of an integer lattice, mixed radix
+    LATTICE16 = 2  # the same in two bytes
+    WIDE = 3  # the same in 1-4 bytes, with its 20-byte box in the code stream
+
+
+@dataclass(frozen=True)
+class Field:
+    """One bit field of the record: ``width`` bits at ``shift`` in column ``word`` of ``array``."""
+
+    name: str
+    array: str
+    word: int
+    shift: int
+    width: int
+
+    @property
+    def mask(self) -> int:
+        """Largest value that the field holds."""
+        return (1 << self.width) - 1
+
+
+FIELDS: dict[str, Field] = {
+    f.name: f
+    for f in (
+        Field("anchor_x", "anchors", 0, 0, 16),
+        Field("anchor_y", "anchors", 0, 16, 16),
+        Field("anchor_z", "anchors", 1, 0, 16),
+        Field("rank", "anchors", 1, 16, 14),
+        Field("begin", "anchors", 1, 30, 1),
+        Field("end", "anchors", 1, 31, 1),
+        Field("shape", "decoding", 0, 0, 32),
+        Field("code", "decoding", 1, 0, 22),
+        Field("step", "decoding", 1, 22, 10),
+        Field("point", "decoding", 2, 0, 20),
+        Field("last", "decoding", 2, 20, 6),
+        Field("cap", "decoding", 2, 26, 4),
+        Field("kind", "decoding", 2, 30, 2),
+    )
+}
+"""Fields by name. ``last`` is the index of the last point (count - 1); ``rank``, ``code`` and ``point`` are relative to
+the page; ``shape`` is the first direction (two snorm16) or the lattice box; ``step`` is an index between the file's
+least and greatest step, or lattice box and byte width; ``cap`` is a cap angle's index, or the lattice's halvings."""
+
+
+def unpack(name: str, words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Take one field out of its array.
+
+    Parameters
+    ----------
+    name : str
+        A key of :data:`FIELDS`.
+    words : numpy.ndarray
+        ``(n, 2)`` or ``(n, 3)`` uint32: the array that the field stands in.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n,)`` uint32.
+    """
+    field = FIELDS[name]
+    return (words[..., field.word] >> np.uint32(field.shift)) & np.uint32(field.mask)
+
+
+def pack(array: str, **values: Any) -> np.ndarray[Any, Any]:
+    """Build ``anchors`` or ``decoding`` words from field values.
+
+    Parameters
+    ----------
+    array : {'anchors', 'decoding'}
+        Which array to build.
+    **values : array_like
+        One ``(n,)`` integer array, or a number, for each field of that array.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n, 2)`` or ``(n, 3)`` uint32.
+
+    Raises
+    ------
+    ValueError
+        If a field is missing, unknown, or a value does not fit its width.
+    """
+    fields = [f for f in FIELDS.values() if f.array == array]
+    if set(values) != {f.name for f in fields}:
+        raise ValueError(f"pack({array!r}) needs exactly the fields {[f.name for f in fields]}, got {sorted(values)}")
+    columns = {name: np.atleast_1d(np.asarray(value, np.int64)) for name, value in values.items()}
+    n = max(len(c) for c in columns.values())
+    words = np.zeros((n, 1 + max(f.word for f in fields)), np.uint32)
+    for f in fields:
+        column = columns[f.name]
+        if column.size and (column.min() < 0 or column.max() > f.mask):
+            raise ValueError(f"{f.name} holds 0..{f.mask}, got {column.min()}..{column.max()}")
+        words[:, f.word] |= (column.astype(np.uint64) << np.uint64(f.shift)).astype(np.uint32)
+    return words
+
+
+def glsl_source() -> str:
+    """Write the record as GLSL: constants, and one function a field.
+
+    Returns
+    -------
+    str
+        ``const`` declarations and ``uint fiblet_<field>(uvecN words)`` functions, to be included by shaders
+        (``uvec2`` for the fields of ``anchors``, ``uvec3`` for those of ``decoding``).
+    """
+    lines = [
+        f"const uint FIBLET_MAX_POINTS = {MAX_POINTS}u;",
+        f"const uint FIBLET_PAGE_BITS = {PAGE_BITS}u;",
+        f"const uint FIBLET_CAPS = {CAPS}u;",
+        f"const float FIBLET_DIRECTION_SCALE = {DIRECTION_SCALE};",
+        f"const float FIBLET_STEP_LEVELS = {float(STEP_LEVELS)};",
+        f"const uint FIBLET_WIDE_HEADER = {WIDE_HEADER}u;",
+    ]
+    lines += [
+        f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()
+    ]
+    for f in FIELDS.values():
+        vector = "uvec2" if f.array == "anchors" else "uvec3"
+        lines.append(
+            f"uint fiblet_{f.name}({vector} words) {{ return bitfieldExtract(words.{'xyz'[f.word]}, {f.shift}, {f.width}); }}"
+        )
+    return "\n".join(lines) + "\n"

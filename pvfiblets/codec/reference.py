@@ -1,0 +1,389 @@
+"""The codec in plain NumPy and float64: what a fiblet means, literally, with no thought for speed.
+
+The compiled kernels must give the same codes bit for bit, and the shaders the same points within 1e-3 step. Points are
+millimetres relative to the set's origin throughout.
+
+Decoding (paper: Schertzer et al. 2022, section 3.3.1 and appendix B): ``P_0`` is the anchor, ``P_1 = P_0 + step d_1``;
+each code turns the frame, ``q <- q T[cap][code]``, and ``P <- P + step (q X)``.
+
+Encoding is closed loop: every code aims from the *decoded* previous point, in the decoded frame, at the true next point,
+so that errors do not add up; the code taken is the nearest of all 256, not a rounded u and v (appendix A).
+
+Fiblets whose steps vary, or bend too sharply, are coded as steps between the points of an integer lattice of edge ``h``:
+rounding to it errs by at most ``h sqrt(3) / 2`` whatever the steps, and adding integers does not drift.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .layout import DIRECTION_SCALE, STEP_LEVELS, WIDE_HEADER, Kind
+from .tables import cap_ratios, directions, quaternions
+
+__all__ = [
+    "DirectionPiece",
+    "LatticePiece",
+    "choose_cap",
+    "choose_step",
+    "decode_direction",
+    "decode_lattice",
+    "encode_direction",
+    "encode_lattice",
+    "first_frame",
+    "pack_direction",
+    "plan_lattice",
+    "rotate_x",
+    "unpack_direction",
+]
+
+Array = npt.NDArray[np.float64]
+RECORD_BYTES = 22
+LATTICE_LIMIT = 2**30  # lattice coordinates stay clear of int32's end, on the GPU too
+MAX_HALVINGS = 15
+TREE_DEPTH = 6  # halving 60 points six times leaves single points
+
+
+# ------------------------------------------------------------------------------------------------- first direction
+
+
+def pack_direction(d: Array) -> int:
+    """Quantise a unit vector to two snorm16 on the octahedron about +x.
+
+    Parameters
+    ----------
+    d : numpy.ndarray
+        ``(3,)`` direction, any length but 0.
+
+    Returns
+    -------
+    int
+        ``u`` in the low 16 bits, ``v`` in the high 16.
+    """
+    x, y, z = d
+    norm = abs(x) + abs(y) + abs(z)
+    u, v = y / norm, z / norm
+    if x < 0.0:
+        u, v = (1.0 - abs(v)) * _sign(u), (1.0 - abs(u)) * _sign(v)
+    iu, iv = int(np.rint(u * DIRECTION_SCALE)), int(np.rint(v * DIRECTION_SCALE))
+    return (iu & 0xFFFF) | ((iv & 0xFFFF) << 16)
+
+
+def unpack_direction(word: int) -> tuple[Array, bool]:
+    """Undo :func:`pack_direction`.
+
+    Returns
+    -------
+    direction : numpy.ndarray
+        ``(3,)`` unit vector.
+    forward : bool
+        Whether it is on the side of +x, decided on the integers: rounding cannot change the branch of the frame.
+    """
+    iu, iv = _int16(word & 0xFFFF), _int16(word >> 16)
+    u, v = iu / DIRECTION_SCALE, iv / DIRECTION_SCALE
+    forward = abs(iu) + abs(iv) <= int(DIRECTION_SCALE)
+    x = 1.0 - abs(u) - abs(v)
+    y, z = (u, v) if forward else ((1.0 - abs(v)) * _sign(u), (1.0 - abs(u)) * _sign(v))
+    r = 1.0 / np.sqrt(x * x + y * y + z * z)
+    return np.array([x * r, y * r, z * r]), forward
+
+
+def first_frame(word: int) -> tuple[Array, Array]:
+    """First direction and frame of a fiblet (the paper's ``M_0``, section 3.3.2).
+
+    Returns
+    -------
+    direction : numpy.ndarray
+        ``(3,)`` unit vector ``d_1``.
+    frame : numpy.ndarray
+        ``(4,)`` unit quaternion that turns X to ``d_1``: the smallest rotation, after half a turn about Z where ``d_1``
+        points backwards (the smallest rotation from X to -X would be undefined).
+    """
+    d, forward = unpack_direction(word)
+    dx, dy, dz = d
+    q = np.array([1.0 + dx, 0.0, -dz, dy]) if forward else np.array([1.0 - dx, 0.0, dz, -dy])
+    r = 1.0 / np.sqrt(q[0] * q[0] + q[2] * q[2] + q[3] * q[3])
+    w, y, z = q[0] * r, q[2] * r, q[3] * r
+    return d, (np.array([w, 0.0, y, z]) if forward else np.array([-z, y, 0.0, w]))
+
+
+def rotate_x(q: Array) -> Array:
+    """First column of a quaternion's rotation matrix: where it turns X."""
+    w, x, y, z = q
+    return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
+
+
+def _product(a: Array, b: Array) -> Array:
+    w, x, y, z = a
+    tw, tx, ty, tz = b
+    return np.array(
+        [
+            w * tw - x * tx - y * ty - z * tz,
+            w * tx + x * tw + y * tz - z * ty,
+            w * ty - x * tz + y * tw + z * tx,
+            w * tz + x * ty - y * tx + z * tw,
+        ]
+    )
+
+
+# ------------------------------------------------------------------------------------------------- direction codes
+
+
+@dataclass(frozen=True)
+class DirectionPiece:
+    """A fiblet of kind DIRECTION: its words, its codes, and what they decode to."""
+
+    shape: int
+    step: int
+    cap: int
+    codes: npt.NDArray[np.uint8]
+    points: Array
+    error: float
+
+
+def choose_step(points: Array, lo: float, hi: float) -> tuple[int, float]:
+    """Index of a fiblet's step between the file's least and greatest, and its length (mm)."""
+    arc = 0.0
+    for i in range(1, len(points)):
+        arc += _distance(points[i], points[i - 1])
+    if hi <= lo:
+        return 0, lo
+    index = int(np.rint((arc / (len(points) - 1) - lo) / (hi - lo) * STEP_LEVELS))
+    index = min(max(index, 0), STEP_LEVELS)
+    return index, lo + index * (hi - lo) / STEP_LEVELS
+
+
+def choose_cap(points: Array) -> int:
+    """Index of the smallest cap angle that holds every turn of the points."""
+    least = 1.0  # cosine of the sharpest turn
+    for i in range(2, len(points)):
+        a, b = points[i - 1] - points[i - 2], points[i] - points[i - 1]
+        norm = np.sqrt((a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]))
+        if norm > 0.0:
+            least = min(least, (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / norm)
+    for cap, ratio in enumerate(cap_ratios()):
+        if 1.0 - ratio <= least:
+            return cap
+    return len(cap_ratios()) - 1
+
+
+def encode_direction(points: Array, anchor: Array, step: int, length: float, cap: int) -> DirectionPiece:
+    """Code points with one direction byte each, greedily and in closed loop.
+
+    Parameters
+    ----------
+    points : numpy.ndarray
+        ``(n, 3)`` true points, ``2 <= n <= 60``.
+    anchor : numpy.ndarray
+        ``(3,)`` decoded first point.
+    step, length : int, float
+        The step's index and its length in mm.
+    cap : int
+        Cap angle's index.
+
+    Returns
+    -------
+    DirectionPiece
+        Codes ``(n - 2,)``, decoded points ``(n, 3)``, and the largest distance between both.
+    """
+    table, reach = quaternions()[cap].astype(np.float64), directions()[cap]
+    aim = points[1] - anchor
+    shape = pack_direction(aim if np.any(aim != 0.0) else np.array([1.0, 0.0, 0.0]))
+    d, q = first_frame(shape)
+    decoded = np.empty_like(points)
+    decoded[0] = anchor
+    decoded[1] = p = anchor + length * d
+    codes = np.empty(len(points) - 2, np.uint8)
+    for i in range(2, len(points)):
+        aim = points[i] - p
+        local = _unrotate(q, aim)
+        score = local[0] * reach[:, 0] + local[1] * reach[:, 1] + local[2] * reach[:, 2]
+        code = int(np.argmax(score))
+        codes[i - 2] = code
+        q = _product(q, table[code])
+        decoded[i] = p = p + length * rotate_x(q)
+    error = max(_distance(a, b) for a, b in zip(points, decoded, strict=True))
+    return DirectionPiece(shape, step, cap, codes, decoded, error)
+
+
+def decode_direction(anchor: Array, shape: int, length: float, cap: int, codes: npt.NDArray[np.uint8], count: int) -> Array:
+    """Points of a DIRECTION fiblet, ``(count, 3)`` float64 (paper, section 3.3.1)."""
+    points = np.empty((count, 3))
+    points[0] = anchor
+    if count == 1:
+        return points
+    d, q = first_frame(shape)
+    points[1] = anchor + length * d
+    for i in range(2, count):
+        q = _product(q, quaternions()[cap, codes[i - 2]].astype(np.float64))
+        points[i] = points[i - 1] + length * rotate_x(q)
+    return points
+
+
+# --------------------------------------------------------------------------------------------------- lattice codes
+
+
+@dataclass(frozen=True)
+class LatticePiece:
+    """A fiblet of a lattice kind."""
+
+    kind: int
+    shape: int
+    step: int
+    cap: int
+    codes: npt.NDArray[np.uint8]
+    points: Array
+
+
+@dataclass(frozen=True)
+class _Box:
+    """Least lattice step, numbers of values by axis, bytes per code, and the kind that holds them."""
+
+    lo: npt.NDArray[np.int64]
+    n: npt.NDArray[np.int64]
+    width: int
+    kind: int
+
+    def size(self, count: int) -> int:
+        return RECORD_BYTES + (WIDE_HEADER if self.kind == Kind.WIDE else 0) + (count - 1) * self.width
+
+
+def _lattice(points: Array, anchor: Array, h: float) -> npt.NDArray[np.float64]:
+    return np.rint((points - anchor) / h)
+
+
+def _box(points: Array, anchor: Array, h: float) -> _Box | None:
+    """The box of lattice steps between the points, or None if no kind holds it."""
+    k = _lattice(points, anchor, h)
+    k[0] = 0.0
+    if np.abs(k).max() > LATTICE_LIMIT:
+        return None
+    delta = np.diff(k.astype(np.int64), axis=0)
+    if len(delta) == 0:
+        return _Box(np.zeros(3, np.int64), np.ones(3, np.int64), 1, Kind.LATTICE8)
+    lo = delta.min(0)
+    n = delta.max(0) - lo + 1
+    cells = float(n[0]) * float(n[1]) * float(n[2])
+    if cells > 2.0**32:
+        return None
+    width = 1 if cells <= 2**8 else 2 if cells <= 2**16 else 3 if cells <= 2**24 else 4
+    narrow = width <= 2 and lo.min() >= -128 and lo.max() <= 127 and n[0] <= 256 and n[1] <= 256
+    return _Box(lo, n, width, width if narrow else Kind.WIDE)
+
+
+def plan_lattice(points: Array, anchors: Array, h: float) -> list[int]:
+    """Split points into lattice fiblets so that their bytes are fewest among all splits by repeated halving.
+
+    Parameters
+    ----------
+    points : numpy.ndarray
+        ``(n, 3)``, ``n <= 60``.
+    anchors : numpy.ndarray
+        ``(n, 3)``: each point as an anchor would hold it.
+    h : float
+        Edge of the lattice, mm.
+
+    Returns
+    -------
+    list of int
+        Number of points of each fiblet.
+    """
+
+    def best(a: int, b: int, depth: int) -> tuple[int, list[int]]:
+        count = b - a
+        if count == 0:
+            return 0, []
+        box = _box(points[a:b], anchors[a], h)
+        if count == 1 or (box is not None and box.kind == Kind.LATTICE8):
+            return RECORD_BYTES + count - 1, [count]
+        whole = box.size(count) if box is not None else 2**30
+        if depth == TREE_DEPTH:
+            return whole, [count]
+        middle = a + count // 2
+        left, cuts_left = best(a, middle, depth + 1)
+        right, cuts_right = best(middle, b, depth + 1)
+        return (whole, [count]) if whole <= left + right else (left + right, cuts_left + cuts_right)
+
+    return best(0, len(points), 0)[1]
+
+
+def encode_lattice(points: Array, anchor: Array, h: float) -> LatticePiece:
+    """Code points as lattice steps; the edge is halved for as long as that costs no byte.
+
+    Raises
+    ------
+    ValueError
+        If no kind holds the steps (:func:`plan_lattice` splits such points).
+    """
+    if len(points) == 1:
+        return LatticePiece(Kind.DIRECTION, 0, 0, 0, np.empty(0, np.uint8), anchor[None])
+    box, halvings = _box(points, anchor, h), 0
+    if box is None:
+        raise ValueError("the steps between these points need more than 4 bytes each")
+    while halvings < MAX_HALVINGS:
+        finer = _box(points, anchor, h * 0.5 ** (halvings + 1))
+        if finer is None or finer.width != box.width or finer.kind != box.kind:
+            break
+        box, halvings = finer, halvings + 1
+    edge = h * 0.5**halvings
+    k = _lattice(points, anchor, edge)
+    k[0] = 0.0
+    cell = np.diff(k.astype(np.int64), axis=0) - box.lo
+    value = cell[:, 0] + box.n[0] * (cell[:, 1] + box.n[1] * cell[:, 2])
+    codes = value.astype("<u4").view(np.uint8).reshape(-1, 4)[:, : box.width].ravel()
+    if box.kind == Kind.WIDE:
+        header = np.concatenate([box.lo.astype("<i4").view(np.uint8), box.n[:2].astype("<u4").view(np.uint8)])
+        shape, step, codes = 0, box.width, np.concatenate([header, codes])
+    else:
+        low = [int(v) & 0xFF for v in box.lo]
+        shape = low[0] | low[1] << 8 | low[2] << 16 | (int(box.n[0]) - 1) << 24
+        step = int(box.n[1]) - 1
+    return LatticePiece(box.kind, shape, step, halvings, codes, anchor + edge * k)
+
+
+def decode_lattice(
+    anchor: Array, kind: int, shape: int, step: int, edge: float, codes: npt.NDArray[np.uint8], count: int
+) -> Array:
+    """Points of a lattice fiblet, ``(count, 3)`` float64; ``edge`` is the file's edge halved ``cap`` times, mm."""
+    if kind == Kind.WIDE:
+        lo = codes[:12].view("<i4").astype(np.int64)
+        nx, ny = (int(n) for n in codes[12:20].view("<u4"))
+        width, body = step & 7, codes[WIDE_HEADER:]
+    else:
+        lo = np.array([(shape >> s & 0xFF) for s in (0, 8, 16)], np.uint8).view(np.int8).astype(np.int64)
+        nx, ny, width, body = (shape >> 24) + 1, (step & 0xFF) + 1, kind, codes
+    k = np.zeros((count, 3), np.int64)
+    for i in range(1, count):
+        value = int.from_bytes(body[(i - 1) * width : i * width].tobytes(), "little")
+        k[i] = k[i - 1] + lo + (value % nx, value // nx % ny, value // (nx * ny))
+    return anchor + edge * k
+
+
+# --------------------------------------------------------------------------------------------------------- helpers
+
+
+def _unrotate(q: Array, v: Array) -> Array:
+    """Express a vector in a frame: the transposed rotation."""
+    w, x, y, z = q
+    return np.array(
+        [
+            v[0] * (1.0 - 2.0 * (y * y + z * z)) + v[1] * (2.0 * (x * y + w * z)) + v[2] * (2.0 * (x * z - w * y)),
+            v[0] * (2.0 * (x * y - w * z)) + v[1] * (1.0 - 2.0 * (x * x + z * z)) + v[2] * (2.0 * (y * z + w * x)),
+            v[0] * (2.0 * (x * z + w * y)) + v[1] * (2.0 * (y * z - w * x)) + v[2] * (1.0 - 2.0 * (x * x + y * y)),
+        ]
+    )
+
+
+def _distance(a: Array, b: Array) -> float:
+    d = a - b
+    return float(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
+
+
+def _sign(value: float) -> float:
+    return 1.0 if value >= 0.0 else -1.0
+
+
+def _int16(bits: int) -> int:
+    return bits - 0x10000 if bits & 0x8000 else bits
