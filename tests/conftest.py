@@ -35,7 +35,7 @@ hypothesis.settings.load_profile("default")
 
 
 def data_folder() -> Path:
-    """Return where the real files are: ``PVFIBLETS_DATA``, or ``../shared/data`` beside the repo."""
+    """Return where the real files are: ``PVFIBLETS_DATA``, or ``../shared/data``."""
     given = os.environ.get("PVFIBLETS_DATA")
     return Path(given) if given else Path(__file__).resolve().parents[2] / "shared" / "data"
 
