@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from pvfiblets import synthetic
 def steps_and_turns(points, offsets):
     """Distances between consecutive points and turns between consecutive steps (degrees)."""
     moves = [np.diff(points[a:b].astype(np.float64), axis=0)
-             for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+             for a, b in itertools.pairwise(offsets)]
     steps = np.concatenate([np.linalg.norm(move, axis=1) for move in moves])
     cosines = [
         np.sum(move[1:] * move[:-1], axis=1)
