@@ -1,0 +1,47 @@
+"""pvfiblets: massive line data, above all brain tractograms, compressed, culled and drawn live in VTK and PyVista.
+
+Importing this package loads NumPy and nothing heavier; each name below brings what it needs when first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "CodingError": "codec.error",
+    "FibletSet": "codec.fibletset",
+    "FormatError": "errors",
+    "Streamlines": "streamlines",
+    "compress": "codec.compress",
+    "compress_file": "codec.convert",
+    "iter_chunks": "formats",
+    "measure_error": "codec.error",
+    "read": "formats",
+    "write": "formats",
+}
+
+__all__ = ["__version__", *_HOME]
+
+if TYPE_CHECKING:
+    from .codec.compress import compress
+    from .codec.convert import compress_file
+    from .codec.error import CodingError, measure_error
+    from .codec.fibletset import FibletSet
+    from .errors import FormatError
+    from .formats import iter_chunks, read, write
+    from .streamlines import Streamlines
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOME])

@@ -32,10 +32,14 @@ import numpy as np
 
 __all__ = [
     "CAPS",
+    "DIRECTION",
     "FIELDS",
+    "LATTICE8",
+    "LATTICE16",
     "MAX_POINTS",
     "PAGE",
     "PAGE_BITS",
+    "WIDE",
     "Field",
     "Kind",
     "glsl_source",
@@ -52,13 +56,19 @@ STEP_LEVELS = 1023
 WIDE_HEADER = 20
 
 
-class Kind:
-    """How a fiblet's points are coded (two bits of the record)."""
+DIRECTION = 0
+LATTICE8 = 1
+LATTICE16 = 2
+WIDE = 3
 
-    DIRECTION = 0  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2 and 3.3)
-    LATTICE8 = 1  # one byte: step between points of an integer lattice, mixed radix
-    LATTICE16 = 2  # the same in two bytes
-    WIDE = 3  # the same in 1-4 bytes, with its 20-byte box in the code stream
+
+class Kind:
+    """How a fiblet's points are coded (two bits of the record). Compiled code takes the module's constants."""
+
+    DIRECTION = DIRECTION  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2, 3.3)
+    LATTICE8 = LATTICE8  # one byte: step between points of an integer lattice, mixed radix
+    LATTICE16 = LATTICE16  # the same in two bytes
+    WIDE = WIDE  # the same in 1-4 bytes, with its 20-byte box in the code stream
 
 
 @dataclass(frozen=True)

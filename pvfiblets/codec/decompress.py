@@ -1,0 +1,202 @@
+"""Fiblets back to streamlines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..streamlines import Streamlines
+from . import decode_kernels
+from .layout import MAX_POINTS, unpack
+from .tables import quaternions
+
+if TYPE_CHECKING:
+    from .fibletset import FibletSet
+
+__all__ = ["decode_fiblets", "decompress", "iter_chunks", "select_streamlines"]
+
+
+def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
+    """Normalise a selection of ``n`` streamlines to indices.
+
+    Raises
+    ------
+    IndexError
+        If an index is out of range or a mask has the wrong length.
+    """
+    if isinstance(ids, slice):
+        return np.arange(n)[ids]
+    chosen = np.atleast_1d(np.asarray(ids))
+    if chosen.dtype == bool:
+        if chosen.shape != (n,):
+            raise IndexError(f"a mask of shape {chosen.shape} cannot choose among {n} streamlines; ({n},) is needed")
+        return np.flatnonzero(chosen)
+    if chosen.size == 0:
+        return np.empty(0, np.int64)
+    if chosen.dtype.kind not in "iu":
+        raise IndexError(f"streamline ids are whole numbers; got values of type {chosen.dtype}")
+    chosen = chosen.astype(np.int64)
+    bad = (chosen < -n) | (chosen >= n)
+    if bad.any():
+        raise IndexError(f"streamline {int(chosen[bad][0])} is not among the {n} streamlines (0..{n - 1})")
+    return np.where(chosen < 0, chosen + n, chosen)
+
+
+def decode_fiblets(
+    fiblets: FibletSet, which: npt.NDArray[np.int64], destination: npt.NDArray[np.int64], points: npt.NDArray[Any]
+) -> None:
+    """Decode chosen fiblets.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        The set.
+    which : numpy.ndarray
+        ``(m,)`` int64 fiblets.
+    destination : numpy.ndarray
+        ``(m,)`` int64: row of ``points`` that each one's first point goes to.
+    points : numpy.ndarray
+        ``(n, 3)`` float32 or float64, filled in place, mm RAS+.
+    """
+    p = fiblets.parameters
+    low = fiblets.anchors_low
+    arrays = (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1]))
+    decode_kernels.decode(
+        which,
+        destination,
+        arrays,
+        np.zeros((1, 3), np.uint16) if low is None else low,
+        low is not None,
+        fiblets.origin,
+        fiblets.anchor_scale,
+        (p.step_lo, p.step_hi, p.lattice),
+        quaternions().astype(np.float64),
+        points,
+    )
+
+
+def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None = None) -> Streamlines:
+    """Decode streamlines; see :meth:`.FibletSet.decompress`."""
+    kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
+    if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise ValueError(f"dtype is {kind}; float32 or float64 is needed")
+    counts, starts = fiblets.fiblet_counts(), fiblets.fiblet_points()
+    meta: dict[str, Any] = {"affine": fiblets.affine, "space": dict(fiblets.space), "dropped": dict(fiblets.dropped)}
+    if ids is None:
+        points = np.empty((fiblets.n_points, 3), kind)
+        decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), starts, points)
+        return Streamlines(
+            points,
+            fiblets.offsets(),
+            per_point={k: v.values() for k, v in fiblets.per_point.items()},
+            per_streamline=dict(fiblets.per_streamline),
+            groups=dict(fiblets.groups),
+            per_group={k: dict(v) for k, v in fiblets.per_group.items()},
+            **meta,
+        )
+    chosen = select_streamlines(fiblets.n_streamlines, ids)
+    offsets = fiblets.offsets()
+    lengths = offsets[chosen + 1] - offsets[chosen]
+    fresh = np.concatenate([[0], np.cumsum(lengths)])
+    # Fiblets of the chosen streamlines, in their order: ranges of consecutive fiblets, laid end to end.
+    first = np.zeros(fiblets.n_streamlines + 1, np.int64)
+    first[1:] = np.cumsum(np.bincount(fiblets.fiblet_streamlines(), minlength=fiblets.n_streamlines))
+    n = first[chosen + 1] - first[chosen]
+    which = np.arange(n.sum()) + np.repeat(first[chosen] - (np.cumsum(n) - n), n)
+    shift = np.repeat(fresh[:-1] - offsets[chosen], n)
+    points = np.empty((int(fresh[-1]), 3), kind)
+    decode_fiblets(fiblets, which, starts[which] + shift, points)
+    rows = np.arange(int(fresh[-1])) + np.repeat(offsets[chosen] - fresh[:-1], lengths)
+    place = np.full(fiblets.n_streamlines, -1, np.int64)
+    place[chosen[::-1]] = np.arange(len(chosen))[::-1]
+    groups = {}
+    for name, members in fiblets.groups.items():
+        kept = place[np.asarray(members, np.int64)]
+        groups[name] = kept[kept >= 0]
+    return Streamlines(
+        points,
+        fresh,
+        per_point={k: v.values(rows) for k, v in fiblets.per_point.items()},
+        per_streamline={k: v[chosen] for k, v in fiblets.per_streamline.items()},
+        groups=groups,
+        per_group={k: dict(v) for k, v in fiblets.per_group.items()},
+        **meta,
+    )
+
+
+def iter_chunks(
+    fiblets: FibletSet, max_points: int = 2_000_000, dtype: npt.DTypeLike | None = None
+) -> Iterator[Streamlines]:
+    """Decode consecutive streamlines in bounded memory.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        The set, which may be larger than memory if it is mapped from a file.
+    max_points : int
+        Points per chunk; a streamline that alone has more makes a chunk of its own.
+    dtype : {float32, float64}, optional
+        As in :meth:`.FibletSet.decompress`.
+
+    Yields
+    ------
+    Streamlines
+        With the values of its streamlines; put together they are what :meth:`.FibletSet.decompress` returns.
+    """
+    kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
+    n, a, first_id, first_point = fiblets.n_fiblets, 0, 0, 0
+    while a < n or first_id < fiblets.n_streamlines:
+        b = _next_begin(fiblets, a, max(max_points // MAX_POINTS, 1)) if a < n else n
+        which = np.arange(a, b)
+        counts = unpack("last", fiblets.decoding[a:b]).astype(np.int64) + 1
+        begins = np.flatnonzero(unpack("begin", fiblets.anchors[a:b]))
+        per_rank = np.add.reduceat(counts, begins) if begins.size else np.empty(0, np.int64)
+        rank = fiblets.rank_at(a) if a < n else fiblets.n_ranks
+        last_rank = rank + len(begins)
+        ids = np.arange(rank, last_rank) if fiblets.rank_to_id is None else fiblets.rank_to_id[rank:last_rank]
+        # Streamlines without points belong to the chunk of the streamline before them.
+        stop = fiblets.n_streamlines
+        if b < n:
+            stop = last_rank if fiblets.rank_to_id is None else int(fiblets.rank_to_id[last_rank])
+        lengths = np.zeros(stop - first_id, np.int64)
+        lengths[np.asarray(ids) - first_id] = per_rank
+        points = np.empty((int(counts.sum()), 3), kind)
+        decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
+        rows = slice(first_point, first_point + len(points))
+        groups = {}
+        for name, members in fiblets.groups.items():
+            inside = np.asarray(members, np.int64)
+            groups[name] = inside[(inside >= first_id) & (inside < stop)] - first_id
+        yield Streamlines(
+            points,
+            np.concatenate([[0], np.cumsum(lengths)]),
+            per_point={k: v.values(rows) for k, v in fiblets.per_point.items()},
+            per_streamline={k: v[first_id:stop] for k, v in fiblets.per_streamline.items()},
+            groups=groups,
+            per_group={k: dict(v) for k, v in fiblets.per_group.items()},
+            affine=fiblets.affine,
+            space=dict(fiblets.space),
+            dropped=dict(fiblets.dropped) if first_id == 0 else {},
+        )
+        a, first_id, first_point = b, stop, rows.stop
+
+
+def _next_begin(fiblets: FibletSet, a: int, wanted: int) -> int:
+    """First fiblet at or after ``a + wanted`` that begins a streamline."""
+    n = fiblets.n_fiblets
+    if a + wanted >= n:
+        return n
+    # Rather a little less than asked for than a little more.
+    back = np.flatnonzero(unpack("begin", fiblets.anchors[a + 1 : a + wanted + 1]))
+    if back.size:
+        return a + 1 + int(back[-1])
+    start = a + wanted
+    while start < n:
+        ahead = np.flatnonzero(unpack("begin", fiblets.anchors[start : start + 65536]))
+        if ahead.size:
+            return start + int(ahead[0])
+        start += 65536
+    return n

@@ -1,0 +1,225 @@
+"""Streamlines to fiblet records, chunk by chunk: cut, code, and lay out in pages.
+
+A streamline is cut every 60 points. Each cut is first tried with direction bytes; where those would break the promise
+(steps that vary, bends beyond the cap angles) it is coded on the lattice instead, split further where that saves bytes.
+No point is ever dropped or moved by more than the promise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any, Literal
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from ..streamlines import Streamlines
+from . import beam_kernels, kernels, lattice_kernels, nearest
+from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack
+from .parameters import Parameters
+from .tables import cap_ratios, directions, quaternions
+
+__all__ = ["Encoder", "FibletChunk", "search_tables"]
+
+Effort = Literal["fast", "high"]
+
+
+@cache
+def search_tables() -> tuple[npt.NDArray[Any], ...]:
+    """What the encoder searches: quaternions, directions, ratios, and candidate rows of all cap angles."""
+    rows = [nearest.candidates(cap) for cap in range(CAPS)]
+    base = np.cumsum([0] + [len(r.codes) for r in rows[:-1]])
+    start = np.stack([r.start + b for r, b in zip(rows, base, strict=True)]).astype(np.int32)
+    return quaternions().astype(np.float64), directions(), cap_ratios(), start, np.concatenate([r.codes for r in rows])
+
+
+@dataclass
+class FibletChunk:
+    """Records of consecutive fiblets, as the arrays of :mod:`.layout`."""
+
+    anchors: npt.NDArray[np.uint32]
+    anchors_low: npt.NDArray[np.uint16] | None
+    decoding: npt.NDArray[np.uint32]
+    reach: npt.NDArray[np.uint16]
+    codes: npt.NDArray[np.uint8]
+
+
+@dataclass
+class Encoder:
+    """Turns chunks of streamlines into chunks of records, keeping count across them.
+
+    Attributes
+    ----------
+    parameters : Parameters
+        Shared numbers of the file.
+    effort : {'fast', 'high'}
+        Greedy, or looking ahead with a beam.
+    pages : list of tuple of int
+        Rank, code byte and point at which each page begun so far starts.
+    n_fiblets, n_ranks, n_codes, n_points, n_streamlines : int
+        Totals so far; ranks count the streamlines that have points.
+    """
+
+    parameters: Parameters
+    effort: Effort = "fast"
+    pages: list[tuple[int, int, int]] = field(default_factory=list)
+    empty: list[npt.NDArray[np.int64]] = field(default_factory=list)
+    n_fiblets: int = 0
+    n_ranks: int = 0
+    n_codes: int = 0
+    n_points: int = 0
+    n_streamlines: int = 0
+    n_lattice: int = 0
+
+    def __post_init__(self) -> None:
+        if self.effort not in ("fast", "high"):
+            raise ValueError(f"effort is {self.effort!r}; 'fast' or 'high' is needed")
+
+    @property
+    def top(self) -> float:
+        """Largest anchor number."""
+        return 2.0**self.parameters.anchor_bits - 1.0
+
+    def add(self, streamlines: Streamlines) -> FibletChunk:
+        """Code the next streamlines."""
+        p = self.parameters
+        points = np.ascontiguousarray(streamlines.points)
+        offsets = np.asarray(streamlines.offsets, np.int64)
+        origin, scale = np.array(p.origin), np.array(p.anchor_scale)
+        slots, rank, end = _cut(offsets)
+        self._count_empty(offsets)
+        m = len(slots)
+        ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
+        cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(len(points), np.uint8)
+        encode = kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
+        out = (ok, shape, step, cap, radius, end, codes)
+        encode(points, origin, slots, scale, self.top, (p.step_lo, p.step_hi), p.promise, search_tables(), out)
+
+        wanted = np.flatnonzero(ok == 0)
+        pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
+        cuts = np.zeros(len(points) if wanted.size else 0, np.uint8)
+        if wanted.size:
+            found, bytes_ = np.zeros(len(wanted), np.int64), np.zeros(len(wanted), np.int64)
+            lattice_kernels.plan_lattices(
+                points, origin, slots, wanted, scale, self.top, p.lattice, found, bytes_, cuts
+            )
+            pieces[wanted], size[wanted] = found, bytes_
+        fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
+        total, n_codes = int(pieces.sum()), int(size.sum())
+        packed = np.empty(n_codes, np.uint8)
+        _gather(codes, slots, np.flatnonzero(ok), code_at, packed)
+        rows = {name: _spread(total, fiblet_at, a) for name, a in (("shape", shape), ("step", step), ("cap", cap))}
+        rows["kind"] = np.zeros(total, np.uint8)
+        counts, point_start = _spread(total, fiblet_at, slots[:, 1]), _spread(total, fiblet_at, slots[:, 0])
+        code_start, radii = _spread(total, fiblet_at, code_at), _spread(total, fiblet_at, radius)
+        if wanted.size:
+            at = np.stack([fiblet_at[wanted], code_at[wanted]], axis=1)
+            filled = (packed, rows["shape"], rows["step"], rows["cap"], rows["kind"], counts, code_start, point_start, radii)
+            lattice_kernels.encode_lattices(
+                points, origin, slots, wanted, scale, self.top, p.lattice, cuts, end, at, filled
+            )
+            self.n_lattice += int(pieces[wanted].sum())
+        ranks = np.repeat(rank, pieces)
+        begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
+        ends = np.append(begins[1:], True) if total else begins
+        chunk = self._lay_out(points, rows, counts, point_start, code_start, radii, ranks, begins, ends, packed)
+        self.n_fiblets += total
+        self.n_ranks += int(rank[-1]) + 1 if m else 0
+        self.n_codes += n_codes
+        self.n_points += len(points)
+        self.n_streamlines += len(offsets) - 1
+        return chunk
+
+    def _count_empty(self, offsets: npt.NDArray[np.int64]) -> None:
+        empty = np.flatnonzero(np.diff(offsets) == 0)
+        if empty.size:
+            self.empty.append(empty + self.n_streamlines)
+
+    def _lay_out(
+        self,
+        points: npt.NDArray[np.floating],
+        rows: dict[str, npt.NDArray[Any]],
+        counts: npt.NDArray[np.int64],
+        point_start: npt.NDArray[np.int64],
+        code_start: npt.NDArray[np.int64],
+        radii: npt.NDArray[np.float64],
+        ranks: npt.NDArray[np.int64],
+        begins: npt.NDArray[np.bool_],
+        ends: npt.NDArray[np.bool_],
+        codes: npt.NDArray[np.uint8],
+    ) -> FibletChunk:
+        """Write records, with indices relative to their pages."""
+        p = self.parameters
+        total = len(counts)
+        absolute = np.stack([ranks + self.n_ranks, code_start + self.n_codes, point_start + self.n_points], axis=1)
+        page = (np.arange(total) + self.n_fiblets) >> PAGE_BITS
+        opened = np.arange(-self.n_fiblets % PAGE, total, PAGE)
+        self.pages += [(int(r), int(c), int(q)) for r, c, q in absolute[opened]]
+        first = self.n_fiblets >> PAGE_BITS
+        if total:
+            bases = np.array(self.pages[first : int(page[-1]) + 1], np.int64)
+            absolute -= bases[page - first]
+        scale = np.array(p.anchor_scale)
+        relative = points[point_start].astype(np.float64) - np.array(p.origin)
+        grid = np.divide(relative, scale, out=np.zeros_like(relative), where=scale > 0.0)
+        grid = np.clip(np.rint(grid), 0.0, self.top).astype(np.uint64)
+        low = None
+        if p.anchor_bits == 32:
+            low = (grid & np.uint64(0xFFFF)).astype(np.uint16)
+            grid >>= np.uint64(16)
+        anchors = pack(
+            "anchors", anchor_x=grid[:, 0], anchor_y=grid[:, 1], anchor_z=grid[:, 2],
+            rank=absolute[:, 0], begin=begins, end=ends,
+        )  # fmt: skip
+        decoding = pack(
+            "decoding", shape=rows["shape"], code=absolute[:, 1], step=rows["step"], point=absolute[:, 2],
+            last=counts - 1, cap=rows["cap"], kind=rows["kind"],
+        )  # fmt: skip
+        reach = np.zeros(total)
+        if p.reach_scale > 0.0:
+            reach = np.ceil(radii / p.reach_scale * (1.0 + 1e-12))
+        return FibletChunk(anchors, low, decoding, np.minimum(reach, 65535.0).astype(np.uint16), codes)
+
+    def page_table(self) -> npt.NDArray[np.int64]:
+        """``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page starts; last row: the totals."""
+        return np.array([*self.pages, (self.n_ranks, self.n_codes, self.n_points)], np.int64).reshape(-1, 3)
+
+    def rank_to_id(self) -> npt.NDArray[np.int64] | None:
+        """Streamline of each rank, or None where every streamline has points and the two are the same."""
+        if not self.empty:
+            return None
+        keep = np.ones(self.n_streamlines, bool)
+        keep[np.concatenate(self.empty)] = False
+        return np.flatnonzero(keep)
+
+
+def _cut(
+    offsets: npt.NDArray[np.int64],
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.uint8]]:
+    """Slots of at most 60 points: ``(m, 2)`` first point and count, rank of each, and whether it ends its streamline."""
+    lengths = np.diff(offsets)
+    filled = np.flatnonzero(lengths > 0)
+    per = -(-lengths[filled] // MAX_POINTS)
+    rank = np.repeat(np.arange(len(filled)), per)
+    nth = np.arange(len(rank)) - np.repeat(np.cumsum(per) - per, per)
+    first = offsets[filled][rank] + MAX_POINTS * nth
+    count = np.minimum(MAX_POINTS, offsets[filled + 1][rank] - first)
+    return np.stack([first, count], axis=1), rank, (nth == per[rank] - 1).astype(np.uint8)
+
+
+def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Values of the slots at their first fiblet; the rows of further pieces are filled by the lattice encoder."""
+    spread = np.zeros(total, values.dtype)
+    spread[at] = values
+    return spread
+
+
+@numba.njit(cache=True, parallel=True)  # type: ignore[untyped-decorator]
+def _gather(codes: Any, slots: Any, which: Any, code_at: Any, packed: Any) -> None:
+    for w in numba.prange(len(which)):
+        slot = which[w]
+        first, at = slots[slot, 0], code_at[slot]
+        for i in range(slots[slot, 1] - 2):
+            packed[at + i] = codes[first + i]

@@ -1,0 +1,268 @@
+"""FibletSet: a whole tractogram in compressed form, in memory or mapped from a ``.fiblets`` file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..streamlines import Streamlines
+from .layout import PAGE, PAGE_BITS, unpack
+from .parameters import Parameters
+from .quantised import QuantisedPoints
+from .tables import quaternions
+
+__all__ = ["FibletSet"]
+
+
+@dataclass(eq=False)
+class FibletSet:
+    """Compressed streamlines (paper: Schertzer et al. 2022, section 3.2; record: :mod:`pvfiblets.codec.layout`).
+
+    Made by :func:`pvfiblets.compress` or :meth:`open`; its arrays are not meant to be written to.
+
+    Attributes
+    ----------
+    parameters : Parameters
+        What all fiblets share: origin, anchor grid, steps, lattice, promise.
+    anchors : numpy.ndarray
+        ``(n_fiblets, 2)`` uint32: what culling reads.
+    decoding : numpy.ndarray
+        ``(n_fiblets, 3)`` uint32: what decoding reads.
+    reach : numpy.ndarray
+        ``(n_fiblets,)`` uint16: radii of bounding spheres, in units of ``reach_scale``.
+    codes : numpy.ndarray
+        ``(n_bytes,)`` uint8.
+    pages : numpy.ndarray
+        ``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page of 16384 fiblets starts.
+    bounds : tuple of float
+        True bounds of the original points ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
+    n_streamlines : int
+        Streamlines, those without points included.
+    anchors_low : numpy.ndarray or None
+        ``(n_fiblets, 3)`` uint16: lower halves of 32-bit anchors, only where the promise asks for them.
+    rank_to_id : numpy.ndarray or None
+        Streamline of each rank where some streamlines have no points; else None, and both are the same.
+    per_point : dict of str to QuantisedPoints
+        Values kept for every point.
+    per_streamline, groups, per_group : dict
+        As in :class:`~pvfiblets.Streamlines`, whole.
+    affine : numpy.ndarray
+        ``(4, 4)`` voxel to RAS mm of the source; identity if unknown.
+    space : dict
+        What writers of voxel-based formats need.
+    dropped : dict of str to int
+        What reading the source left out, by reason.
+    """
+
+    parameters: Parameters
+    anchors: npt.NDArray[np.uint32]
+    decoding: npt.NDArray[np.uint32]
+    reach: npt.NDArray[np.uint16]
+    codes: npt.NDArray[np.uint8]
+    pages: npt.NDArray[np.int64]
+    bounds: tuple[float, float, float, float, float, float]
+    n_streamlines: int
+    anchors_low: npt.NDArray[np.uint16] | None = None
+    rank_to_id: npt.NDArray[np.int64] | None = None
+    per_point: dict[str, QuantisedPoints] = field(default_factory=dict)
+    per_streamline: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
+    groups: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
+    per_group: dict[str, dict[str, Any]] = field(default_factory=dict)
+    affine: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
+    space: dict[str, Any] = field(default_factory=dict)
+    dropped: dict[str, int] = field(default_factory=dict)
+
+    # ------------------------------------------------------------------------------------------------ what it holds
+
+    def __len__(self) -> int:
+        return self.n_streamlines
+
+    def __repr__(self) -> str:
+        return (
+            f"FibletSet({self.n_streamlines} streamlines, {self.n_points} points, {self.n_fiblets} fiblets, "
+            f"{self.nbytes} bytes, promise {self.promise:g} mm)"
+        )
+
+    @property
+    def n_points(self) -> int:
+        """Points of all streamlines."""
+        return int(self.pages[-1, 2])
+
+    @property
+    def n_fiblets(self) -> int:
+        """Fiblets of all streamlines."""
+        return len(self.anchors)
+
+    @property
+    def n_ranks(self) -> int:
+        """Streamlines that have points."""
+        return int(self.pages[-1, 0])
+
+    @property
+    def origin(self) -> npt.NDArray[np.float64]:
+        """``(3,)`` where anchors count from, mm."""
+        return np.array(self.parameters.origin)
+
+    @property
+    def anchor_scale(self) -> npt.NDArray[np.float64]:
+        """``(3,)`` unit of the anchors, mm."""
+        return np.array(self.parameters.anchor_scale)
+
+    @property
+    def step(self) -> float:
+        """Median distance between points, mm."""
+        return self.parameters.step
+
+    @property
+    def step_lo(self) -> float:
+        """Least step that a direction fiblet can name, mm."""
+        return self.parameters.step_lo
+
+    @property
+    def step_hi(self) -> float:
+        """Greatest step that a direction fiblet can name, mm."""
+        return self.parameters.step_hi
+
+    @property
+    def lattice(self) -> float:
+        """Edge of the lattice of the lattice kinds, mm."""
+        return self.parameters.lattice
+
+    @property
+    def reach_scale(self) -> float:
+        """Unit of ``reach``, mm."""
+        return self.parameters.reach_scale
+
+    @property
+    def promise(self) -> float:
+        """No decoded point is farther than this from its original, mm."""
+        return self.parameters.promise
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Bytes of every array."""
+        arrays: dict[str, Any] = {
+            "anchors": self.anchors,
+            "anchors_low": self.anchors_low,
+            "decoding": self.decoding,
+            "reach": self.reach,
+            "codes": self.codes,
+            "pages": self.pages,
+            "rank_to_id": self.rank_to_id,
+        }
+        arrays |= {f"per_point/{k}": v.codes for k, v in self.per_point.items()}
+        arrays |= {f"per_streamline/{k}": v for k, v in self.per_streamline.items()}
+        arrays |= {f"groups/{k}": v for k, v in self.groups.items()}
+        return {name: int(a.nbytes) for name, a in arrays.items() if a is not None}
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays together."""
+        return sum(self.sizes.values())
+
+    # ---------------------------------------------------------------------------------------- records, whole columns
+
+    def fiblet_ranks(self) -> npt.NDArray[np.int64]:
+        """``(n_fiblets,)`` rank of each fiblet's streamline."""
+        return unpack("rank", self.anchors).astype(np.int64) + self._base(0)
+
+    def fiblet_streamlines(self) -> npt.NDArray[np.int64]:
+        """``(n_fiblets,)`` index of each fiblet's streamline."""
+        ranks = self.fiblet_ranks()
+        return ranks if self.rank_to_id is None else self.rank_to_id[ranks]
+
+    def fiblet_points(self) -> npt.NDArray[np.int64]:
+        """``(n_fiblets,)`` index of each fiblet's first point among all points."""
+        return unpack("point", self.decoding).astype(np.int64) + self._base(2)
+
+    def fiblet_counts(self) -> npt.NDArray[np.int64]:
+        """``(n_fiblets,)`` number of points of each fiblet."""
+        return unpack("last", self.decoding).astype(np.int64) + 1
+
+    def _base(self, column: int) -> npt.NDArray[np.int64]:
+        return self.pages[:-1, column].repeat(PAGE)[: self.n_fiblets]
+
+    def offsets(self) -> npt.NDArray[np.int64]:
+        """``(n_streamlines + 1,)`` int64: where each streamline's points start, as in :class:`~pvfiblets.Streamlines`."""
+        lengths = np.zeros(self.n_streamlines, np.int64)
+        np.add.at(lengths, self.fiblet_streamlines(), self.fiblet_counts())
+        return np.concatenate([[0], np.cumsum(lengths)])
+
+    def first_fiblets(self) -> npt.NDArray[np.int64]:
+        """``(n_ranks + 1,)`` int64: first fiblet of each streamline that has points, and ``n_fiblets``."""
+        return np.append(np.flatnonzero(unpack("begin", self.anchors)), self.n_fiblets)
+
+    # ----------------------------------------------------------------------------------------------------- decoding
+
+    def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
+        """Decode to points.
+
+        Parameters
+        ----------
+        ids : array_like, optional
+            Streamlines to decode: indices (any order, repeats allowed; negative ones count from the end), a boolean mask
+            ``(n_streamlines,)``, or a slice. All by default.
+        dtype : {float32, float64}, optional
+            Type of the points; by default float32 where its rounding is far below the promise.
+
+        Returns
+        -------
+        Streamlines
+            With every value, group and header that was kept. Groups refer to the streamlines returned.
+
+        Raises
+        ------
+        IndexError
+            If an index is out of range or a mask has the wrong length.
+        """
+        from .decompress import decompress
+
+        return decompress(self, ids, dtype)
+
+    def point_dtype(self) -> npt.DTypeLike:
+        """Type of decoded points: float32 where its rounding at these bounds stays below 2 % of the promise."""
+        largest = np.float32(np.abs(self.bounds).max() if self.n_points else 0.0)
+        return np.float32 if float(np.spacing(largest)) <= 0.02 * self.promise else np.float64
+
+    def lengths(self) -> npt.NDArray[np.float64]:
+        """Length of each streamline as decoded, ``(n_streamlines,)``, mm."""
+        return self.decompress(dtype=np.float64).lengths()
+
+    def quaternion_table(self) -> npt.NDArray[np.float32]:
+        """The direction table that the codes refer to; see :func:`pvfiblets.codec.tables.quaternions`."""
+        return quaternions()
+
+    def rank_at(self, fiblet: int) -> int:
+        """Rank of one fiblet's streamline, without reading the others."""
+        return int(self.pages[fiblet >> PAGE_BITS, 0]) + int(unpack("rank", self.anchors[fiblet]))
+
+    def iter_chunks(self, max_points: int = 2_000_000) -> Iterator[Streamlines]:
+        """Decode consecutive streamlines in bounded memory; see :func:`pvfiblets.codec.decompress.iter_chunks`."""
+        from .decompress import iter_chunks
+
+        return iter_chunks(self, max_points)
+
+    # ---------------------------------------------------------------------------------------------------- to disk
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write a ``.fiblets`` file; see :func:`pvfiblets.codec.storage.save`."""
+        from .storage import save
+
+        save(self, path)
+
+    @classmethod
+    def open(cls, path: str | PathLike[str]) -> FibletSet:
+        """Map a ``.fiblets`` file into memory; see :func:`pvfiblets.codec.storage.open_fiblets`."""
+        from .storage import open_fiblets
+
+        return open_fiblets(path)
+
+    @classmethod
+    def from_parts(cls, header: Mapping[str, Any], arrays: Mapping[str, Any]) -> FibletSet:
+        """Build a set from a file's header and arrays; used by :mod:`pvfiblets.codec.storage`."""
+        return cls(**header, **arrays)

@@ -1,0 +1,202 @@
+"""What one file's fiblets have in common: origin, anchor grid, steps, lattice edge and the error promised."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..streamlines import Streamlines
+from .layout import MAX_POINTS
+
+__all__ = ["DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
+
+DEFAULT_PROMISE_STEPS = 0.1
+CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
+STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
+SAMPLE = 200_000  # segment lengths kept from each chunk; a median needs no more
+_ANCHOR_SHARE = 0.1  # of the promise that 16-bit anchors may use before finer ones are taken
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass
+class Survey:
+    """What a first pass over the data finds.
+
+    Attributes
+    ----------
+    lower, upper : numpy.ndarray
+        ``(3,)`` true bounds, mm.
+    longest : float
+        Longest segment, mm.
+    sample : list of numpy.ndarray
+        Segment lengths, mm, evenly taken.
+    n_points, n_streamlines : int
+        Totals.
+    """
+
+    lower: Vector = field(default_factory=lambda: np.full(3, np.inf))
+    upper: Vector = field(default_factory=lambda: np.full(3, -np.inf))
+    longest: float = 0.0
+    sample: list[npt.NDArray[np.float64]] = field(default_factory=list)
+    n_points: int = 0
+    n_streamlines: int = 0
+    values: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    def add(self, streamlines: Streamlines, per_point: Iterable[str] = ()) -> None:
+        """Take in one chunk; ``per_point`` names the arrays whose ranges are wanted.
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite: such points have no place in bounds, and leaving them out would be silent.
+        """
+        points = streamlines.points
+        self.n_points += len(points)
+        self.n_streamlines += len(streamlines)
+        for name in per_point:
+            column = np.asarray(streamlines.per_point[name])
+            finite = column[np.isfinite(column)]
+            if finite.size:
+                lo, hi = self.values.get(name, (np.inf, -np.inf))
+                self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
+        if not len(points):
+            return
+        lower, upper = points.min(0).astype(np.float64), points.max(0).astype(np.float64)
+        if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
+            bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise ValueError(
+                f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair that point"
+            )
+        self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
+        lengths, longest = _segments(points, streamlines.offsets)
+        self.longest = max(self.longest, longest)
+        self.sample.append(lengths)
+
+
+def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> tuple[Vector, float]:
+    """Evenly sampled segment lengths, and the longest of all."""
+    from .kernels import longest_segment
+
+    longest = float(longest_segment(points, offsets))
+    n = max(len(points) - 1, 0)
+    first = np.arange(0, n, max(1, n // SAMPLE))
+    joins = np.searchsorted(offsets, first + 1)  # a segment that would cross into the next streamline is none
+    inside = offsets[np.minimum(joins, len(offsets) - 1)] != first + 1
+    first = first[inside]
+    delta = points[first + 1].astype(np.float64) - points[first].astype(np.float64)
+    return np.sqrt((delta**2).sum(1)), longest
+
+
+def survey(chunks: Iterable[Streamlines], per_point: Iterable[str] = ()) -> Survey:
+    """First pass: bounds, steps and value ranges of all chunks."""
+    found = Survey()
+    names = tuple(per_point)
+    for chunk in chunks:
+        found.add(chunk, names)
+    return found
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Numbers shared by all fiblets of a file; lengths in mm.
+
+    Attributes
+    ----------
+    origin, anchor_scale : tuple of float
+        An anchor ``q`` stands at ``origin + anchor_scale * q``.
+    anchor_bits : int
+        16 or 32 bits an axis.
+    step, step_lo, step_hi : float
+        Median step, and the least and greatest that a direction fiblet can name.
+    lattice : float
+        Edge of the lattice of the lattice kinds.
+    reach_scale : float
+        Unit of the bounding radii.
+    promise : float
+        No decoded point is farther from its original.
+    """
+
+    origin: tuple[float, float, float]
+    anchor_scale: tuple[float, float, float]
+    anchor_bits: int
+    step: float
+    step_lo: float
+    step_hi: float
+    lattice: float
+    reach_scale: float
+    promise: float
+
+    @classmethod
+    def choose(cls, found: Survey, max_error: float | None = None) -> Parameters:
+        """Choose parameters for surveyed data.
+
+        Parameters
+        ----------
+        found : Survey
+            The data.
+        max_error : float, optional
+            Promise in mm; default a tenth of the median step, or the finest that anchors hold if that is coarser.
+
+        Raises
+        ------
+        ValueError
+            If ``max_error`` is not a positive number, or finer than 32-bit anchors over these bounds can keep.
+        """
+        if max_error is not None and not (math.isfinite(max_error) and max_error > 0.0):
+            raise ValueError(f"max_error is {max_error}; a positive length in mm is needed")
+        empty = found.n_points == 0
+        lower = np.zeros(3) if empty else found.lower
+        extent = np.zeros(3) if empty else found.upper - found.lower
+        lengths = np.concatenate(found.sample) if found.sample else np.empty(0)
+        moving = lengths[lengths > 0.0]
+        step = float(np.median(moving)) if moving.size else found.longest
+        finest = _anchor_error(extent, 32) * 2.0 + float(np.spacing(np.abs(lower) + extent).max()) * 4.0
+        finest = max(finest, np.finfo(np.float64).tiny * 2.0**60)
+        if max_error is None:
+            promise = max(DEFAULT_PROMISE_STEPS * step, finest)
+            if step == 0.0:
+                promise = max(finest, _anchor_error(extent, 16) * 2.0)
+        elif max_error < finest:
+            raise ValueError(
+                f"max_error is {max_error} mm; over bounds of {extent.max():g} mm at {np.abs(lower).max():g} mm from the "
+                f"origin the finest promise is {finest:.3g} mm: ask for that, or bring the data nearer the origin"
+            )
+        else:
+            promise = float(max_error)
+        bits = 16 if _anchor_error(extent, 16) <= _ANCHOR_SHARE * promise else 32
+        lo, hi = _step_range(moving, step)
+        return cls(
+            origin=tuple(lower.tolist()),
+            anchor_scale=tuple((extent / (2.0**bits - 1.0)).tolist()),
+            anchor_bits=bits,
+            step=step,
+            step_lo=lo,
+            step_hi=hi,
+            # Rounding to a cubic lattice errs by at most half its diagonal; the rest is room for float64's own.
+            lattice=2.0 / math.sqrt(3.0) * promise * (1.0 - 1e-6),
+            reach_scale=(MAX_POINTS * found.longest + 4.0 * promise) / 65535.0,
+            promise=promise,
+        )
+
+    def with_step(self, step: float) -> Parameters:
+        """The same for data known to have one constant step, mm."""
+        return replace(self, step=step, step_lo=step, step_hi=step)
+
+
+def _anchor_error(extent: Vector, bits: int) -> float:
+    return float(np.sqrt((extent**2).sum())) / (2.0**bits - 1.0) / 2.0
+
+
+def _step_range(moving: Vector, step: float) -> tuple[float, float]:
+    if not moving.size:
+        return step, step
+    near = moving[np.abs(moving - step) <= STEP_BAND * step]
+    mean = float(near.mean())
+    if float(near.std()) <= CONSTANT_STEP * step:
+        return mean, mean
+    return step * (1.0 - STEP_BAND), step * (1.0 + STEP_BAND)
