@@ -1,0 +1,321 @@
+"""The actor that ``plotter.add_fiblets`` returns: an ordinary PyVista actor with live colours."""
+
+from __future__ import annotations
+
+import weakref
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.mappers import FibletMapper
+from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.scalars import Scalars, find_scalars
+from pvfiblets.plotting.sources import with_point_values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pvfiblets.codec import FibletSet
+
+
+class PlottedMapper(FibletMapper):
+    """A fiblet mapper that shows PyVista's scalar bars the actor's own look-up table.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    """
+
+    def attach(self, actor: FibletActor) -> None:
+        """Tell the mapper whose colours it shows."""
+        self._actor = weakref.ref(actor)
+
+    @property
+    def lookup_table(self) -> pv.LookupTable:
+        """The table that colours both the picture and the scalar bar."""
+        return self._actor().lookup_table
+
+    @property
+    def scalar_range(self) -> tuple[float, float]:
+        """Values of the first and last colour; bars that several actors share set it."""
+        return self._actor().clim
+
+    @scalar_range.setter
+    def scalar_range(self, clim: tuple[float, float]) -> None:
+        self._actor().clim = clim
+
+
+class FibletActor(pv.Actor):
+    """Streamlines drawn from their compressed form.
+
+    Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
+    ``pickable``, ``prop`` …). The properties below may be set at any time and take effect at the
+    next render.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    scalars : str or array, optional
+        As for ``plotter.add_fiblets``.
+    settings : ColourSettings, optional
+        Colour map and colours.
+    line_width : float, optional
+        Pixels; the theme's by default.
+    opacity : float, default: 1.0
+        Of all streamlines.
+    lighting : bool, optional
+        Shade the lines by the scene's lights.
+    name : str, optional
+        Under which the plotter knows the actor.
+    theme : pyvista theme, optional
+        Gives what is not given.
+    """
+
+    def __init__(
+        self,
+        fiblets: FibletSet,
+        *,
+        scalars: str | np.ndarray | None = None,
+        settings: ColourSettings | None = None,
+        line_width: float | None = None,
+        opacity: float = 1.0,
+        lighting: bool | None = None,
+        name: str | None = None,
+        theme: Any = None,
+    ) -> None:
+        theme = pv.global_theme if theme is None else theme
+        self._theme = theme
+        self._fiblets = fiblets
+        self._settings = settings if settings is not None else ColourSettings()
+        self._choice = scalars
+        self._scalars: Scalars | None = None
+        self._table = pv.LookupTable()
+        self._bar_changed: Callable[[FibletActor], None] | None = None
+        mapper = PlottedMapper(fiblets)
+        super().__init__(mapper=mapper, prop=pv.Property(theme=theme), name=name)
+        self._mapper = mapper  # VTK keeps the C++ half only
+        mapper.attach(self)
+        self.prop.opacity = _fraction(opacity)
+        self.prop.lighting = theme.lighting if lighting is None else bool(lighting)
+        self.line_width = theme.line_width if line_width is None else line_width
+        self._recolour()
+
+    # Data ---------------------------------------------------------------------------------------
+
+    @property
+    def fiblets(self) -> FibletSet:
+        """The compressed data; another set may be put in its place."""
+        return self._fiblets
+
+    @fiblets.setter
+    def fiblets(self, fiblets: FibletSet) -> None:
+        scalars = self._find(fiblets, self._choice)
+        self._mapper.set_fiblets(fiblets)
+        self._fiblets = fiblets
+        self._show(scalars)
+
+    def explain(self) -> dict[str, Any]:
+        """Return what drawing this actor costs: passes, shader features, buffers, milliseconds.
+
+        Returns
+        -------
+        dict
+            As the engine reports it; see :meth:`pvfiblets.engine.FibletRenderer.explain`.
+        """
+        return self._mapper.explain()
+
+    def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
+        """Return the streamline id and the position along it (in points) at a window pixel.
+
+        Parameters
+        ----------
+        x, y : int
+            Pixel, counted from the lower left corner.
+
+        Returns
+        -------
+        tuple of (int, float) or None
+            ``None`` where no streamline of this actor was drawn.
+        """
+        return self._mapper.pick_at(x, y)
+
+    # Colours ------------------------------------------------------------------------------------
+
+    @property
+    def scalars(self) -> str | np.ndarray | None:
+        """Name or array that colours the actor; ``None`` for ``color``, or else orientation."""
+        return self._choice
+
+    @scalars.setter
+    def scalars(self, scalars: str | np.ndarray | None) -> None:
+        fiblets, scalars = with_point_values(self._fiblets, scalars)
+        found = self._find(fiblets, scalars)
+        if fiblets is not self._fiblets:
+            self._mapper.set_fiblets(fiblets)
+            self._fiblets = fiblets
+        before, self._choice = self._choice, scalars
+        try:
+            self._show(found)
+        except Exception:
+            self._choice = before
+            raise
+        if self._bar_changed is not None:
+            self._bar_changed(self)
+
+    @property
+    def scalars_title(self) -> str | None:
+        """What a scalar bar says; ``None`` if the present colours need none."""
+        return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
+
+    @property
+    def color(self) -> pv.Color | None:
+        """One colour for all streamlines; setting it puts scalars out of use."""
+        return None if self._settings.color is None else pv.Color(self._settings.color)
+
+    @color.setter
+    def color(self, color: Any) -> None:
+        checked = None if color is None else pv.Color(color)
+        self._settings.color = checked
+        self.scalars = None
+
+    @property
+    def lookup_table(self) -> pv.LookupTable:
+        """The table that colours both the picture and the scalar bar."""
+        return self._table
+
+    @property
+    def clim(self) -> tuple[float, float]:
+        """Values of the first and the last colour; ``None`` sets the range of the data."""
+        return tuple(self._table.scalar_range)
+
+    @clim.setter
+    def clim(self, clim: Any) -> None:
+        self._set("clim", clim)
+
+    @property
+    def cmap(self) -> Any:
+        """Colour map, as for :meth:`pyvista.Plotter.add_mesh`."""
+        return self._theme.cmap if self._settings.cmap is None else self._settings.cmap
+
+    @cmap.setter
+    def cmap(self, cmap: Any) -> None:
+        self._set("cmap", cmap)
+
+    @property
+    def n_colors(self) -> int:
+        """Entries of the look-up table."""
+        return self._settings.n_colors
+
+    @n_colors.setter
+    def n_colors(self, n_colors: int) -> None:
+        self._set("n_colors", n_colors)
+
+    @property
+    def log_scale(self) -> bool:
+        """Whether the colours spread over the logarithm of the values."""
+        return self._settings.log_scale
+
+    @log_scale.setter
+    def log_scale(self, log_scale: bool) -> None:
+        self._set("log_scale", bool(log_scale))
+
+    @property
+    def nan_color(self) -> pv.Color:
+        """Colour of NaN."""
+        return pv.Color(self._table.nan_color)
+
+    @nan_color.setter
+    def nan_color(self, color: Any) -> None:
+        self._set("nan_color", color)
+
+    @property
+    def below_color(self) -> Any:
+        """Colour of values below ``clim``; ``None`` uses the first of the map."""
+        return self._settings.below_color
+
+    @below_color.setter
+    def below_color(self, color: Any) -> None:
+        self._set("below_color", color)
+
+    @property
+    def above_color(self) -> Any:
+        """Colour of values above ``clim``; ``None`` uses the last of the map."""
+        return self._settings.above_color
+
+    @above_color.setter
+    def above_color(self, color: Any) -> None:
+        self._set("above_color", color)
+
+    # Looks --------------------------------------------------------------------------------------
+
+    @property
+    def opacity(self) -> float:
+        """From 0, not to be seen, to 1."""
+        return self.prop.opacity
+
+    @opacity.setter
+    def opacity(self, opacity: float) -> None:
+        self.prop.opacity = _fraction(opacity)
+
+    @property
+    def lighting(self) -> bool:
+        """Whether the scene's lights shade the lines."""
+        return self.prop.lighting
+
+    @lighting.setter
+    def lighting(self, lighting: bool) -> None:
+        self.prop.lighting = bool(lighting)
+
+    @property
+    def line_width(self) -> float:
+        """Width in pixels."""
+        return self._mapper.line_width
+
+    @line_width.setter
+    def line_width(self, width: float) -> None:
+        if not 0.0 < float(width) <= 64.0:
+            raise ValueError(f"line_width is {width!r}; give pixels above 0 and up to 64")
+        self.prop.line_width = float(width)
+        self._mapper.line_width = float(width)
+
+    def watch(self, bar_changed: Callable[[FibletActor], None] | None) -> None:
+        """Call ``bar_changed(actor)`` whenever the actor comes to need another scalar bar."""
+        self._bar_changed = bar_changed
+
+    # Inside -------------------------------------------------------------------------------------
+
+    def _find(self, fiblets: FibletSet, choice: str | np.ndarray | None) -> Scalars | None:
+        if choice is None and self._settings.color is not None:
+            return None
+        return find_scalars(fiblets, choice)
+
+    def _set(self, setting: str, value: Any) -> None:
+        """Change one setting; a refused value leaves all as it was."""
+        before = getattr(self._settings, setting)
+        setattr(self._settings, setting, value)
+        try:
+            self._show(self._scalars)
+        except Exception:
+            setattr(self._settings, setting, before)
+            raise
+
+    def _recolour(self) -> None:
+        self._show(self._find(self._fiblets, self._choice))
+
+    def _show(self, scalars: Scalars | None) -> None:
+        """Hand the mapper its colours."""
+        if scalars is not None and scalars.mapped:
+            update_table(self._table, self._settings, scalars, self._theme)
+        self._mapper.colouring = make_colouring(self._settings, scalars, self._table, self._theme)
+        self._scalars = scalars
+        colour = pv.Color(self._settings.color, default_color=self._theme.color)
+        self.prop.color = colour if scalars is None else "white"
+
+
+def _fraction(opacity: Any) -> float:
+    if not 0.0 <= float(opacity) <= 1.0:
+        raise ValueError(f"opacity is {opacity!r}; give a number from 0 to 1")
+    return float(opacity)

@@ -1,0 +1,148 @@
+"""From numbers to colours: PyVista's look-up table and the mapper's colouring, always in step.
+
+One :class:`pyvista.LookupTable` per actor serves both the picture and the scalar bar, so the two
+cannot disagree: the mapper is handed this table's own bytes and range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.mappers.colouring import Colouring
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.scalars import Scalars
+
+
+@dataclass
+class ColourSettings:
+    """What a user may set about an actor's colours; ``None`` means PyVista's theme or the data.
+
+    Parameters
+    ----------
+    color : color-like, optional
+        One colour for all, when no scalars are chosen.
+    cmap : str or colormap or list, optional
+        As for :meth:`pyvista.Plotter.add_mesh`.
+    clim : float or (float, float), optional
+        Values of the first and the last colour; one number ``x`` means ``(-x, x)``.
+    n_colors : int, default: 256
+        Entries of the look-up table.
+    log_scale : bool, default: False
+        Spread the colours over the logarithm of the values.
+    nan_color, below_color, above_color : color-like, optional
+        For NaN, and for values outside ``clim``.
+    flip_scalars : bool, default: False
+        Reverse the colour map.
+    """
+
+    color: Any = None
+    cmap: Any = None
+    clim: Any = None
+    n_colors: int = 256
+    log_scale: bool = False
+    nan_color: Any = None
+    below_color: Any = None
+    above_color: Any = None
+    flip_scalars: bool = False
+
+
+def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
+    """Return the values of the first and the last colour.
+
+    Raises
+    ------
+    ValueError
+        If ``clim`` is not one or two finite increasing numbers, or not positive on a log scale.
+    """
+    if settings.clim is None:
+        low, high = scalars.range
+        if settings.log_scale and low <= 0.0:
+            low = min(scalars.positive, high) if high > 0.0 else 1e-6
+            high = max(high, low)
+        return float(low), float(high)
+    clim = settings.clim
+    if isinstance(clim, (int, float, np.number)):
+        clim = (-clim, clim)
+    if not isinstance(clim, (Sequence, np.ndarray)) or isinstance(clim, str) or len(clim) != 2:
+        raise ValueError(f"clim is {settings.clim!r}; give one number or two, (low, high)")
+    low, high = float(clim[0]), float(clim[1])
+    if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+        raise ValueError(f"clim is ({low:g}, {high:g}); give two finite numbers, the low one first")
+    if settings.log_scale and low <= 0.0:
+        raise ValueError(f"clim begins at {low:g}; a logarithmic scale needs values above zero")
+    return low, high
+
+
+def update_table(
+    table: pv.LookupTable, settings: ColourSettings, scalars: Scalars, theme: Any
+) -> None:
+    """Bring ``table`` in step with the settings; the object stays, so scalar bars follow.
+
+    Raises
+    ------
+    ValueError
+        If the colour map, a colour or ``n_colors`` is none.
+    """
+    if int(settings.n_colors) != settings.n_colors or settings.n_colors < 1:
+        raise ValueError(f"n_colors is {settings.n_colors!r}; give a whole number above zero")
+    low, high = limits(settings, scalars)
+    cmap = theme.cmap if settings.cmap is None else settings.cmap
+    if isinstance(cmap, pv.LookupTable):
+        table.DeepCopy(cmap)
+    else:
+        table.apply_cmap(cmap, int(settings.n_colors), flip=settings.flip_scalars)
+    # The order matters: VTK refuses a logarithmic scale while the range touches zero.
+    table.log_scale = False
+    table.scalar_range = (low, high)
+    table.log_scale = bool(settings.log_scale)
+    table.nan_color = theme.nan_color if settings.nan_color is None else settings.nan_color
+    table.below_range_color = settings.below_color
+    table.above_range_color = settings.above_color
+
+
+def make_colouring(
+    settings: ColourSettings, scalars: Scalars | None, table: pv.LookupTable, theme: Any
+) -> Colouring:
+    """Return what the mapper needs to colour the same way as ``table`` does.
+
+    Parameters
+    ----------
+    settings : ColourSettings
+        The user's choice.
+    scalars : Scalars or None
+        ``None`` stands for one solid colour.
+    table : pyvista.LookupTable
+        Already brought in step by :func:`update_table`.
+    theme : pyvista theme
+        Gives the default colour.
+    """
+    if scalars is None:
+        return Colouring(
+            mode="solid", color=pv.Color(settings.color, default_color=theme.color).float_rgb
+        )
+    if not scalars.mapped:
+        return Colouring(mode=scalars.kind, values=scalars.values)
+    low, high = table.scalar_range
+    if high <= low:  # all values alike: a hair of width keeps the shader from dividing by zero
+        high = low + max(abs(low) * 1e-6, 1e-12)
+    return Colouring(
+        mode=scalars.kind,
+        values=scalars.name if scalars.values is None else scalars.values,
+        lut=np.asarray(table.values, dtype=np.uint8),
+        clim=(low, high),
+        log_scale=bool(settings.log_scale),
+        nan_color=_rgba(table.nan_color),
+        below_color=_rgba(table.below_range_color),
+        above_color=_rgba(table.above_range_color),
+    )
+
+
+def _rgba(color: Any) -> tuple[float, ...] | None:
+    """Return a colour's four parts from 0 to 1, or ``None`` for no colour."""
+    return None if color is None else pv.Color(color).float_rgba

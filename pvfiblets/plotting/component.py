@@ -1,0 +1,312 @@
+"""``plotter.add_fiblets(...)`` and ``plotter.fiblets``.
+
+PyVista finds this module by two entry points and imports it when a plotter is first asked for
+either name. :class:`FibletsComponent` lives as long as its plotter: it knows every fiblet actor
+that it added, raises errors that drawing met from the call that rendered, keeps scalar bars in
+step, and gives GPU memory back when an actor is removed and when the plotter closes.
+"""
+
+from __future__ import annotations
+
+import functools
+import weakref
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.plotting.actor import FibletActor
+from pvfiblets.plotting.colours import ColourSettings
+from pvfiblets.plotting.sources import as_fiblets
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from pvfiblets.codec import FibletSet
+    from pvfiblets.streamlines import Streamlines
+
+    Source = str | PathLike | FibletSet | Streamlines | pv.PolyData | list
+
+
+@dataclass
+class _Bar:
+    """Whether an actor wants a scalar bar, how, and which one it has."""
+
+    show: bool
+    arguments: dict[str, Any]
+    title: str | None = None
+
+
+@pv.register_plotter_component("fiblets")
+class FibletsComponent:
+    """The fiblet actors of one plotter.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+        The plotter it belongs to.
+
+    Examples
+    --------
+    >>> import pyvista as pv
+    >>> pl = pv.Plotter(off_screen=True)
+    >>> actor = pl.fiblets.add([[(0, 0, 0), (1, 1, 0), (2, 0, 0)]], color="red")
+    >>> list(pl.fiblets) == [actor]
+    True
+    """
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter = weakref.proxy(plotter)
+        self._actors: list[FibletActor] = []
+        self._renderers: dict[str, tuple[Any, int]] = {}
+        self._bars: dict[str, _Bar] = {}
+
+    def __iter__(self) -> Iterator[FibletActor]:
+        return iter(tuple(self._actors))
+
+    def __len__(self) -> int:
+        return len(self._actors)
+
+    def add(
+        self,
+        source: Source,
+        *,
+        scalars: str | np.ndarray | None = None,
+        color: Any = None,
+        cmap: Any = None,
+        clim: Any = None,
+        n_colors: int = 256,
+        log_scale: bool = False,
+        nan_color: Any = None,
+        below_color: Any = None,
+        above_color: Any = None,
+        flip_scalars: bool = False,
+        opacity: float = 1.0,
+        line_width: float | None = None,
+        lighting: bool | None = True,
+        name: str | None = None,
+        label: str | None = None,
+        show_scalar_bar: bool | None = None,
+        scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True,
+        user_matrix: Any = None,
+        reset_camera: bool | None = None,
+        render: bool = True,
+        per_point: Iterable[str] = (),
+        max_error: float | None = None,
+        progress: bool = False,
+        **options: Any,
+    ) -> FibletActor:
+        """Add streamlines to the scene, compressed.
+
+        Parameters
+        ----------
+        source : path, FibletSet, Streamlines, pyvista.PolyData or list of (n, 3) arrays
+            What to draw; anything not compressed yet is compressed first.
+        scalars : str or array, optional
+            What colours the streamlines: ``"orientation"`` (the default: the absolute value of
+            the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
+            ``"arc_length"``), the name of per-streamline or per-point data, or an array with one
+            value per streamline or per point, or one colour (3 or 4 columns) per streamline.
+        color : color-like, optional
+            One colour for all. ``scalars`` go before it.
+        cmap : str, list or colormap, optional
+            Colour map; the theme's by default.
+        clim : float or (float, float), optional
+            Values of the first and the last colour; the range of the data by default.
+        n_colors : int, default: 256
+            Number of colours in the map.
+        log_scale : bool, default: False
+            Spread the colours over the logarithm of the values.
+        nan_color, below_color, above_color : color-like, optional
+            Colour of NaN, and of values outside ``clim``.
+        flip_scalars : bool, default: False
+            Reverse the colour map.
+        opacity : float, default: 1.0
+            Of all streamlines.
+        line_width : float, optional
+            In pixels; the theme's by default.
+        lighting : bool, default: True
+            Shade the lines by the scene's lights; ``None`` for the theme's.
+        name : str, optional
+            Replaces the actor of the same name.
+        label : str, optional
+            For :meth:`pyvista.Plotter.add_legend`.
+        show_scalar_bar : bool, optional
+            The theme's by default; colours without a colour map never have one.
+        scalar_bar_args : dict, optional
+            For :meth:`pyvista.Plotter.add_scalar_bar`.
+        pickable : bool, default: True
+            Whether pickers find the actor.
+        user_matrix : transform-like, optional
+            From data to world coordinates.
+        reset_camera : bool, optional
+            As for :meth:`pyvista.Plotter.add_mesh`.
+        render : bool, default: True
+            Render at once if the window is shown already.
+        per_point : iterable of str
+            Per-point arrays of ``source`` to keep besides ``scalars``.
+        max_error : float, optional
+            Greatest distance (mm) of a drawn from a given point; a tenth of a step by default.
+        progress : bool, default: False
+            Show a progress bar while reading and compressing.
+        **options
+            Further arguments of :func:`pvfiblets.codec.compress`, such as ``step`` or ``effort``.
+
+        Returns
+        -------
+        FibletActor
+            Its properties may be changed at any time.
+
+        Raises
+        ------
+        KeyError
+            If there is no array of the name given as ``scalars``.
+        TypeError
+            If ``source`` is of an unknown kind.
+        ValueError
+            If an argument has no meaning.
+
+        Examples
+        --------
+        >>> import pyvista as pv
+        >>> from pvfiblets.synthetic import brain_streamlines
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> actor = pl.add_fiblets(brain_streamlines(1000), scalars="length", cmap="plasma")
+        >>> actor.line_width = 2
+        """
+        theme = self._plotter.theme
+        fiblets, scalars = as_fiblets(
+            source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress, **options
+        )
+        settings = ColourSettings(
+            color=None if color is None else pv.Color(color),
+            cmap=cmap,
+            clim=clim,
+            n_colors=n_colors,
+            log_scale=bool(log_scale),
+            nan_color=nan_color,
+            below_color=below_color,
+            above_color=above_color,
+            flip_scalars=flip_scalars,
+        )
+        actor = FibletActor(
+            fiblets,
+            scalars=scalars,
+            settings=settings,
+            line_width=line_width,
+            opacity=opacity,
+            lighting=lighting,
+            theme=theme,
+        )
+        if user_matrix is not None:
+            actor.user_matrix = user_matrix
+        if show_scalar_bar is None:
+            show_scalar_bar = theme.show_scalar_bar
+        if reset_camera is None and self._plotter.camera_set:
+            reset_camera = False
+        renderer = self._plotter.renderer
+        self._plotter.add_actor(
+            actor, name=name, pickable=pickable, reset_camera=reset_camera, render=False
+        )
+        self._track(actor, renderer)
+        if label is not None:
+            self._add_label(actor, label, renderer)
+        self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
+        self._update_bar(actor)
+        actor.watch(self._update_bar)
+        if render:
+            self._plotter.render()
+        return actor
+
+    def explain(self) -> list[dict[str, Any]]:
+        """Return what each actor's drawing costs.
+
+        Returns
+        -------
+        list of dict
+            One entry of :meth:`FibletActor.explain` per actor, with its ``name``.
+        """
+        return [{"name": actor.name, **actor.explain()} for actor in self]
+
+    # Life cycle ---------------------------------------------------------------------------------
+
+    def _track(self, actor: FibletActor, renderer: Any) -> None:
+        self._actors.append(actor)
+        address = renderer.GetAddressAsString("")
+        if address not in self._renderers:
+            # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
+            tag = renderer.AddObserver("ModifiedEvent", self._release_removed)
+            self._renderers[address] = (renderer, tag)
+        # Kept current here, since `clear_on_render_callbacks` drops what others registered.
+        self._plotter.add_on_render_callback(self._raise_pending)
+
+    def _release_removed(self, *_: Any) -> None:
+        """Give back the GPU memory of actors that are in none of the plotter's renderers."""
+        for actor in self:
+            if not any(renderer.HasViewProp(actor) for renderer, _ in self._renderers.values()):
+                self._forget(actor)
+
+    def _forget(self, actor: FibletActor) -> None:
+        self._actors.remove(actor)
+        self._bars.pop(actor.memory_address, None)
+        actor.watch(None)
+        actor.mapper.release(self._plotter.render_window)
+
+    def _raise_pending(self, _plotter: Any = None) -> None:
+        for actor in self:
+            actor.mapper.raise_pending()
+
+    def __plotter_close__(self) -> None:
+        """Release everything; PyVista calls this before the render window goes."""
+        for renderer, tag in self._renderers.values():
+            renderer.RemoveObserver(tag)
+        self._renderers.clear()
+        for actor in self:
+            self._forget(actor)
+
+    # Scalar bars and legend ---------------------------------------------------------------------
+
+    def _update_bar(self, actor: FibletActor) -> None:
+        """Add, replace or remove the actor's scalar bar so that it says what the picture shows."""
+        state = self._bars[actor.memory_address]
+        wanted = actor.scalars_title if state.show else None
+        if wanted is not None:
+            wanted = state.arguments.get("title", wanted)
+        if wanted == state.title:
+            return
+        if state.title is not None:
+            # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
+            self._plotter.scalar_bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
+        if wanted is not None:
+            arguments = {**state.arguments, "title": wanted}
+            self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
+        state.title = wanted
+
+    def _add_label(self, actor: FibletActor, label: str, renderer: Any) -> None:
+        if not isinstance(label, str):
+            raise TypeError(f"label is a {type(label).__name__}; give a string")
+        face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
+        entry = (face, label, pv.Color(actor.prop.color))
+        renderer._labels[actor.GetAddressAsString("")] = entry  # noqa: SLF001 - as add_mesh does
+
+
+@pv.register_plotter_component("add_fiblets")
+class AddFiblets:
+    """What makes ``plotter.add_fiblets`` callable; the same as ``plotter.fiblets.add``.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+        The plotter it belongs to.
+    """
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter = weakref.proxy(plotter)
+
+    @functools.wraps(FibletsComponent.add)
+    def __call__(self, source: Source, **arguments: Any) -> FibletActor:
+        """Add streamlines; see :meth:`FibletsComponent.add`."""
+        return self._plotter.fiblets.add(source, **arguments)

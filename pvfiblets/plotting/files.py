@@ -1,0 +1,53 @@
+"""Tractogram files for :func:`pyvista.read` and :meth:`pyvista.PolyData.save`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pyvista as pv
+from pyvista.core.utilities.reader_registry import LocalFileRequiredError
+
+from pvfiblets import formats
+from pvfiblets.streamlines import Streamlines
+
+
+def read_dataset(path: str, **_options: Any) -> pv.PolyData:
+    """Read any tractogram format into PolyData of lines with its point and cell data.
+
+    Parameters
+    ----------
+    path : str
+        A ``.tck``, ``.trk``, ``.trk.gz``, ``.trx``, ``.tt.gz`` or ``.fiblets`` file.
+
+    Returns
+    -------
+    pyvista.PolyData
+        One poly-line cell per streamline, RAS+ mm.
+    """
+    if "://" in str(path):
+        raise LocalFileRequiredError
+    return pv.wrap(formats.read(path).to_polydata())
+
+
+def write_dataset(dataset: pv.DataSet, path: str, **_options: Any) -> None:
+    """Write PolyData of lines as a tractogram; the suffix says which format.
+
+    Parameters
+    ----------
+    dataset : pyvista.PolyData
+        Lines, in RAS+ mm.
+    path : str
+        Ends in ``.tck``, ``.trk``, ``.trx`` or ``.fiblets``.
+
+    Raises
+    ------
+    TypeError
+        If the dataset is not PolyData.
+    """
+    if not isinstance(dataset, pv.PolyData):
+        raise TypeError(
+            f"a {type(dataset).__name__} cannot be written as {Path(path).suffix}; expected "
+            "PolyData with lines"
+        )
+    formats.write(path, Streamlines.from_polydata(dataset))
