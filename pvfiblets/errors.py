@@ -1,0 +1,52 @@
+"""Errors that the rooms share.
+
+Every error of this package derives from :class:`FibletsError`, so that a caller (the command
+line above all) can tell a plain statement about bad input from a programming mistake.
+"""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+
+
+class FibletsError(Exception):
+    """Base of every error that the package raises on purpose."""
+
+
+class FormatError(FibletsError, ValueError):
+    """A file does not hold what its format prescribes.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        The file.
+    position : int or None
+        Byte at which the file and the format disagree. For compressed files it counts
+        decompressed bytes; ``None`` when the disagreement has no single place.
+    found : str
+        What stands there.
+    expected : str
+        What the format prescribes, and where there is one, the remedy.
+
+    Examples
+    --------
+    >>> raise FormatError("a.tck", 0, "b'GIF89a'", "the magic line 'mrtrix tracks'")
+    Traceback (most recent call last):
+        ...
+    pvfiblets.errors.FormatError: a.tck, byte 0: found b'GIF89a', expected the magic line \
+'mrtrix tracks'
+    """
+
+    def __init__(
+        self, path: str | PathLike[str], position: int | None, found: str, expected: str
+    ) -> None:
+        self.path = fspath(path)
+        self.position = position
+        self.found = found
+        self.expected = expected
+        # The four facts stay in `args`, so that the error survives pickling between processes.
+        super().__init__(self.path, position, found, expected)
+
+    def __str__(self) -> str:
+        place = "" if self.position is None else f", byte {self.position}"
+        return f"{self.path}{place}: found {self.found}, expected {self.expected}"

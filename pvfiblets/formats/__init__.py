@@ -1,0 +1,164 @@
+"""Tractogram files: one module per format, chosen by suffix.
+
+========== ===== ====== ======================= ================================================
+suffix     reads writes streams in small memory carries
+========== ===== ====== ======================= ================================================
+.tck       yes   yes    yes (memory map)        points
+.trk       yes   yes    yes (memory map)        points, per point, per streamline, affine
+.trk.gz    yes   no     yes (inflates on)       as trk
+.trx       yes   yes    yes (memory map, or     everything
+                        inflates on)
+.vtk       yes   yes    after reading the file  points, per point, per streamline
+.vtp       yes   yes    after reading the file  points, per point, per streamline
+.tt.gz     yes   no     after inflating         points, clusters as groups, affine
+.fiblets   yes   yes    yes                     everything
+========== ===== ====== ======================= ================================================
+
+Whatever a file holds, reading ends in one of three ways: Streamlines; Streamlines whose
+``dropped`` tells what was left out and how often; or :class:`~pvfiblets.errors.FormatError` with
+the byte, what stands there and what should.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.registry import UnknownFormatError, module_for, suffix_of
+from pvfiblets.streamlines import Streamlines
+
+__all__ = [
+    "FormatError",
+    "UnknownFormatError",
+    "attach",
+    "info",
+    "iter_chunks",
+    "read",
+    "write",
+]
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
+    """Read a tractogram file whole.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        Its suffix chooses the format.
+    progress : bool
+        Show a progress bar, for formats whose reading takes long.
+
+    Returns
+    -------
+    Streamlines
+        RAS+ mm. ``dropped`` tells what was left out.
+
+    Raises
+    ------
+    FormatError
+        If the file breaks its format in a way that has no safe reading.
+    UnknownFormatError
+        If no format has this suffix.
+    """
+    streamlines: Streamlines = module_for(path, "read").read(path, progress=progress)
+    return streamlines
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterator[Streamlines]:
+    """Read a tractogram file piece by piece.
+
+    Parameters
+    ----------
+    path : str or PathLike
+    max_points : int
+        Points per piece; a single streamline that is longer makes a piece of its own.
+
+    Yields
+    ------
+    Streamlines
+        Consecutive streamlines, at least one piece even for an empty file; joined by
+        :meth:`Streamlines.concatenate` they equal what :func:`read` gives. The memory used
+        depends on `max_points` and not on the file's size, save for the formats that this
+        module's table marks.
+
+    Raises
+    ------
+    FormatError
+        As for :func:`read`, when the reading gets there.
+    """
+    if max_points < 1:
+        raise ValueError(f"max_points is {max_points}, expected at least 1")
+    yield from module_for(path, "iter_chunks").iter_chunks(path, max_points)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Facts of a file, from its header where the format has them there.
+
+    Returns
+    -------
+    dict
+        ``format`` (suffix), ``streamlines`` and ``points`` (int, or None where only reading the
+        data would tell), and per format ``dtype``, ``per_point``, ``per_streamline``,
+        ``groups`` (lists of names), ``affine``, ``dimensions``, ``voxel_sizes``,
+        ``voxel_order``, ``header``.
+    """
+    return {"format": suffix_of(path), **module_for(path, "info").info(path)}
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
+    """Write a tractogram file; it appears under its name only when it is complete.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        Its suffix chooses the format.
+    streamlines : Streamlines
+
+    Returns
+    -------
+    list of str
+        What the format cannot hold and was left out, such as ``"groups"`` in a trk file.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no format has this suffix, or it cannot be written.
+    ValueError
+        If a name or value does not fit the format, with the fix.
+    """
+    module = module_for(path, "write")
+    module.write(path, streamlines)
+    holds = getattr(module, "HOLDS", None)
+    parts = ("per_point", "per_streamline", "groups", "per_group")
+    if holds is None:
+        return []
+    return [part for part in parts if getattr(streamlines, part) and part not in holds]
+
+
+def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None = None) -> str:
+    """Add the values of a side file to the streamlines (see :mod:`pvfiblets.formats.attachments`).
+
+    Parameters
+    ----------
+    streamlines : Streamlines
+        Changed in place.
+    path : str or PathLike
+        ``.tsf`` (per point), ``.npy`` or ``.txt`` (per point or per streamline, by their count).
+    name : str, optional
+        Under which the values are kept; the file's name without suffix if not given.
+
+    Returns
+    -------
+    str
+        ``"per_point"`` or ``"per_streamline"``: where the values went.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, or its counts fit neither points nor streamlines.
+    """
+    from pvfiblets.formats import attachments
+
+    return attachments.attach(streamlines, path, name)

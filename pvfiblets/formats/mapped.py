@@ -1,0 +1,97 @@
+"""Files as memory maps whose every access is checked against the file's size.
+
+The formats ask for "n values of this type at this byte". The request is compared with what the
+file holds before anything is allocated, so that a damaged count costs no memory and gives a
+:class:`FormatError` that names the byte.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from pvfiblets.errors import FormatError
+
+
+class MappedFile:
+    """A file's bytes, read-only, through the operating system's page cache.
+
+    Parameters
+    ----------
+    path : str or PathLike
+
+    Attributes
+    ----------
+    path : str
+    size : int
+        Bytes.
+    """
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        self.path = fspath(path)
+        with Path(self.path).open("rb") as file:
+            self.size = os.fstat(file.fileno()).st_size
+            # An empty file cannot be mapped.
+            self.buffer: mmap.mmap | bytes = (
+                mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if self.size else b""
+            )
+
+    def array(self, dtype: DTypeLike, position: int, count: int, what: str) -> NDArray[Any]:
+        """`count` values of `dtype` from byte `position`, without copying.
+
+        Raises
+        ------
+        FormatError
+            If the file ends before, or `count` is negative.
+        """
+        kind = np.dtype(dtype)
+        self.check(position, count * kind.itemsize, what)
+        if count == 0:
+            return np.zeros(0, kind)
+        return np.frombuffer(self.buffer, kind, count, position)
+
+    def bytes(self, position: int, count: int, what: str) -> bytes:
+        """`count` bytes from byte `position`, copied; FormatError as in :meth:`array`."""
+        self.check(position, count, what)
+        return bytes(self.buffer[position : position + count])
+
+    def check(self, position: int, n_bytes: int, what: str) -> None:
+        """Raise FormatError unless the file holds `n_bytes` bytes from `position`."""
+        if n_bytes < 0 or position < 0:
+            raise FormatError(
+                self.path, position, f"a size of {n_bytes} bytes", f"a sensible size for {what}"
+            )
+        if position + n_bytes > self.size:
+            raise FormatError(
+                self.path,
+                self.size,
+                "the end of the file",
+                f"{what} up to byte {position + n_bytes} ({position + n_bytes - self.size} more): "
+                "the file is truncated or its header is damaged",
+            )
+
+
+@contextmanager
+def replacing(path: str | PathLike[str]) -> Iterator[BinaryIO]:
+    """Open a temporary file beside `path` for writing; it takes the name when all went well.
+
+    A reader therefore never meets half a file, and a failed write leaves an old file as it was.
+    """
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with temporary.open("wb") as file:
+            yield file
+        temporary.replace(target)
+    except BaseException:
+        with suppress(FileNotFoundError):
+            temporary.unlink()
+        raise

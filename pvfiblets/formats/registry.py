@@ -1,0 +1,107 @@
+"""Which module reads and writes which suffix.
+
+A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
+``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are
+named by strings and imported when a file of theirs is first touched: a program that reads tck
+files never loads the trx code, and the codec, which lies downstream of this room, can serve
+``.fiblets`` without being imported from here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from os import PathLike, fspath
+from types import ModuleType
+
+from pvfiblets.errors import FibletsError
+
+_MODULES: dict[str, str] = {
+    ".tck": "pvfiblets.formats.tck",
+    ".trk": "pvfiblets.formats.trk",
+    ".trk.gz": "pvfiblets.formats.trk",
+    ".trx": "pvfiblets.formats.trx",
+    ".vtk": "pvfiblets.formats.vtk_legacy",
+    ".vtp": "pvfiblets.formats.vtp",
+    ".tt.gz": "pvfiblets.formats.tinytrack",
+    ".fiblets": "pvfiblets.formats.fiblets",
+}
+
+
+class UnknownFormatError(FibletsError, ValueError):
+    """A file name whose suffix no format claims, or a format that cannot do what was asked."""
+
+
+def register(suffix: str, module_name: str) -> None:
+    """Let `module_name` serve files whose name ends in `suffix`.
+
+    Parameters
+    ----------
+    suffix : str
+        With its leading dot, such as ``".fiblets"``; case does not matter. A later
+        registration replaces an earlier one.
+    module_name : str
+        Full name of a module with the functions that this module's docstring lists.
+    """
+    if not suffix.startswith("."):
+        raise ValueError(f"the suffix {suffix!r} must begin with a dot, as in '.trk'")
+    _MODULES[suffix.lower()] = module_name
+
+
+def suffixes() -> tuple[str, ...]:
+    """Return every suffix that some module serves, longest first."""
+    return tuple(sorted(_MODULES, key=lambda s: (-len(s), s)))
+
+
+def suffix_of(path: str | PathLike[str]) -> str:
+    """Return the registered suffix that the name of `path` ends with, the longest that fits.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no registered suffix fits.
+    """
+    name = fspath(path).lower()
+    for suffix in suffixes():
+        if name.endswith(suffix):
+            return suffix
+    known = ", ".join(sorted(_MODULES))
+    raise UnknownFormatError(
+        f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of "
+        f"{known}"
+    )
+
+
+def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:
+    """Import the module that serves `path`.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        Only its name counts.
+    *needs : str
+        Functions that the module must have.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no module serves the suffix, or it lacks a function of `needs`.
+    """
+    suffix = suffix_of(path)
+    module = import_module(_MODULES[suffix])
+    for need in needs:
+        if not hasattr(module, need):
+            able = ", ".join(_able(need))
+            raise UnknownFormatError(
+                f"{fspath(path)}: the format {suffix} has no {need}(); formats that have: {able}"
+            )
+    return module
+
+
+def _able(need: str) -> Iterator[str]:
+    for suffix in sorted(_MODULES):
+        try:
+            if hasattr(import_module(_MODULES[suffix]), need):
+                yield suffix
+        except ImportError:
+            continue

@@ -1,0 +1,317 @@
+"""MRtrix tracks (``.tck``): a text header, then rows of three numbers in RAS+ mm.
+
+Format: https://mrtrix.readthedocs.io/en/latest/getting_started/image_data.html#tracks-file-format-tck
+
+A row of NaN ends a streamline, a row of infinity ends the data. What is made of input that
+breaks these rules:
+
+================================================  =================================================
+the file                                          the result
+================================================  =================================================
+no magic line, no END, bad datatype or offset     FormatError
+data end without the infinity row                 read, and ``dropped`` says so, if the last
+                                                  streamline is closed and the header's count is
+                                                  met; else FormatError at the end of the file
+last streamline not closed before the infinity    kept: the end closes it
+count in the header differs from the data         read; ``dropped`` tells by how many (tools that
+                                                  stop early leave such counts)
+bytes after the infinity row                      left out and counted
+a row with some NaN or infinity, not all          the point is left out and counted
+two NaN rows in succession                        a streamline without points, kept
+================================================  =================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.mapped import MappedFile, replacing
+from pvfiblets.formats.rows import NONFINITE, nonfinite, without_rows
+from pvfiblets.streamlines import Streamlines, offsets_from_counts
+
+Array = NDArray[Any]
+Ints = NDArray[np.int64]
+
+MAGIC_TRACKS = "mrtrix tracks"
+_HEADER_LIMIT = 1 << 24
+"""No header is longer; the search for its END stops here (16 MiB of command history)."""
+
+HOLDS: tuple[str, ...] = ()
+"""Parts of Streamlines besides the points that the format can carry."""
+
+_DATATYPES = {
+    "Float32": "<f4",
+    "Float32LE": "<f4",
+    "Float32BE": ">f4",
+    "Float64": "<f8",
+    "Float64LE": "<f8",
+    "Float64BE": ">f8",
+}
+
+NO_END_MARKER = "end marker missing"
+AFTER_END = "bytes after the end marker"
+FEWER = "streamlines that the header's count promises and the file lacks"
+MORE = "streamlines beyond the header's count (kept)"
+
+
+class Header(NamedTuple):
+    """What the text header says (shared with ``.tsf``, which has the same layout)."""
+
+    fields: dict[str, str]
+    dtype: np.dtype[Any]
+    data_position: int
+    count: int | None
+
+
+def read_header(file: MappedFile, magic: str) -> Header:
+    """Parse the header of a tck or tsf file.
+
+    Raises
+    ------
+    FormatError
+        For a wrong first line, a missing END, an unknown datatype, a data offset outside the
+        file, or a count that is not a number.
+    """
+    head = file.bytes(0, min(file.size, 64), "the header")
+    if not head.startswith(magic.encode()):
+        raise FormatError(file.path, 0, repr(head[:20]), f"the line {magic!r}")
+    text = file.bytes(0, min(file.size, _HEADER_LIMIT), "the header")
+    fields: dict[str, str] = {}
+    places: dict[str, int] = {}
+    position = 0
+    while True:
+        newline = text.find(b"\n", position)
+        line = text[position : newline if newline >= 0 else len(text)].strip()
+        if line == b"END":
+            end = newline + 1 if newline >= 0 else len(text)
+            break
+        if newline < 0:
+            raise FormatError(file.path, len(text), "no END line", "END after the header's fields")
+        key, colon, value = line.partition(b":")
+        if colon:
+            name = key.decode("utf-8", "replace").strip()
+            text_value = value.decode("utf-8", "replace").strip()
+            fields[name] = f"{fields[name]}\n{text_value}" if name in fields else text_value
+            places.setdefault(name, position)
+        position = newline + 1
+
+    datatype = fields.get("datatype", "Float32LE")
+    if datatype not in _DATATYPES:
+        raise FormatError(
+            file.path, places["datatype"], f"datatype {datatype!r}", f"one of {list(_DATATYPES)}"
+        )
+    words = fields.get("file", f". {end}").split()
+    if len(words) != 2 or words[0] != "." or not words[1].isdecimal():
+        raise FormatError(
+            file.path,
+            places["file"],
+            f"file: {fields['file']!r}",
+            "'. OFFSET', the data in the same file; write separate data into one file first",
+        )
+    data_position = int(words[1][:18])
+    if not end <= data_position <= file.size:
+        raise FormatError(
+            file.path,
+            places.get("file", end),
+            f"data at byte {data_position}",
+            f"an offset from {end} (end of the header) to {file.size} (end of the file)",
+        )
+    count = fields.get("count")
+    if count is not None and not count.isdecimal():
+        raise FormatError(file.path, places["count"], f"count {count!r}", "a number of streamlines")
+    return Header(
+        fields,
+        np.dtype(_DATATYPES[datatype]),
+        data_position,
+        None if count is None else int(count[:18]),
+    )
+
+
+class Window(NamedTuple):
+    """Streamlines parsed from consecutive rows."""
+
+    rows: Array
+    counts: Ints
+    used: int
+    """Rows consumed: up to and with the last delimiter, or the end marker."""
+    ended: bool
+    tail: int
+    """Points after the last delimiter."""
+    dropped: int
+
+
+def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
+    """Split rows at their NaN rows.
+
+    Parameters
+    ----------
+    rows : (n, k) array
+        As in the file.
+    dtype : dtype
+        Of the result.
+    last : bool
+        Whether the data end with these rows: then what follows the last delimiter is taken too.
+    """
+    k = rows.shape[1]
+    flat = nonfinite(rows.reshape(-1)) // k
+    special, sizes = np.unique(flat, return_counts=True) if k > 1 else (flat, np.ones(len(flat)))
+    # Only the first value needs a look where all k are non-finite and of one kind.
+    values = rows[special]
+    is_nan = np.isnan(values).all(axis=1)
+    is_end = np.isinf(values).all(axis=1)
+    ended = bool(is_end.any())
+    n = len(rows)
+    if ended:
+        at = int(np.argmax(is_end))
+        n = int(special[at])
+        special, is_nan, sizes = special[:at], is_nan[:at], sizes[:at]
+    delimiters = special[is_nan]
+    tail_from = int(delimiters[-1]) + 1 if len(delimiters) else 0
+    take = n if ended or last else tail_from
+    special, is_nan = (a[special < take] for a in (special, is_nan))
+    bad = special[~is_nan]
+    edges = np.concatenate([delimiters, [take]]) if take > tail_from else delimiters
+    # The points before edge i: its row number, less the delimiters and the bad rows before it.
+    ends = edges - np.arange(len(edges)) - np.searchsorted(bad, edges)
+    return Window(
+        without_rows(rows[:take], special, dtype),
+        np.diff(ends, prepend=0),
+        take + 1 if ended else take,
+        ended,
+        take - tail_from,
+        len(bad),
+    )
+
+
+class _Data:
+    """The rows of one file, parsed window by window."""
+
+    def __init__(self, path: str | PathLike[str], magic: str, columns: int) -> None:
+        self.file = MappedFile(path)
+        self.header = read_header(self.file, magic)
+        kind = self.header.dtype
+        self.columns = columns
+        self.n_rows = (self.file.size - self.header.data_position) // (kind.itemsize * columns)
+        self.rows = self.file.array(
+            kind, self.header.data_position, self.n_rows * columns, "rows"
+        ).reshape(-1, columns)
+
+    def windows(self, max_rows: int) -> Iterator[tuple[Window, dict[str, int]]]:
+        """Yield each window and what to report with it; the last one carries the count check."""
+        kind = self.header.dtype.newbyteorder("=")
+        position, found, size = 0, 0, max_rows
+        while True:
+            last = position + size >= self.n_rows
+            window = parse_rows(self.rows[position : position + size], kind, last)
+            if not (window.used or window.ended or last):
+                size *= 2  # one streamline is longer than the window
+                continue
+            size = max_rows
+            position += window.used
+            found += len(window.counts)
+            dropped = {NONFINITE: window.dropped} if window.dropped else {}
+            if window.ended or last:
+                yield window, dropped | self._closing(window, position, found)
+                return
+            yield window, dropped
+
+    def _closing(self, window: Window, position: int, found: int) -> dict[str, int]:
+        """Judge the end of the data: what to report, or FormatError."""
+        report: dict[str, int] = {}
+        promised = self.header.count
+        stride = self.header.dtype.itemsize * self.columns
+        end = self.header.data_position + position * stride
+        if not window.ended:
+            met = promised is None or found == promised
+            if window.tail or end != self.file.size or not met:
+                raise FormatError(
+                    self.file.path,
+                    self.file.size,
+                    f"the end of the file after {found} streamlines"
+                    + (" (the last one not closed)" if window.tail else ""),
+                    (f"{promised} streamlines and " if promised else "")
+                    + "a row of infinity that ends the data: the file is truncated",
+                )
+            report[NO_END_MARKER] = 1
+        elif end != self.file.size:
+            report[AFTER_END] = self.file.size - end
+        if promised is not None and promised != found:
+            report[FEWER if promised > found else MORE] = abs(promised - found)
+        return report
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+    """Read a whole tck file (see :func:`pvfiblets.formats.read`)."""
+    data = _Data(path, MAGIC_TRACKS, 3)
+    parts = [_streamlines(w, d) for w, d in data.windows(max(1, data.n_rows))]
+    return parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Stream a tck file (see :func:`pvfiblets.formats.iter_chunks`); memory-mapped."""
+    # One row more than the points: the delimiter that closes the last streamline.
+    for window, dropped in _Data(path, MAGIC_TRACKS, 3).windows(max_points + 1):
+        yield _streamlines(window, dropped)
+
+
+def _streamlines(window: Window, dropped: dict[str, int]) -> Streamlines:
+    return Streamlines(window.rows, offsets_from_counts(window.counts), dropped=dropped)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Header facts (see :func:`pvfiblets.formats.info`); ``points`` follows from the count."""
+    data = _Data(path, MAGIC_TRACKS, 3)
+    count = data.header.count
+    return {
+        "streamlines": count,
+        "points": None if count is None else max(0, data.n_rows - count - 1),
+        "dtype": data.header.dtype.newbyteorder("=").name,
+        "header": data.header.fields,
+    }
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Write a tck file (see :func:`pvfiblets.formats.write`).
+
+    float32, or float64 where rounding to float32 would move a point by more than a micrometre
+    (coordinates beyond 16 m); few other programs read such a file.
+    """
+    kind = np.dtype("<f4")
+    if streamlines.points.dtype == np.float64 and streamlines.n_points:
+        reach = max(abs(v) for v in streamlines.bounds)
+        if reach * 2.0**-24 > 1e-3:
+            kind = np.dtype("<f8")
+    write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, kind)
+
+
+def write_rows(
+    path: str | PathLike[str],
+    magic: str,
+    streamlines: Streamlines,
+    values: Array,
+    kind: np.dtype[Any],
+) -> None:
+    """Write (n_points, k) `values` in MRtrix' layout, one NaN row after each streamline."""
+    k = values.shape[1]
+    fields = f"{magic}\ndatatype: Float{kind.itemsize * 8}LE\ncount: {len(streamlines)}\nfile: . "
+    # The offset stands in the header whose length it is; blanks before END take up the slack.
+    offset = len(fields) + len("0000\nEND\n")
+    offset += -offset % 8
+    header = f"{fields}{offset}".ljust(offset - len("\nEND\n")) + "\nEND\n"
+    with replacing(path) as file:
+        file.write(header.encode())
+        for start, stop in streamlines.blocks(1 << 20):
+            first, last = streamlines.offsets[start], streamlines.offsets[stop]
+            rows = np.full((last - first + stop - start, k), np.nan, kind)
+            is_point = np.ones(len(rows), bool)
+            ends = streamlines.offsets[start + 1 : stop + 1] - first
+            is_point[ends + np.arange(stop - start)] = False
+            rows[is_point] = values[first:last]
+            file.write(rows.data)
+        file.write(np.full(k, np.inf, kind).data)

@@ -1,0 +1,561 @@
+"""Streamlines: the one in-memory form of a tractogram, between the formats and the codec.
+
+All points of all streamlines lie in one ``(n_points, 3)`` array; ``offsets`` says where each
+streamline begins. No Python object is made per streamline. Coordinates are millimetres in RAS+
+space with voxel centres at integer voxel indices (the convention of NIfTI and nibabel).
+
+Zero-point and one-point streamlines are legal: other files (weights, clusters) count
+streamlines by position, so dropping one would shift all later ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, cast, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    import pyvista
+
+Array: TypeAlias = NDArray[Any]
+Floats: TypeAlias = NDArray[np.floating[Any]]
+Ints: TypeAlias = NDArray[np.int64]
+
+_BLOCK_POINTS = 1 << 18
+"""Points handled at a time by reductions: about 6 MB of float64, which stays in cache."""
+
+_GROUP = "groups/"
+_PER_GROUP = "per_group/"
+
+
+class Streamlines:
+    """Ragged polylines with data per point, per streamline and per group.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array of float32 or float64
+        RAS+ millimetres. Other number types are converted (float16 to float32, the rest to
+        float64); float32 and float64 are kept as they are, memory maps included.
+    offsets : (n_streamlines + 1,) array of int64
+        Streamline ``i`` is ``points[offsets[i]:offsets[i + 1]]``; starts at 0, ends at
+        ``n_points``, never decreases.
+    per_point : mapping of str to (n_points[, k]) array, optional
+    per_streamline : mapping of str to (n_streamlines[, k]) array, optional
+    groups : mapping of str to array of int, optional
+        Streamline indices that belong to each group; a streamline may be in many.
+    per_group : mapping of str to mapping of str to array, optional
+        Data of a group as a whole.
+    affine : (4, 4) array, optional
+        Voxel index to RAS+ mm of the image that the file refers to; identity if unknown.
+    space : mapping, optional
+        What a writer needs besides: ``dimensions`` (3 int), ``voxel_sizes`` (3 float, mm),
+        ``voxel_order`` (such as ``"RAS"``).
+    dropped : mapping of str to int, optional
+        What reading left out or noticed: reason to count.
+
+    Raises
+    ------
+    ValueError
+        If shapes or offsets contradict each other; the message names the array.
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        offsets: ArrayLike,
+        per_point: Mapping[str, ArrayLike] | None = None,
+        per_streamline: Mapping[str, ArrayLike] | None = None,
+        groups: Mapping[str, ArrayLike] | None = None,
+        per_group: Mapping[str, Mapping[str, ArrayLike]] | None = None,
+        affine: ArrayLike | None = None,
+        space: Mapping[str, Any] | None = None,
+        dropped: Mapping[str, int] | None = None,
+    ) -> None:
+        self.points: Floats = _as_points(points)
+        self.offsets: Ints = _as_offsets(offsets, len(self.points))
+        self.per_point = _as_columns(per_point, len(self.points), "per_point", "points")
+        self.per_streamline = _as_columns(
+            per_streamline, len(self), "per_streamline", "streamlines"
+        )
+        self.groups = {
+            name: _as_members(name, ids, len(self)) for name, ids in (groups or {}).items()
+        }
+        self.per_group: dict[str, dict[str, Array]] = {
+            group: {name: np.asarray(value) for name, value in values.items()}
+            for group, values in (per_group or {}).items()
+        }
+        self.affine: NDArray[np.float64] = np.eye(4) if affine is None else _as_affine(affine)
+        self.space: dict[str, Any] = dict(space or {})
+        self.dropped: dict[str, int] = {k: int(v) for k, v in (dropped or {}).items()}
+
+    # ------------------------------------------------------------------ size and selection
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    @property
+    def n_points(self) -> int:
+        """Number of points of all streamlines together."""
+        return len(self.points)
+
+    @property
+    def counts(self) -> Ints:
+        """(n_streamlines,) int64: points of each streamline."""
+        return np.diff(self.offsets)
+
+    def __repr__(self) -> str:
+        facts = [f"{len(self):,} streamlines", f"{self.n_points:,} points", str(self.points.dtype)]
+        facts += [
+            f"{title}: {', '.join(names)}"
+            for title in ("per_point", "per_streamline", "groups", "dropped")
+            if (names := getattr(self, title))
+        ]
+        return f"<Streamlines: {'; '.join(facts)}>"
+
+    def __iter__(self) -> Iterator[Floats]:
+        for first, last in zip(self.offsets[:-1], self.offsets[1:], strict=True):
+            yield self.points[first:last]
+
+    @overload
+    def __getitem__(self, index: int | np.integer[Any]) -> Floats: ...
+    @overload
+    def __getitem__(self, index: slice | Array | Sequence[int] | Sequence[bool]) -> Streamlines: ...
+    def __getitem__(self, index: Any) -> Floats | Streamlines:
+        """One streamline's points for an integer, else the chosen streamlines with their data.
+
+        Parameters
+        ----------
+        index : int, slice, boolean mask (n_streamlines,), or integer array
+            Integer arrays may repeat and reorder; negative indices count from the end.
+
+        Returns
+        -------
+        (k, 3) array or Streamlines
+            Slices of step 1 share memory with this object.
+
+        Raises
+        ------
+        IndexError
+            If an index is out of range, or a mask has the wrong length.
+        """
+        if isinstance(index, (int, np.integer)) and not isinstance(index, (bool, np.bool_)):
+            i = int(index)
+            if not -len(self) <= i < len(self):
+                raise IndexError(
+                    f"streamline {i} is out of range: there are {len(self)} streamlines"
+                )
+            i %= len(self)
+            return self.points[self.offsets[i] : self.offsets[i + 1]]
+        if isinstance(index, slice):
+            start, stop, step = index.indices(len(self))
+            if step == 1:
+                return self._span(start, max(start, stop))
+            return self._gather(np.arange(start, stop, step, dtype=np.int64))
+        return self._gather(self._as_ids(index))
+
+    def _as_ids(self, index: Any) -> Ints:
+        ids = np.asarray(index)
+        if ids.ndim != 1:
+            raise IndexError(f"an index array must have one dimension, not {ids.ndim}")
+        if ids.dtype == bool:
+            if len(ids) != len(self):
+                raise IndexError(
+                    f"a mask of {len(ids)} values cannot select among {len(self)} streamlines"
+                )
+            return np.flatnonzero(ids).astype(np.int64)
+        if len(ids) == 0:
+            return np.zeros(0, np.int64)
+        if ids.dtype.kind not in "iu":
+            raise IndexError(f"streamlines are chosen by integers or a mask, not by {ids.dtype}")
+        if ids.min() < -len(self) or ids.max() >= len(self):
+            raise IndexError(
+                f"streamline indices run from {ids.min()} to {ids.max()}, but there are "
+                f"{len(self)} streamlines"
+            )
+        return np.where(ids < 0, ids + len(self), ids).astype(np.int64)
+
+    def _span(self, start: int, stop: int) -> Streamlines:
+        first, last = int(self.offsets[start]), int(self.offsets[stop])
+        groups = {k: v[(v >= start) & (v < stop)] - start for k, v in self.groups.items()}
+        return Streamlines(
+            self.points[first:last],
+            self.offsets[start : stop + 1] - first,
+            {k: v[first:last] for k, v in self.per_point.items()},
+            {k: v[start:stop] for k, v in self.per_streamline.items()},
+            groups,
+            self.per_group,
+            self.affine,
+            self.space,
+            self.dropped,
+        )
+
+    def _gather(self, ids: Ints) -> Streamlines:
+        counts = self.counts[ids]
+        offsets = offsets_from_counts(counts)
+        source = np.arange(offsets[-1]) + np.repeat(self.offsets[ids] - offsets[:-1], counts)
+        groups = {}
+        for name, members in self.groups.items():
+            inside = np.zeros(len(self), bool)
+            inside[members] = True
+            groups[name] = np.flatnonzero(inside[ids])
+        return Streamlines(
+            self.points[source],
+            offsets,
+            {k: v[source] for k, v in self.per_point.items()},
+            {k: v[ids] for k, v in self.per_streamline.items()},
+            groups,
+            self.per_group,
+            self.affine,
+            self.space,
+            self.dropped,
+        )
+
+    # ------------------------------------------------------------------ measures
+
+    def lengths(self) -> NDArray[np.float64]:
+        """(n_streamlines,) float64: length of each streamline in mm, summed in float64."""
+        result = np.zeros(len(self))
+        for start, stop in self.blocks(_BLOCK_POINTS):
+            first, last = self.offsets[start], self.offsets[stop]
+            if last - first < 2:
+                continue
+            points = self.points[first:last].astype(np.float64)
+            segments = np.sqrt(np.einsum("ij,ij->i", d := np.diff(points, axis=0), d))
+            # The segment that leads from one streamline to the next belongs to neither.
+            inner = self.offsets[start + 1 : stop] - first
+            segments[inner[(inner > 0) & (inner < last - first)] - 1] = 0.0
+            owner = np.repeat(np.arange(stop - start), self.counts[start:stop])[:-1]
+            result[start:stop] = np.bincount(owner, segments, minlength=stop - start)
+        return result
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float, float, float]:
+        """(xmin, xmax, ymin, ymax, zmin, zmax) in mm; six NaN where there is no point."""
+        if self.n_points == 0:
+            return (np.nan,) * 6
+        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        b = np.stack([low, high], axis=1).ravel().astype(float).tolist()
+        return cast("tuple[float, float, float, float, float, float]", tuple(b))
+
+    def blocks(self, max_points: int) -> Iterator[tuple[int, int]]:
+        """Consecutive ranges of streamlines of at most `max_points` points each.
+
+        A streamline longer than that forms a range of its own. Together the ranges cover every
+        streamline once; there is none when there are no streamlines.
+
+        Parameters
+        ----------
+        max_points : int
+            At least 1.
+
+        Yields
+        ------
+        (int, int)
+            First streamline and one past the last.
+        """
+        yield from blocks(self.offsets, max_points)
+
+    # ------------------------------------------------------------------ from and to others
+
+    @classmethod
+    def from_list(cls, streamlines: Iterable[ArrayLike], **rest: Any) -> Streamlines:
+        """Streamlines from a list of ``(k, 3)`` arrays.
+
+        Parameters
+        ----------
+        streamlines : iterable of (k, 3) arrays
+            An empty array stands for a streamline without points.
+        **rest
+            ``per_point``, ``groups`` and so on, as in the constructor.
+        """
+        arrays = [np.asarray(s) for s in streamlines]
+        for i, a in enumerate(arrays):
+            if a.size and (a.ndim != 2 or a.shape[1] != 3):
+                raise ValueError(f"streamline {i} has the shape {a.shape}, expected (k, 3)")
+        counts = np.array([len(a) if a.size else 0 for a in arrays], np.int64)
+        full = [a for a in arrays if a.size]
+        points = np.concatenate(full) if full else np.zeros((0, 3), np.float32)
+        return cls(points, offsets_from_counts(counts), **rest)
+
+    def to_list(self) -> list[Floats]:
+        """One ``(k, 3)`` array per streamline; they share memory with this object."""
+        return list(self)
+
+    @classmethod
+    def concatenate(cls, parts: Iterable[Streamlines]) -> Streamlines:
+        """All streamlines of `parts`, in order, with their data.
+
+        Groups of the same name are joined, `dropped` is summed. The affine and space are the
+        first part's. Parts without streamlines contribute only what they dropped, so they need
+        not carry the same data.
+
+        Raises
+        ------
+        ValueError
+            If one part has data that another lacks: keeping it would need invented values.
+        """
+        all_parts = list(parts)
+        if not all_parts:
+            return cls(np.zeros((0, 3), np.float32), np.zeros(1, np.int64))
+        dropped: dict[str, int] = {}
+        for part in all_parts:
+            for reason, count in part.dropped.items():
+                dropped[reason] = dropped.get(reason, 0) + count
+        full = [p for p in all_parts if len(p)] or all_parts[:1]
+        first = full[0]
+        groups: dict[str, list[Ints]] = {}
+        per_group: dict[str, dict[str, Array]] = {}
+        start = 0
+        for part in full:
+            for name, members in part.groups.items():
+                groups.setdefault(name, []).append(members + start)
+            for name, values in part.per_group.items():
+                per_group.setdefault(name, {}).update(values)
+            start += len(part)
+        return cls(
+            np.concatenate([p.points for p in full]),
+            offsets_from_counts(np.concatenate([p.counts for p in full])),
+            _join([p.per_point for p in full], "per_point"),
+            _join([p.per_streamline for p in full], "per_streamline"),
+            {name: np.concatenate(members) for name, members in groups.items()},
+            per_group,
+            first.affine,
+            first.space,
+            dropped,
+        )
+
+    @classmethod
+    def from_polydata(cls, polydata: Any) -> Streamlines:
+        """Streamlines from the line cells of a PolyData.
+
+        Parameters
+        ----------
+        polydata : pyvista.PolyData or vtkPolyData
+            Point data becomes `per_point`, cell data of the lines `per_streamline`. Points
+            shared by several lines are repeated. Groups, their data and the affine come back
+            from the field data that :meth:`to_polydata` writes.
+
+        Returns
+        -------
+        Streamlines
+            ``dropped["cells that are not lines"]`` counts vertices, polygons and strips;
+            ``dropped["points of no line"]`` points that no line uses.
+        """
+        import pyvista
+
+        mesh = pyvista.wrap(polydata)
+        if not isinstance(mesh, pyvista.PolyData):
+            raise ValueError(
+                f"expected a PolyData, got {type(polydata).__name__}: use its "
+                "extract_surface() or extract_feature_edges() first"
+            )
+        lines = mesh.GetLines()
+        n = lines.GetNumberOfCells()
+        offsets = np.array(pyvista.convert_array(lines.GetOffsetsArray()), np.int64)
+        if len(offsets) == 0:
+            offsets = np.zeros(1, np.int64)
+        ids = np.asarray(pyvista.convert_array(lines.GetConnectivityArray()), np.int64)
+        first_line = mesh.GetVerts().GetNumberOfCells()
+        return from_cells(
+            np.array(mesh.points),
+            offsets,
+            ids,
+            {k: np.array(v) for k, v in mesh.point_data.items()},
+            {k: np.array(v)[first_line : first_line + n] for k, v in mesh.cell_data.items()},
+            other_cells=mesh.GetNumberOfCells() - n,
+            field={k: np.array(v) for k, v in mesh.field_data.items()},
+        )
+
+    def to_polydata(self) -> pyvista.PolyData:
+        """PolyData with one polyline per streamline, in order, and all data.
+
+        Per-point data becomes point data, per-streamline data cell data. Groups
+        (``groups/NAME``), their data (``per_group/NAME/KEY``) and an affine that is not the
+        identity (``affine``) are kept as field data.
+        """
+        import pyvista
+
+        mesh = pyvista.PolyData()
+        mesh.points = np.ascontiguousarray(self.points)
+        cells = pyvista.CellArray.from_arrays(
+            self.offsets, np.arange(self.n_points, dtype=np.int64), deep=True
+        )
+        mesh.SetLines(cells)
+        for name, values in self.per_point.items():
+            mesh.point_data[name] = np.ascontiguousarray(_vtk_values(values))
+        for name, values in self.per_streamline.items():
+            mesh.cell_data[name] = np.ascontiguousarray(_vtk_values(values))
+        for name, array in self.field_data().items():
+            mesh.field_data[name] = array
+        return mesh
+
+    def field_data(self) -> dict[str, Array]:
+        """Return groups, group data and affine as flat named arrays (see :meth:`to_polydata`)."""
+        field: dict[str, Array] = {_GROUP + k: v for k, v in self.groups.items()}
+        for group, values in self.per_group.items():
+            for name, value in values.items():
+                field[f"{_PER_GROUP}{group}/{name}"] = np.atleast_1d(_vtk_values(value))
+        if not np.array_equal(self.affine, np.eye(4)):
+            field["affine"] = self.affine
+        return field
+
+
+def from_cells(
+    points: Array,
+    offsets: Ints,
+    connectivity: Ints,
+    point_data: Mapping[str, Array],
+    cell_data: Mapping[str, Array],
+    *,
+    other_cells: int = 0,
+    field: Mapping[str, Array] | None = None,
+) -> Streamlines:
+    """Streamlines from cells that refer to points by index, as VTK stores lines.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    offsets : (n_lines + 1,) int64
+        Where each line begins in `connectivity`.
+    connectivity : (n_ids,) int64
+        Point indices, each in ``[0, n)``.
+    point_data, cell_data : mapping of str to array
+        One row per point, and per line.
+    other_cells : int
+        Cells that are not lines, reported in `dropped`.
+    field : mapping of str to array, optional
+        Field data in the naming of :meth:`Streamlines.field_data`; other names are ignored.
+    """
+    dropped: dict[str, int] = {}
+    if other_cells:
+        dropped["cells that are not lines"] = other_cells
+    n = len(points)
+    if len(connectivity) != n or not np.array_equal(connectivity, np.arange(n)):
+        used = np.zeros(n, bool)
+        used[connectivity] = True
+        if unused := n - int(used.sum()):
+            dropped["points of no line"] = unused
+        points = points[connectivity]
+        point_data = {k: v[connectivity] for k, v in point_data.items()}
+    groups: dict[str, Array] = {}
+    per_group: dict[str, dict[str, Array]] = {}
+    affine = None
+    for name, array in (field or {}).items():
+        if name.startswith(_GROUP):
+            groups[name[len(_GROUP) :]] = array
+        elif name.startswith(_PER_GROUP) and name.count("/") >= 2:
+            group, key = name[len(_PER_GROUP) :].split("/", 1)
+            per_group.setdefault(group, {})[key] = array
+        elif name == "affine" and array.size == 16:
+            affine = array.reshape(4, 4)
+    return Streamlines(
+        points, offsets, point_data, cell_data, groups, per_group, affine, None, dropped
+    )
+
+
+def offsets_from_counts(counts: ArrayLike) -> Ints:
+    """(n + 1,) int64 running sum of the `n` counts, beginning with 0."""
+    counts = np.asarray(counts, np.int64)
+    offsets = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=offsets[1:])
+    return offsets
+
+
+def blocks(offsets: Ints, max_points: int) -> Iterator[tuple[int, int]]:
+    """Consecutive ranges of streamlines of at most `max_points` points (see Streamlines.blocks)."""
+    if max_points < 1:
+        raise ValueError(f"max_points is {max_points}, expected at least 1")
+    n = len(offsets) - 1
+    start = 0
+    while start < n:
+        stop = int(np.searchsorted(offsets, offsets[start] + max_points, side="right")) - 1
+        stop = min(max(stop, start + 1), n)
+        yield start, stop
+        start = stop
+
+
+def _as_points(points: ArrayLike) -> Floats:
+    array = np.asarray(points) if not isinstance(points, np.ndarray) else points
+    if array.size == 0 and array.ndim < 2:
+        array = np.zeros((0, 3), np.float32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"points have the shape {array.shape}, expected (n_points, 3)")
+    if array.dtype in (np.float32, np.float64) and array.dtype.isnative:
+        return array
+    if array.dtype.kind not in "fiub":
+        raise ValueError(f"points have the type {array.dtype}, expected numbers")
+    narrow = array.dtype.kind == "f" and array.dtype.itemsize <= 4
+    return array.astype(np.float32 if narrow else np.float64)
+
+
+def _as_offsets(offsets: ArrayLike, n_points: int) -> Ints:
+    array = np.asarray(offsets)
+    if array.ndim != 1 or len(array) == 0 or array.dtype.kind not in "iu":
+        raise ValueError(
+            f"offsets have the shape {array.shape} and type {array.dtype}, expected "
+            "(n_streamlines + 1,) integers"
+        )
+    array = array.astype(np.int64, copy=False)
+    if array[0] != 0 or array[-1] != n_points:
+        raise ValueError(
+            f"offsets run from {array[0]} to {array[-1]}, expected 0 to {n_points} (the points)"
+        )
+    if np.any(array[1:] < array[:-1]):
+        at = int(np.argmax(array[1:] < array[:-1]))
+        raise ValueError(f"offsets decrease after streamline {at}; they must never decrease")
+    return array
+
+
+def _as_columns(
+    columns: Mapping[str, ArrayLike] | None, n: int, title: str, what: str
+) -> dict[str, Array]:
+    result: dict[str, Array] = {}
+    for name, values in (columns or {}).items():
+        array = np.asarray(values)
+        if array.ndim == 0 or len(array) != n:
+            raise ValueError(
+                f"{title}[{name!r}] has the shape {array.shape}, expected one row for each of "
+                f"the {n} {what}"
+            )
+        result[name] = array
+    return result
+
+
+def _as_members(name: str, ids: ArrayLike, n: int) -> Ints:
+    array = np.asarray(ids)
+    if array.size == 0:
+        return np.zeros(0, np.int64)
+    if array.ndim != 1 or array.dtype.kind not in "iu":
+        raise ValueError(f"group {name!r} must be a list of integers, not {array.dtype}")
+    if array.min() < 0 or array.max() >= n:
+        raise ValueError(
+            f"group {name!r} refers to streamlines {array.min()} to {array.max()}, but there "
+            f"are {n}"
+        )
+    return array.astype(np.int64)
+
+
+def _as_affine(affine: ArrayLike) -> NDArray[np.float64]:
+    array = np.asarray(affine, np.float64)
+    if array.shape != (4, 4):
+        raise ValueError(f"the affine has the shape {array.shape}, expected (4, 4)")
+    return array
+
+
+def _join(parts: Sequence[Mapping[str, Array]], title: str) -> dict[str, Array]:
+    names = list(parts[0])
+    for part in parts[1:]:
+        if odd := sorted(set(names) ^ set(part)):
+            raise ValueError(
+                f"{title} {odd} is not in every part; add it to all of them or remove it"
+            )
+    return {name: np.concatenate([p[name] for p in parts]) for name in names}
+
+
+def _vtk_values(values: Array) -> Array:
+    """VTK has no half precision and no boolean type of one byte that it writes to files."""
+    if values.dtype == np.float16:
+        return values.astype(np.float32)
+    return values.astype(np.uint8) if values.dtype == bool else values
