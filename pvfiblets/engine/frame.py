@@ -1,0 +1,111 @@
+"""What a view means to the shaders: the uniform block of ``shaders/frame/blocks.glsl``, computed in float64.
+
+Positions reach the shader as integers (anchors) relative to a reference anchor near what the camera looks at, and the
+matrix is composed with that reference in float64: float32 then rounds relative to what is seen, not to where the data
+lie in the world.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .view import View
+
+__all__ = ["frame_block", "reference_anchor"]
+
+Array = npt.NDArray[np.float64]
+
+
+def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
+    """Choose the anchor position that rounding is made relative to.
+
+    The nearest point in front of the camera, along its middle ray, inside the box of all anchors.
+
+    Parameters
+    ----------
+    matrix : numpy.ndarray
+        ``(4, 4)`` data mm to clip.
+    origin, scale : numpy.ndarray
+        ``(3,)`` position of anchor 0 and mm per anchor integer.
+    top : int
+        The largest anchor integer.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(3,)`` int64 in ``0..top``.
+    """
+    middle = np.full(3, top // 2, np.int64)
+    try:
+        ends = np.linalg.solve(matrix, np.array([[0.0, 0.0], [0.0, 0.0], [-1.0, 1.0], [1.0, 1.0]]))
+    except np.linalg.LinAlgError:
+        return middle  # a flattening matrix shows no depth: any reference serves
+    if not np.isfinite(ends).all() or np.any(ends[3] == 0.0):
+        return middle
+    near, far = (ends[:3] / ends[3]).T
+    ray, edge = far - near, top * scale
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.array([origin - near, origin + edge - near]) / ray
+    t = t[:, ray != 0.0]
+    enter = t.min(0).max(initial=0.0)
+    leave = t.max(0).min(initial=1.0)
+    point = near + ray * (enter if enter <= leave else min(max((enter + leave) / 2, 0.0), 1.0))
+    steps = np.divide(point - origin, scale, out=np.zeros(3), where=scale > 0.0)
+    if not np.isfinite(steps).all():
+        return middle
+    return np.rint(np.clip(steps, 0, top)).astype(np.int64)
+
+
+def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> bytes:
+    """Pack the ``Frame`` uniform block (std140).
+
+    Parameters
+    ----------
+    view : View
+    line_width : float
+        Pixels; 1 is a thin line.
+    origin, scale, top
+        As in :func:`reference_anchor`.
+
+    Returns
+    -------
+    bytes
+        208 bytes.
+    """
+    matrix = view.model_view_projection
+    reference = reference_anchor(matrix, origin, scale, top)
+    to_data = np.eye(4)
+    to_data[:3, 3] = origin + scale * reference
+    local = matrix @ to_data
+    # Scaling clip coordinates moves nothing on the screen and keeps float32 clear of its ends.
+    local /= np.abs(local).max() or 1.0
+
+    size = np.array(view.size, np.float64)
+    half = 0.0 if line_width == 1.0 else line_width / 2.0
+    guard = 1.0 + 2.0 * half / size
+    x, y, z, w = local
+    planes = np.array([guard[0] * w + x, guard[0] * w - x, guard[1] * w + y, guard[1] * w - y, w + z, w - z])
+    lengths = np.linalg.norm(planes[:, :3], axis=1)
+    planes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    # Three products and their sum in float32 err by no more than this share of the largest of them.
+    planes[:, 3] += 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]))
+
+    block: npt.NDArray[Any] = np.zeros(
+        (),
+        [
+            ("clip_from_local", "<f4", (4, 4)),
+            ("planes", "<f4", (6, 4)),
+            ("reference", "<u4", 4),
+            ("viewport", "<f4", 4),
+            ("guard", "<f4", 4),
+        ],
+    )
+    block["clip_from_local"] = local.T  # columns first
+    block["planes"] = planes
+    block["reference"][:3] = reference
+    block["viewport"] = *size, half, 0.0
+    block["guard"][:2] = guard
+    return block.tobytes()

@@ -1,0 +1,86 @@
+"""The G-buffer: what the engine knows about each pixel of the viewport, for VTK's shaders to resolve.
+
+Row 0 is at the bottom, as OpenGL has it. All textures are read with ``texelFetch`` and need no bit casts:
+
+=============  ========  ======================================================================================
+texture        format    content
+=============  ========  ======================================================================================
+``depth``      r32ui     window depth is ``key / 4294967295``; 0xFFFFFFFF where nothing was drawn
+``ids``        rg32ui    streamline; unit tangent (data coordinates, octahedral about +x, two snorm16)
+``position``   rg32f     point index within the streamline plus the fraction along the segment; per-point value
+=============  ========  ======================================================================================
+
+``ids`` and ``position`` are undefined where ``depth`` is empty.
+"""
+
+from __future__ import annotations
+
+import moderngl
+
+from .errors import EngineError
+
+__all__ = ["EMPTY", "GBuffer"]
+
+EMPTY = 0xFFFFFFFF
+
+
+class GBuffer:
+    """Textures of one viewport's size.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Current context.
+    size : tuple of int
+        Width and height in pixels.
+
+    Raises
+    ------
+    EngineError
+        If a side is longer than the driver's largest texture, or memory does not suffice.
+
+    Attributes
+    ----------
+    size : tuple of int
+    depth, ids, position : moderngl.Texture
+    owner : moderngl.Texture
+        r32ui, the engine's own: index of the fiblet that each pixel belongs to.
+    generation : int
+        Counts redraws; a reader that saw this number has seen this picture.
+    """
+
+    def __init__(self, ctx: moderngl.Context, size: tuple[int, int]) -> None:
+        self.size = size
+        self.generation = 0
+        limit = int(ctx.info["GL_MAX_TEXTURE_SIZE"])
+        if max(size) > limit:
+            raise EngineError(
+                f"a picture of {size[0]} x {size[1]} pixels is wider or higher than this OpenGL's largest "
+                f"texture, {limit}; draw it in tiles"
+            )
+        self._textures: list[moderngl.Texture] = []
+        self.depth = self._texture(ctx, 1, "u4")
+        self.owner = self._texture(ctx, 1, "u4")
+        self.ids = self._texture(ctx, 2, "u4")
+        self.position = self._texture(ctx, 2, "f4")
+
+    def _texture(self, ctx: moderngl.Context, components: int, dtype: str) -> moderngl.Texture:
+        try:
+            texture = ctx.texture(self.size, components, dtype=dtype)
+        except moderngl.Error as error:
+            self.release()
+            raise EngineError(f"no memory for a picture of {self.size[0]} x {self.size[1]} pixels") from error
+        texture.filter = moderngl.NEAREST, moderngl.NEAREST  # integer textures are incomplete otherwise
+        self._textures.append(texture)
+        return texture
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        return self.size[0] * self.size[1] * 24
+
+    def release(self) -> None:
+        """Give the textures back; twice is harmless."""
+        for texture in self._textures:
+            texture.release()
+        self._textures.clear()

@@ -1,0 +1,67 @@
+"""Timed passes, and dispatches folded into what the driver allows per axis."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+import moderngl
+
+from .errors import EngineError
+
+__all__ = ["Passes", "dispatch"]
+
+
+class Passes:
+    """Milliseconds of each pass of the last redraw.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._queries: dict[str, moderngl.Query] = {}
+        self._ran: list[str] = []
+
+    def begin(self) -> None:
+        """Forget the last redraw."""
+        self._ran.clear()
+
+    @contextlib.contextmanager
+    def timed(self, name: str) -> Iterator[None]:
+        """Time the GL commands of a pass."""
+        query = self._queries.get(name)
+        if query is None:
+            query = self._queries[name] = self._ctx.query(time=True)
+        self._ran.append(name)
+        with query:
+            yield
+
+    def report(self) -> list[dict[str, object]]:
+        """Wait for the last redraw and return its passes as ``{'name', 'ms'}``, in order."""
+        return [{"name": name, "ms": self._queries[name].elapsed / 1e6} for name in self._ran]
+
+    def release(self) -> None:
+        """Forget all queries; OpenGL frees them with their Python objects."""
+        self._queries.clear()
+        self._ran.clear()
+
+
+def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:
+    """Run work groups, in rows where there are more than one axis may have.
+
+    The shader's ``group_index()`` undoes the folding; groups past the last find nothing to do.
+
+    Raises
+    ------
+    EngineError
+        If there are more groups than two axes hold.
+    """
+    if groups <= 0:
+        return
+    rows = -(-groups // max_groups)
+    if rows > max_groups:
+        raise EngineError(f"{groups} work groups are more than {max_groups} x {max_groups}")
+    program.run(min(groups, max_groups), rows)

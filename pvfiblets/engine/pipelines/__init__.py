@@ -1,0 +1,1 @@
+"""How fiblets become pixels. Each pipeline fills the same G-buffer from the same chunks."""

@@ -1,0 +1,212 @@
+"""`FibletRenderer`: a fiblet set on one OpenGL context, drawn into a G-buffer when something changed."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from tqdm import tqdm
+
+from ..codec import layout, tables
+from .chunks import Chunk, FibletData, available_memory, plan_chunks, storage_buffer, upload_chunk
+from .errors import EngineError
+from .frame import frame_block
+from .gbuffer import GBuffer
+from .passes import Passes
+from .pipelines.compute import CONSTANTS, ComputePipeline
+from .shaders import Programs
+from .view import Style, View
+
+__all__ = ["FibletRenderer"]
+
+REQUIRED_VERSION = 430
+
+
+class FibletRenderer:
+    """Draws one fiblet set.
+
+    The context must be current in every call. The renderer binds what it needs and leaves it bound; the caller keeps
+    its own OpenGL state.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        OpenGL 4.3 or later.
+    fiblets : FibletSet
+        Copied to the GPU here; not kept in memory otherwise.
+    progress : bool
+        Show a progress bar while copying.
+    max_buffer_bytes, max_groups, max_total_bytes : int, optional
+        Limits below the driver's own: bytes of one buffer, work groups along one axis, bytes of all buffers.
+
+    Raises
+    ------
+    EngineError
+        If OpenGL is older than 4.3, or memory does not suffice; nothing stays behind on the GPU.
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        fiblets: FibletData,
+        *,
+        progress: bool = False,
+        max_buffer_bytes: int | None = None,
+        max_groups: int | None = None,
+        max_total_bytes: int | None = None,
+    ) -> None:
+        if ctx.version_code < REQUIRED_VERSION:
+            raise EngineError(
+                f"drawing fiblets needs OpenGL 4.3, found {ctx.version_code // 100}.{ctx.version_code % 100 // 10} "
+                f"({ctx.info['GL_RENDERER']}); a newer driver, or Mesa's software OpenGL, has it"
+            )
+        self._ctx = ctx
+        self._fiblets = fiblets
+        self._chunks: list[Chunk] = []
+        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._pipeline: ComputePipeline | None = None
+        self._target: GBuffer | None = None
+        self._drawn: tuple[View, Style] | None = None
+        self._passes = Passes(ctx)
+        self._programs = Programs(ctx, CONSTANTS)
+        self._generation = 0
+        self._features: list[str] = []
+        self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
+        limit = int(ctx.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+        groups = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        try:
+            self._upload(min(limit, max_buffer_bytes or limit), max_total_bytes, progress)
+            self._pipeline = ComputePipeline(
+                ctx, self._programs, self._buffers["directions"], min(groups, max_groups or groups)
+            )
+        except BaseException:
+            self.release()
+            raise
+
+    def _upload(self, max_buffer_bytes: int, max_total_bytes: int | None, progress: bool) -> None:
+        fiblets = self._fiblets
+        plans = plan_chunks(fiblets, max_buffer_bytes)
+        needed = sum(plan.nbytes for plan in plans)
+        limits = [n for n in (max_total_bytes, available_memory(self._ctx)) if n is not None]
+        if limits and needed > min(limits):
+            raise EngineError(
+                f"{fiblets.n_fiblets} fiblets need {needed / 1e6:.1f} MB of GPU memory, {min(limits) / 1e6:.1f} MB are "
+                "available; draw fewer streamlines"
+            )
+        self._buffers["directions"] = storage_buffer(self._ctx, _direction_table(), "direction table")
+        coding = np.zeros((2, 4), "<f4")
+        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
+        coding[1, :3] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice
+        self._buffers["coding"] = self._ctx.buffer(coding.tobytes())
+        self._buffers["frame"] = self._ctx.buffer(reserve=208)
+        with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
+            for plan in plans:
+                self._chunks.append(upload_chunk(self._ctx, fiblets, plan))
+                bar.update(plan.nbytes)
+
+    def render(self, view: View, style: Style | None = None) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style.
+
+        Parameters
+        ----------
+        view : View
+        style : Style, optional
+
+        Returns
+        -------
+        GBuffer
+            The renderer's own; the same object until the size changes.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
+        """
+        style = style or Style()
+        if self._pipeline is None:
+            raise EngineError("this renderer has been released; make a new one")
+        if self._target is not None and self._drawn == (view, style):
+            return self._target
+        if self._target is None or self._target.size != view.size:
+            if self._target is not None:
+                self._target.release()
+                self._target = None
+            self._target = GBuffer(self._ctx, view.size)
+        self._drawn = None
+        self._features = self._active_features(style)
+        block = frame_block(
+            view,
+            style.line_width,
+            np.asarray(self._fiblets.origin, np.float64),
+            np.asarray(self._fiblets.anchor_scale, np.float64),
+            self._top,
+        )
+        self._buffers["frame"].write(block)
+        self._buffers["frame"].bind_to_uniform_block(0)
+        self._buffers["coding"].bind_to_uniform_block(1)
+        self._passes.begin()
+        self._pipeline.draw(self._chunks, self._target, self._features, self._passes)
+        self._generation += 1
+        self._target.generation = self._generation
+        self._drawn = (view, style)
+        return self._target
+
+    def _active_features(self, style: Style) -> list[str]:
+        if style.values is not None:
+            raise EngineError(f"style.values is {style.values!r}; the fiblets hold no such array")
+        kinds = frozenset().union(*(chunk.kinds for chunk in self._chunks))
+        wanted = {
+            "ANCHORS_LOW": self._fiblets.anchors_low is not None,
+            "DIRECTION": layout.Kind.DIRECTION in kinds,
+            "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
+            "WIDE_LATTICE": layout.Kind.WIDE in kinds,
+            "RANK_TO_ID": self._fiblets.rank_to_id is not None,
+            "WIDE_LINES": style.line_width > 1.0,
+        }
+        return [name for name, on in wanted.items() if on]
+
+    def explain(self) -> dict[str, object]:
+        """Say what the last redraw was made of, and wait for it to end.
+
+        Returns
+        -------
+        dict
+            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``fiblets_total``.
+        """
+        buffers: dict[str, int] = {name: buffer.size for name, buffer in self._buffers.items()}
+        for chunk in self._chunks:
+            for name, buffer in chunk.buffers.items():
+                buffers[name] = buffers.get(name, 0) + buffer.size
+        if self._target is not None:
+            buffers["gbuffer"] = self._target.nbytes
+        return {
+            "passes": self._passes.report(),
+            "features": list(self._features),
+            "buffers": [{"name": name, "bytes": size} for name, size in buffers.items()],
+            "fiblets_total": int(self._fiblets.n_fiblets),
+        }
+
+    def release(self) -> None:
+        """Give back everything on the GPU; twice is harmless."""
+        for chunk in self._chunks:
+            chunk.release()
+        self._chunks.clear()
+        for buffer in self._buffers.values():
+            buffer.release()
+        self._buffers.clear()
+        if self._pipeline is not None:
+            self._pipeline.release()
+            self._pipeline = None
+        if self._target is not None:
+            self._target.release()
+            self._target = None
+        self._programs.release()
+        self._passes.release()
+        self._drawn = None
+
+
+def _direction_table() -> np.ndarray[tuple[int, ...], np.dtype[np.float32]]:
+    """Quaternions of all cap angles and codes as the shaders take them: (4096, 4), x y z w."""
+    table = np.roll(tables.quaternions().reshape(-1, 4), -1, axis=1)
+    if np.any(table[:, 0]):
+        raise EngineError("a direction code's rotation has an x component; shaders/decode/words.glsl leaves it out")
+    return np.ascontiguousarray(table, np.float32)

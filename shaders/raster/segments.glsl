@@ -1,0 +1,111 @@
+// Draws one fiblet's polyline into pixels, segment by segment.
+//
+// The including pass defines
+//   void plot(ivec2 pixel, float z, float s, uint segment)
+//                z: window depth; s: position along the *clipped* segment in the window, 0..1 (along() corrects it)
+//   void start_segment(uint segment, vec3 delta)   called before the pixels of a segment
+//
+// Thin lines (one pixel). Between the pixels of its two ends a segment takes n = max(|dx|, |dy|) samples at
+// s = 0, 1/n, .. (n-1)/n. Each sample lies on the segment, so every pixel drawn holds a point of the line. The pixel of
+// the far end is left to the next segment, which starts in it: joints are neither doubled nor open, whatever the
+// segments' length, and segments within one pixel cost nothing. Where nothing follows (the end of a streamline, or the
+// edge of the view volume) the far pixel is drawn, so that even a one-point streamline shows as a dot.
+//
+//       first segment        second
+//      # . . . . . . .      # drawn by the first
+//      . # # . . . . o      o drawn by the second, which begins in the last pixel of the first
+//      . . . # # o o .
+//
+// Wide lines. All pixels whose centre is at most half the width from the segment: a capsule, whose round ends join
+// segments without notches.
+//
+// Depth is interpolated in the window, where it is linear; everything else is corrected for perspective.
+
+#include "decode/sequential.glsl"
+#include "raster/project.glsl"
+
+void plot(ivec2 pixel, float z, float s, uint segment);
+void start_segment(uint segment, vec3 delta);
+
+// The clipped segment, for along(): clip w at both ends, parameters at both ends.
+vec4 clipped = vec4(1.0, 1.0, 0.0, 1.0);
+
+float along(float s) {
+    float u = s * clipped.x / max((1.0 - s) * clipped.y + s * clipped.x, 1e-30);
+    return mix(clipped.z, clipped.w, clamp(u, 0.0, 1.0));
+}
+
+#if FEATURE_WIDE_LINES
+void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
+    float r = viewport.z;
+    vec2 d = b.xy - a.xy;
+    bool steep = abs(d.y) > abs(d.x);
+    vec2 from = steep ? a.yx : a.xy, to = steep ? b.yx : b.xy, size = steep ? viewport.yx : viewport.xy;
+    vec2 run = to - from;
+    float inverse = 1.0 / max(dot(run, run), 1e-12);
+    float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
+    float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
+    int column0 = int(max(ceil(min(from.x, to.x) - r - 0.5), 0.0));
+    int column1 = int(min(floor(max(from.x, to.x) + r - 0.5), size.x - 1.0));
+    for (int column = column0; column <= column1; ++column) {
+        float x = float(column) + 0.5;
+        float y = from.y + slope * (clamp(x, min(from.x, to.x), max(from.x, to.x)) - from.x);
+        int row0 = int(max(ceil(y - reach - 0.5), 0.0)), row1 = int(min(floor(y + reach - 0.5), size.y - 1.0));
+        for (int row = row0; row <= row1; ++row) {
+            vec2 centre = vec2(x, float(row) + 0.5) - from;
+            precise float s = clamp(dot(centre, run) * inverse, 0.0, 1.0);
+            vec2 away = centre - s * run;
+            precise float z = a.z + (b.z - a.z) * s;
+            if (dot(away, away) <= r * r) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
+        }
+    }
+}
+#else
+void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
+    vec2 top = viewport.xy - 0.01;  // a point on the right or upper edge belongs to the last pixel
+    precise vec2 from = clamp(a.xy, vec2(0.0), top), run = clamp(b.xy, vec2(0.0), top) - from;
+    ivec2 cells = abs(ivec2(from + run) - ivec2(from));
+    int n = max(cells.x, cells.y), count = cap ? n + 1 : n;
+    float inverse = 1.0 / float(max(n, 1));
+    for (int i = 0; i < count; ++i) {
+        precise float s = float(i) * inverse;
+        precise vec2 at = clamp(from + s * run, vec2(0.0), top);
+        precise float z = a.z + (b.z - a.z) * s;
+        plot(ivec2(at), z, s, segment);
+    }
+}
+#endif
+
+// Draws fiblet f and the segment that joins it to the next.
+void draw_fiblet(uint f) {
+    walk_begin(f);
+    bool end = fiblet_end(anchors[f]) != 0u;
+    uint segments = walk.last + (end ? 0u : 1u);
+    precise vec4 c0 = to_clip(walk_point);
+    precise vec4 s0 = to_window(c0);
+    bool inside0 = in_volume(c0);
+    uint count = max(segments, 1u);  // a single point is a segment of no length
+    for (uint i = 1u; i <= count; ++i) {
+        precise vec3 from = walk_point;
+        if (i <= walk.last) walk_next(i);
+        else if (!end) { walk_point = anchor_local(f + 1u); walk_delta = walk_point - from; }
+        precise vec4 c1 = to_clip(walk_point);
+        precise vec4 s1 = to_window(c1);
+        bool inside1 = in_volume(c1), cap = end && i == count;
+        start_segment(i - 1u, walk_delta);
+        if (inside0 && inside1) {
+            clipped = vec4(c0.w, c1.w, 0.0, 1.0);
+            draw_window(s0, s1, i - 1u, cap);
+        } else {
+            float t0, t1;
+            if (clip_segment(c0, c1, t0, t1)) {
+                precise vec4 e0 = t0 > 0.0 ? c0 + t0 * (c1 - c0) : c0, e1 = t1 < 1.0 ? c0 + t1 * (c1 - c0) : c1;
+                clipped = vec4(e0.w, e1.w, t0, t1);
+                draw_window(to_window(e0), to_window(e1), i - 1u, cap || t1 < 1.0);
+            }
+        }
+        c0 = c1;
+        s0 = s1;
+        inside0 = inside1;
+    }
+}

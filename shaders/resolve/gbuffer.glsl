@@ -1,0 +1,66 @@
+// The G-buffer of the engine, read by VTK's own polydata shader.
+//
+// VTK draws one triangle that covers the viewport. Every fragment fetches its own texel:
+//
+//   fibletDepthMap     r32ui   window depth * 4294967295, 0xFFFFFFFF where no fiblet was drawn
+//   fibletIdMap        rg32ui  streamline id | unit tangent, data coordinates, octahedral, 2 x 16 bit
+//
+// and supplies what VTK's lights, passes and selection ask of a fragment:
+//
+//   vertexVC           position in view coordinates, by the inverse of the projection
+//   fibletDepth        window depth; takes the place of gl_FragCoord.z everywhere in VTK's text
+//
+// 1 - depth is formed on the integers. As 1/distance is linear in depth, the distance of far points
+// would lose all its digits to the cancellation in 1 - depth, had it been formed in float32.
+//
+// Sections: "//@ stage where TAG"; where = before | after | instead of VTK's tag.
+
+//@ vertex instead //VTK::PositionVC::Impl
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+
+//@ fragment after //VTK::CustomUniforms::Dec
+uniform usampler2D fibletDepthMap;
+uniform usampler2D fibletIdMap;
+uniform ivec2 fibletOrigin;        // lower left pixel of the viewport
+uniform ivec2 fibletSize;          // its size in pixels; 0: draw nothing
+uniform mat4 fibletPixelToView;    // (x, y in [-1, 1], 1 - depth, 1) -> view coordinates, homogeneous
+uniform mat3 fibletDataToView;     // directions: data -> view coordinates
+
+const uint fibletEmpty = 0xFFFFFFFFu;
+
+// Inverse of the octahedral map about +x; see the record's direction word.
+vec3 fibletDirection(uint word)
+{
+  ivec2 s = ivec2(int(word << 16) >> 16, int(word) >> 16);
+  vec2 p = vec2(s) / 32767.0;
+  float x = 1.0 - abs(p.x) - abs(p.y);
+  if (abs(s.x) + abs(s.y) > 32767)
+  {
+    p = (1.0 - abs(p.yx)) * vec2(s.x < 0 ? -1.0 : 1.0, s.y < 0 ? -1.0 : 1.0);
+  }
+  return normalize(vec3(x, p));
+}
+
+//@ fragment instead //VTK::PositionVC::Impl
+  ivec2 fibletPixel = ivec2(gl_FragCoord.xy) - fibletOrigin;
+  uint fibletKey = fibletSize.x > 0 ? texelFetch(fibletDepthMap, fibletPixel, 0).r : fibletEmpty;
+  uvec2 fibletIds = texelFetch(fibletIdMap, fibletPixel, 0).rg;
+  float fibletDepth = float(fibletKey) / 4294967295.0;
+  vec3 fibletTangent = fibletDirection(fibletIds.y);
+  vec2 fibletNDC = 2.0 * (vec2(fibletPixel) + 0.5) / vec2(fibletSize) - 1.0;
+  vec4 vertexVC = fibletPixelToView
+    * vec4(fibletNDC, float(fibletEmpty - fibletKey) / 4294967295.0, 1.0);
+  vertexVC /= vertexVC.w;
+
+//@ fragment before //VTK::Depth::Impl
+  if (fibletKey == fibletEmpty)
+  {
+    discard;
+  }
+  gl_FragDepth = fibletDepth;
+
+// VTK's own clip code tests varyings of the covering triangle, which mean nothing here.
+//@ vertex instead //VTK::Clip::Dec
+//@ vertex instead //VTK::Clip::Impl
+//@ fragment instead //VTK::Clip::Dec
+//@ fragment instead //VTK::Clip::Impl

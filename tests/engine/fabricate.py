@@ -1,0 +1,114 @@
+"""Lattice fiblets made by hand from the record's description, without the encoder."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from pvfiblets.codec import layout
+
+
+def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=None, rank_to_id=None):
+    """Code polylines as lattice fiblets.
+
+    Returns the set as the engine reads it; ``.lines`` are the float64 points it decodes to, ``.starts`` the index
+    within its streamline of each fiblet's first point.
+    """
+    lines = [np.asarray(line, float).reshape(-1, 3) for line in lines]
+    every = np.concatenate(lines)
+    lo, hi = every.min(0), every.max(0)
+    top = 2**32 - 1 if low else 65535
+    scale = np.maximum(hi - lo, 1e-9) / top
+    steps = np.concatenate([np.diff(line, axis=0) for line in lines])
+    if lattice is None:
+        extent = np.abs(steps).max() if steps.size else 1.0
+        lattice = max(extent, 1e-12) / {1: 2.5, 2: 15.0, 3: 900.0}[kind]
+    lattice = lattice * 2.0**halvings
+    edge = lattice * 0.5**halvings
+    words, decodings, lows, codes, reaches, pages, starts = [], [], [], [], [], [], []
+    code_at = point_at = 0
+    pieces = []
+    for rank, line in enumerate(lines):
+        cuts = list(range(0, len(line), per_fiblet))
+        pieces += [(rank, a, min(a + per_fiblet, len(line)), len(line)) for a in cuts]
+    out = [np.empty_like(line) for line in lines]
+    for index, (rank, a, b, n) in enumerate(pieces):
+        if index % layout.PAGE == 0:
+            pages.append((rank, code_at, point_at))
+        base = pages[-1]
+        points = lines[rank][a:b]
+        q = np.clip(np.rint((points[0] - lo) / scale), 0, top).astype(np.int64)
+        anchor = lo + q * scale
+        k = np.rint((points - anchor) / edge).astype(np.int64)
+        k[0] = 0
+        delta = np.diff(k, axis=0)
+        box_lo = delta.min(0) if len(delta) else np.zeros(3, np.int64)
+        size = delta.max(0) - box_lo + 1 if len(delta) else np.ones(3, np.int64)
+        cells = delta - box_lo
+        value = cells[:, 0] + size[0] * (cells[:, 1] + size[1] * cells[:, 2])
+        width = kind if kind < 3 else 4
+        assert value.size == 0 or value.max() < 256**width, "the steps do not fit this kind"
+        body = value.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :width].ravel()
+        if kind == 3 and len(points) > 1:
+            body = np.concatenate([box_lo.astype("<i4").view(np.uint8), size[:2].astype("<u4").view(np.uint8), body])
+            shape, step = 0, width
+        elif kind == 3:
+            shape = step = 0
+        else:
+            assert np.abs(box_lo).max() < 128
+            assert size.max() <= 256
+            shape = sum((int(v) & 255) << s for v, s in zip(box_lo, (0, 8, 16), strict=True))
+            shape |= (int(size[0]) - 1) << 24
+            step = int(size[1]) - 1
+        high = q >> 16 if low else q
+        words.append(
+            layout.pack(
+                "anchors", anchor_x=high[0], anchor_y=high[1], anchor_z=high[2],
+                rank=rank - base[0], begin=int(a == 0), end=int(b == n),
+            )
+        )  # fmt: skip
+        lows.append(q & 65535)
+        decodings.append(
+            layout.pack(
+                "decoding", shape=shape, code=code_at - base[1], step=step, point=point_at - base[2],
+                last=len(points) - 1, cap=halvings, kind=kind,
+            )
+        )  # fmt: skip
+        codes.append(body)
+        code_at += len(body)
+        point_at += len(points)
+        out[rank][a:b] = anchor + edge * k
+        starts.append(a)
+    # second round: reach needs the next fiblet's decoded anchor
+    radii = []
+    for rank, a, b, n in pieces:
+        points = out[rank][a : min(b + 1, n)]
+        centre = out[rank][a] if b == n else (out[rank][a] + out[rank][b]) / 2
+        radii.append(np.linalg.norm(points - centre, axis=1).max())
+    reach_scale = max(max(radii) / 65535 * 1.0001, 1e-12)
+    reaches = np.ceil(np.array(radii) / reach_scale).astype(np.uint16)
+    n_pages = len(pages)
+    pages.append((len(lines), code_at, point_at))
+    assert n_pages == -(-len(pieces) // layout.PAGE)
+    return SimpleNamespace(
+        anchors=np.concatenate(words),
+        decoding=np.concatenate(decodings),
+        reach=reaches,
+        codes=np.concatenate(codes) if codes else np.empty(0, np.uint8),
+        pages=np.array(pages, np.int64),
+        anchors_low=np.array(lows, np.uint16) if low else None,
+        rank_to_id=rank_to_id,
+        origin=lo,
+        anchor_scale=scale,
+        step_lo=0.0,
+        step_hi=0.0,
+        lattice=lattice,
+        reach_scale=reach_scale,
+        per_point={},
+        n_fiblets=len(pieces),
+        n_points=point_at,
+        n_streamlines=len(lines),
+        lines=out,
+        starts=np.array(starts),
+    )
