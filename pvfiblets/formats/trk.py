@@ -1,0 +1,275 @@
+"""TrackVis tracks (``.trk``, ``.trk.gz``): a header of 1000 bytes, then one record per streamline.
+
+Format: http://trackvis.org/docs/?subsect=fileformat. A record is an int32 count n, n rows of
+(x, y, z, scalars...) and the streamline's properties, all 4 bytes wide, in the byte order that
+the header's own size (1000) reveals. Coordinates are millimetres from the corner of the first
+voxel along the header's voxel order; they are moved to RAS+ mm, voxel centres at integers, as
+nibabel does it and with nibabel's header logic.
+
+What is made of input that breaks the rules:
+
+=============================================  ====================================================
+the file                                       the result
+=============================================  ====================================================
+wrong magic, size, version, voxel size, affine FormatError at the field
+negative count of a record or of the header    FormatError at the count
+data end inside a record, or before the        FormatError at the end of the file
+header's count is met
+more data than the header's count              left out, its bytes counted
+header's count 0                               means "not recorded": records up to the end
+affine not recorded (version 1, or zero)       identity, as nibabel; ``space`` says so
+a point with NaN or infinity                   left out with its scalars and counted
+a record of no points                          a streamline without points, kept
+=============================================  ====================================================
+"""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from array import array
+from collections.abc import Iterator
+from os import PathLike, fspath
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.formats.rows import finite, transformed, without_rows
+from pvfiblets.formats.trk_header import HEADER_SIZE, Header, parse_header
+from pvfiblets.formats.trk_writer import write
+from pvfiblets.streamlines import Streamlines
+
+__all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
+
+Array = NDArray[Any]
+Ints = NDArray[np.int64]
+
+HOLDS = ("per_point", "per_streamline")
+"""Parts of Streamlines besides the points that the format can carry."""
+
+AFTER_LAST = "bytes after the last streamline"
+
+_READ_BYTES = 1 << 22
+"""Compressed files are inflated by this much at a time."""
+
+
+class _Words(Protocol):
+    """The data after the header as 4-byte words, served from front to back."""
+
+    path: str
+
+    def window(self, first: int, n: int) -> Array:
+        """Return words ``[first, first + n)`` as int32 of the file's order; fewer at the end."""
+
+    def rest(self, first: int) -> int:
+        """Return how many bytes follow word `first`."""
+
+    def odd_bytes(self) -> int:
+        """Return how many bytes at the end do not fill a word (known once the end is met)."""
+
+
+class _MappedWords:
+    def __init__(self, file: MappedFile, order: str) -> None:
+        self.path = file.path
+        n, self._odd = divmod(file.size - HEADER_SIZE, 4)
+        self._words = file.array(f"{order}i4", HEADER_SIZE, n, "the records")
+
+    def window(self, first: int, n: int) -> Array:
+        return self._words[first : first + n]
+
+    def rest(self, first: int) -> int:
+        return (len(self._words) - first) * 4 + self._odd
+
+    def odd_bytes(self) -> int:
+        return self._odd
+
+
+class _InflatedWords:
+    """Words of a gzip stream; what lies before the last window's start is forgotten."""
+
+    def __init__(self, path: str, stream: gzip.GzipFile, order: str) -> None:
+        self.path = path
+        self._stream = stream
+        self._dtype = np.dtype(f"{order}i4")
+        self._kept = bytearray()
+        self._first = 0
+        self._ended = False
+
+    def window(self, first: int, n: int) -> Array:
+        del self._kept[: (first - self._first) * 4]
+        self._first = first
+        while len(self._kept) < n * 4 and not self._ended:
+            piece = inflate(self.path, self._stream, min(n * 4 - len(self._kept), _READ_BYTES))
+            self._ended = not piece
+            self._kept += piece
+        # A copy: the buffer must stay free to grow.
+        whole = min(n, len(self._kept) // 4) * 4
+        return np.frombuffer(bytes(self._kept[:whole]), self._dtype)
+
+    def rest(self, first: int) -> int:
+        total = len(self._kept) - (first - self._first) * 4
+        while not self._ended:
+            piece = inflate(self.path, self._stream, _READ_BYTES)
+            self._ended = not piece
+            total += len(piece)
+        return total
+
+    def odd_bytes(self) -> int:
+        return len(self._kept) % 4 if self._ended else 0
+
+
+def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
+    """Return up to `n` decompressed bytes; FormatError where the compressed data are damaged."""
+    try:
+        return stream.read(n)
+    except (OSError, EOFError, zlib.error) as error:
+        raise FormatError(
+            path, stream.tell(), f"damaged gzip data ({error})", "an intact gzip file"
+        ) from error
+
+
+class _Batch(NamedTuple):
+    starts: Ints
+    counts: Ints
+    used: int
+
+
+def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _Batch:
+    """Hop from record to record through complete records; stop before the first that is not.
+
+    Each record says where the next begins, so this is sequential by nature: one integer is read
+    per streamline. A negative count stops the walk too.
+    """
+    ints = memoryview(np.ascontiguousarray(words, np.int32))
+    k, p, n_words = header.row_words, header.n_properties, len(ints)
+    starts = array("q")
+    position = points = 0
+    while position < n_words and len(starts) < max_records:
+        n = ints[position]
+        after = position + 1 + n * k + p
+        if n < 0 or after > n_words or (points + n > max_points and starts):
+            break
+        starts.append(position)
+        points += n
+        position = after
+    first = np.frombuffer(starts, np.int64) if starts else np.zeros(0, np.int64)
+    return _Batch(first, words[first].astype(np.int64), position)
+
+
+def _streamlines(
+    words: Array, batch: _Batch, header: Header, dropped: dict[str, int]
+) -> Streamlines:
+    k, p = header.row_words, header.n_properties
+    floats = words[: batch.used].view(words.dtype.str.replace("i", "f"))
+    after = batch.starts + 1 + batch.counts * k
+    properties = after[:, None] + np.arange(p)
+    other = np.concatenate([batch.starts[:, None], properties], axis=1).ravel()
+    rows = without_rows(floats[:, None], other, np.float32).reshape(-1, k)
+    values = floats[properties].astype(np.float32)
+    return finite(
+        transformed(rows[:, :3], header.to_ras),
+        batch.counts,
+        {name: _column(rows, part) for name, part in header.scalars.items()},
+        dropped,
+        per_streamline={name: _column(values, part) for name, part in header.properties.items()},
+        affine=header.affine,
+        space=header.space,
+    )
+
+
+def _column(rows: Array, part: slice) -> Array:
+    block = rows[:, part]
+    return block[:, 0].copy() if block.shape[1] == 1 else block.copy()
+
+
+def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamlines]:
+    promised = header.count or None
+    position = found = 0
+    # Enough for `max_points` points in streamlines of two points or more.
+    normal = size = max_points * header.row_words + (max_points // 2 + 1) * (
+        1 + header.n_properties
+    )
+    while True:
+        window = words.window(position, size)
+        left = len(window) if promised is None else promised - found
+        batch = _walk(window, header, max_points, left)
+        at = HEADER_SIZE + 4 * (position + batch.used)
+        stopped = batch.used < len(window) and len(batch.starts) < left
+        if stopped and (n := int(window[batch.used])) < 0:
+            raise FormatError(words.path, at, f"a streamline of {n} points", "0 points or more")
+        if stopped and len(batch.starts) == 0:
+            need = 1 + n * header.row_words + header.n_properties
+            if len(window) < size:
+                raise FormatError(
+                    words.path,
+                    HEADER_SIZE + 4 * (position + len(window)),
+                    "the end of the file",
+                    f"{need} words of the streamline that begins at byte {at}: the file is "
+                    "truncated",
+                )
+            # Grow by doubling, not to `need` at once: a damaged count must not cost memory.
+            size = min(need, 2 * size)
+            continue
+        found += len(batch.starts)
+        position += batch.used
+        complete = promised is not None and found == promised
+        at_end = batch.used == len(window) < size
+        size = normal
+        if not (complete or at_end):
+            yield _streamlines(window, batch, header, {})
+            continue
+        if not complete and (odd := words.odd_bytes()):
+            raise FormatError(
+                words.path, at, f"{odd} bytes and the end of the file", "a record: it is truncated"
+            )
+        if promised is not None and not complete:
+            raise FormatError(
+                words.path,
+                at,
+                f"the end of the file after {found} streamlines",
+                f"{promised} streamlines, as the header (byte 988) promises",
+            )
+        rest = words.rest(position) if complete else 0
+        yield _streamlines(window, batch, header, {AFTER_LAST: rest} if rest else {})
+        return
+
+
+def _open(path: str | PathLike[str]) -> tuple[_Words, Header]:
+    name = fspath(path)
+    if name.lower().endswith(".gz"):
+        stream = gzip.open(name, "rb")  # noqa: SIM115 - lives as long as the words
+        header = parse_header(name, inflate(name, stream, HEADER_SIZE))
+        return _InflatedWords(name, stream, header.order), header
+    file = MappedFile(path)
+    header = parse_header(name, file.bytes(0, min(file.size, HEADER_SIZE), "the header"))
+    return _MappedWords(file, header.order), header
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+    """Read a whole trk or trk.gz file (see :func:`pvfiblets.formats.read`)."""
+    words, header = _open(path)
+    # One window that holds every record: no file has more words than this.
+    return Streamlines.concatenate(list(_chunks(words, header, 1 << 40)))
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Stream a trk or trk.gz file (see :func:`pvfiblets.formats.iter_chunks`)."""
+    words, header = _open(path)
+    yield from _chunks(words, header, max_points)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Header facts (see :func:`pvfiblets.formats.info`); the header has no number of points."""
+    _, header = _open(path)
+    return {
+        "streamlines": header.count or None,
+        "points": None,
+        "dtype": "float32",
+        "per_point": list(header.scalars),
+        "per_streamline": list(header.properties),
+        "affine": header.affine,
+        **header.space,
+    }
