@@ -1,0 +1,12 @@
+"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` whose geometry is fiblets. No PyVista here.
+
+>>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
+>>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.mapper import FibletMapper
+
+__all__ = ["Colouring", "FibletMapper"]

@@ -1,0 +1,235 @@
+"""How fiblets get their colours, by the rules of ``vtkLookupTable``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value"]
+
+_TABLE_MODES = ("streamline_scalar", "point_value")
+_GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array(
+    [0, 0, 0, 255], dtype=np.uint8
+)
+
+
+def _rgba(colour: Any, name: str) -> tuple[float, ...]:
+    """Return four floats in [0, 1] from three or four."""
+    values = tuple(float(channel) for channel in colour)
+    if len(values) == 3:
+        values = (*values, 1.0)
+    if len(values) != 4 or not all(0.0 <= channel <= 1.0 for channel in values):
+        raise ValueError(f"{name} is {colour!r}; expected 3 or 4 numbers between 0 and 1")
+    return values
+
+
+@dataclass(frozen=True, eq=False)
+class Colouring:
+    """What colour every pixel of a fiblet gets.
+
+    Instances never change; the arrays in them must not be changed either. Make another one with
+    `dataclasses.replace`.
+
+    Parameters
+    ----------
+    mode : str
+        ``'orientation'``: the absolute tangent in data coordinates as RGB.
+        ``'solid'``: `color`.
+        ``'streamline_rgb'``: `values`, one RGB or RGBA colour per streamline.
+        ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
+        ``'point_value'``: the array named `source`, a number per point, through `lut`.
+    color : sequence of 3 floats, default (1, 1, 1)
+        RGB between 0 and 1, for ``'solid'``.
+    values : numpy.ndarray, optional
+        (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers.
+    source : str, optional
+        ``'curvature'``, ``'arc_length'`` or the name of a stored per-point array.
+    lut : numpy.ndarray, optional
+        (k, 4) uint8 RGBA, lowest value first. Greys by default.
+    clim : tuple of 2 floats, optional
+        Values of the table's two ends. Needed by ``'point_value'``; by default the finite range of
+        `values`.
+    log_scale : bool, default False
+        Spread the table over the logarithms; `clim` must be positive.
+    nan_color : sequence of 3 or 4 floats, default (0.5, 0.5, 0.5, 1)
+        For NaN.
+    below_color, above_color : sequence of 3 or 4 floats, optional
+        For values outside `clim`; by default the colour of the nearer end.
+
+    Raises
+    ------
+    ValueError
+        A field is missing for its mode or has a shape, type or range that cannot be drawn.
+    """
+
+    mode: Mode = "orientation"
+    color: tuple[float, ...] = (1.0, 1.0, 1.0)
+    values: npt.NDArray[Any] | None = None
+    source: str | None = None
+    lut: npt.NDArray[np.uint8] | None = None
+    clim: tuple[float, float] | None = None
+    log_scale: bool = False
+    nan_color: tuple[float, ...] = (0.5, 0.5, 0.5, 1.0)
+    below_color: tuple[float, ...] | None = None
+    above_color: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields and bring them into one form."""
+        if self.mode not in get_args(Mode):
+            raise ValueError(f"mode is {self.mode!r}; expected one of {get_args(Mode)}")
+        self._set("color", _rgba(self.color, "color")[:3])
+        self._set("nan_color", _rgba(self.nan_color, "nan_color"))
+        for name in ("below_color", "above_color"):
+            if getattr(self, name) is not None:
+                self._set(name, _rgba(getattr(self, name), name))
+        if self.mode == "streamline_rgb":
+            self._check_rgb()
+        if self.mode == "point_value" and not self.source:
+            raise ValueError("mode 'point_value' needs source: the name of a per-point array")
+        if self.mode in _TABLE_MODES:
+            self._check_table()
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+    def _check_rgb(self) -> None:
+        values = None if self.values is None else np.asarray(self.values)
+        if values is None or values.ndim != 2 or values.shape[1] not in (3, 4):
+            found = "nothing" if values is None else f"shape {values.shape}"
+            raise ValueError(f"streamline_rgb: values has {found}; expected (n_streamlines, 3 or 4)")
+        if values.dtype != np.uint8:
+            raise ValueError(f"streamline_rgb: values has dtype {values.dtype}; expected uint8")
+        self._set("values", values)
+
+    def _check_table(self) -> None:
+        lut = _GREY if self.lut is None else np.asarray(self.lut)
+        if lut.ndim != 2 or lut.shape[1] != 4 or len(lut) < 1 or lut.dtype != np.uint8:
+            raise ValueError(
+                f"lut has shape {lut.shape} and dtype {lut.dtype}; expected (k, 4) uint8 with k >= 1"
+            )
+        self._set("lut", lut)
+        if self.mode == "streamline_scalar":
+            values = None if self.values is None else np.asarray(self.values)
+            if values is None or values.ndim != 1 or values.dtype.kind not in "biuf":
+                found = "nothing" if values is None else f"{values.dtype} of shape {values.shape}"
+                raise ValueError(f"streamline_scalar: values is {found}; expected (n_streamlines,)")
+            self._set("values", values)
+            if self.clim is None:
+                self._set("clim", _finite_range(values, positive=self.log_scale))
+        if self.clim is None:
+            raise ValueError("mode 'point_value' needs clim: the values of the table's two ends")
+        low, high = (float(end) for end in self.clim)
+        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+            raise ValueError(f"clim is {self.clim!r}; expected two finite numbers in rising order")
+        if self.log_scale and low <= 0.0:
+            raise ValueError(f"clim starts at {low}; a logarithmic scale needs a positive range")
+        self._set("clim", (low, high))
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve shader that it takes."""
+        names = {
+            "orientation": ["colour_orientation"],
+            "solid": ["colour_solid"],
+            "streamline_rgb": ["colour_streamline"],
+            "streamline_scalar": ["colour_streamline"],
+            "point_value": ["colour_point_value"],
+        }[self.mode]
+        if self.mode == "point_value" and self.log_scale:
+            names = [*names, "scale_logarithm"]
+        return frozenset(names)
+
+    @property
+    def point_source(self) -> str | None:
+        """Per-point array that the engine must put into the G-buffer, if any."""
+        return self.source if self.mode == "point_value" else None
+
+    def table(self) -> npt.NDArray[np.uint8]:
+        """Return the look-up table with its three special colours.
+
+        Returns
+        -------
+        numpy.ndarray
+            (k + 3, 4) uint8: the table, then the colours of values below, above, and of NaN.
+        """
+        if self.lut is None:
+            raise ValueError(f"mode {self.mode!r} has no look-up table")
+        below = self.lut[0] if self.below_color is None else _bytes(self.below_color)
+        above = self.lut[-1] if self.above_color is None else _bytes(self.above_color)
+        return np.concatenate([self.lut, [below, above, _bytes(self.nan_color)]]).astype(np.uint8)
+
+    def scaled_range(self) -> tuple[float, float, float]:
+        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale)."""
+        if self.lut is None or self.clim is None:
+            raise ValueError(f"mode {self.mode!r} has no look-up table")
+        low, high = np.log10(self.clim) if self.log_scale else self.clim
+        span = float(high) - float(low)
+        return float(low), float(high), len(self.lut) / span if span > 0.0 else 3.0e38
+
+    def map_values(self, values: npt.ArrayLike) -> npt.NDArray[np.uint8]:
+        """Map numbers to colours as ``vtkLookupTable`` does.
+
+        Parameters
+        ----------
+        values : array_like
+            (n,) numbers.
+
+        Returns
+        -------
+        numpy.ndarray
+            (n, 4) uint8 RGBA.
+        """
+        table = self.table()
+        entries = len(table) - 3
+        low, high, scale = self.scaled_range()
+        numbers = np.asarray(values, dtype=np.float64)
+        missing = np.isnan(numbers)
+        if self.log_scale:
+            positive = numbers > 0.0
+            numbers = np.log10(numbers, where=positive, out=np.full(numbers.shape, low))
+        with np.errstate(over="ignore"):
+            index = np.minimum(
+                np.clip(np.where(missing, low, numbers), low, high) * scale - low * scale,
+                entries - 1,
+            )
+        index = np.clip(index, 0, entries - 1).astype(np.int64)
+        index[numbers < low] = entries
+        index[numbers > high] = entries + 1
+        index[missing] = entries + 2
+        mapped: npt.NDArray[np.uint8] = table[index]
+        return mapped
+
+    def streamline_colours(self) -> npt.NDArray[np.uint8] | None:
+        """Return (n_streamlines, 4) uint8 RGBA, or None where the colour is not per streamline."""
+        if self.values is None or self.mode not in ("streamline_rgb", "streamline_scalar"):
+            return None
+        if self.mode == "streamline_scalar":
+            return self.map_values(self.values)
+        if self.values.shape[1] == 4:
+            return np.ascontiguousarray(self.values)
+        opaque = np.full((len(self.values), 1), 255, dtype=np.uint8)
+        return np.hstack([self.values, opaque])
+
+    def translucent(self) -> bool:
+        """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
+        if self.mode == "streamline_rgb" and self.values is not None:
+            return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
+        return self.mode in _TABLE_MODES and bool((self.table()[:, 3] < 255).any())
+
+
+def _bytes(colour: tuple[float, ...]) -> npt.NDArray[np.uint8]:
+    """Round a colour to bytes as VTK does."""
+    return (np.asarray(colour) * 255.0 + 0.5).astype(np.uint8)
+
+
+def _finite_range(values: npt.NDArray[Any], *, positive: bool) -> tuple[float, float]:
+    """Return least and greatest drawable value, (0, 1) where there is none ((1, 10) for logarithms)."""
+    kept = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    if positive:
+        kept = kept[kept > 0]
+    if len(kept) == 0:
+        return (1.0, 10.0) if positive else (0.0, 1.0)
+    return float(kept.min()), float(kept.max())

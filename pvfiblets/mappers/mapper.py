@@ -1,0 +1,370 @@
+"""`FibletMapper`: fiblets as geometry of an ordinary VTK actor.
+
+VTK draws one triangle that covers the viewport (`pvfiblets.mappers.proxy`) with its own program, in which
+pieces of GLSL (`pvfiblets.mappers.resolve`) read the engine's G-buffer. From inside that draw VTK fires
+``UpdateShaderEvent``: the mapper, observing itself, has the engine bring the G-buffer up to date for the
+camera, viewport and pass of that very moment, and hands the program its uniforms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_OBJECT
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
+
+from pvfiblets.engine.view import Style, View
+from pvfiblets.mappers import resolve
+from pvfiblets.mappers.active import ActiveRenderer
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.picking import Drawn, pick
+from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.scene import Frame, frame_of, world_planes
+from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
+
+_ENGINE_CLIPS = "clip_planes" in {field.name for field in fields(View)}
+_MAX_PLANES = 6
+
+
+def engine_renderer(ctx: Any, fiblets: Any) -> Any:
+    """Make the engine's renderer; the default ``renderer_factory``."""
+    from pvfiblets.engine import FibletRenderer
+
+    return FibletRenderer(ctx, fiblets)
+
+
+class FibletMapper(vtkOpenGLPolyDataMapper):
+    """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
+
+    Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
+    alone is not enough. One mapper serves one actor, in any number of renderers and windows.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    colouring : Colouring, optional
+        By orientation when left out.
+    line_width : float, default 1.0
+        Pixels of the window, at least 1.
+    renderer_factory : callable, optional
+        Takes a moderngl context and the fiblets and returns a renderer as of `pvfiblets.engine`.
+
+    Notes
+    -----
+    An exception while drawing cannot pass through VTK. It is stored, nothing is drawn, and
+    `raise_pending` raises it: call that after every render.
+
+    GL objects are given back after the first frame in which the actor is no longer in the window, when
+    the window goes, and at once by `release`.
+    """
+
+    def __init__(
+        self,
+        fiblets: Any,
+        *,
+        colouring: Colouring | None = None,
+        line_width: float = 1.0,
+        renderer_factory: Callable[[Any, Any], Any] = engine_renderer,
+    ) -> None:
+        self._factory = renderer_factory
+        self._actor = weak(None)
+        self._active = ActiveRenderer()
+        self._installed: tuple[resolve.Replacement, ...] = ()
+        self._error: BaseException | None = None
+        self._last_drawn: str | None = None
+        self._colouring = Colouring() if colouring is None else colouring
+        self.line_width = line_width
+        self.SetScalarVisibility(False)
+        self.set_fiblets(fiblets)
+        self.AddObserver("UpdateShaderEvent", _update_shader)
+        self.AddObserver("ModifiedEvent", _modified)
+
+    # What is drawn, and how
+
+    @property
+    def fiblets(self) -> Any:
+        """The `FibletSet` that is drawn."""
+        return self._fiblets
+
+    def set_fiblets(self, fiblets: Any) -> None:
+        """Draw other fiblets from the next frame on.
+
+        Raises
+        ------
+        ValueError
+            The colouring has values for another number of streamlines.
+        """
+        _check_count(self._colouring, fiblets)
+        self._fiblets = fiblets
+        bounds = fiblets.bounds if fiblets.n_streamlines and fiblets.n_points else None
+        self.SetInputData(proxy_polydata(bounds))
+
+    @property
+    def line_width(self) -> float:
+        """Width of the lines in pixels of the window."""
+        return self._line_width
+
+    @line_width.setter
+    def line_width(self, pixels: float) -> None:
+        self._line_width = Style(line_width=float(pixels)).line_width
+
+    @property
+    def colouring(self) -> Colouring:
+        """Where the colours come from; set another `Colouring` to change them."""
+        return self._colouring
+
+    @colouring.setter
+    def colouring(self, colouring: Colouring) -> None:
+        _check_count(colouring, self._fiblets)
+        self._colouring = colouring
+        self._install()
+
+    # The actor
+
+    @property
+    def actor(self) -> vtkActor | None:
+        """The actor that this mapper was attached to, if it still exists."""
+        return self._actor.Get()
+
+    def attach(self, actor: vtkActor) -> None:
+        """Make this the mapper of an actor and add the shader pieces to it.
+
+        Parameters
+        ----------
+        actor : vtkActor
+            Leave its representation at surface. Replacements of others in its shader property stay.
+        """
+        if self.actor is not None and self.actor is not actor:
+            self.detach()
+        self._actor = weak(actor)
+        actor.SetMapper(self)
+        self._install()
+
+    def detach(self) -> None:
+        """Take the shader pieces out of the actor; it then needs another mapper."""
+        actor = self.actor
+        if actor is not None:
+            resolve.uninstall(actor.GetShaderProperty(), self._installed)
+        self._installed = ()
+        self._actor = weak(None)
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve shader in use."""
+        names = {"gbuffer", "normal"} | self._colouring.features
+        if self.GetNumberOfClippingPlanes() and not _ENGINE_CLIPS:
+            names.add("clip")
+        return frozenset(names)
+
+    def _install(self) -> None:
+        """Bring the actor's shader pieces and its translucency up to date."""
+        actor = self.actor
+        if actor is None:
+            return
+        wanted = resolve.assemble(self.features)
+        if wanted != self._installed:
+            resolve.uninstall(actor.GetShaderProperty(), self._installed)
+            resolve.install(actor.GetShaderProperty(), wanted)
+            self._installed = wanted
+        translucent = self._colouring.translucent()
+        if translucent != actor.GetForceTranslucent():
+            actor.SetForceTranslucent(translucent)
+
+    # Drawing
+
+    def raise_pending(self) -> None:
+        """Raise the exception of the last draw, if there was one, once."""
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    def _update(self, program: Any) -> None:
+        """Answer VTK's ``UpdateShaderEvent``: G-buffer, textures and uniforms for this draw."""
+        unraised, self._error = self._error, None
+        try:
+            self._draw(program)
+        except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
+            program.SetUniform2i("fibletSize", (0, 0))
+            self._error = error
+        if unraised is not None:
+            # Nobody asked for the last one: VTK prints what an observer raises.
+            raise unraised
+
+    def _draw(self, program: Any) -> None:
+        actor = self.actor
+        if actor is None or not program.IsUniformUsed("fibletDepthMap"):
+            raise RuntimeError(
+                "the actor lacks the fiblets' shader pieces; use mapper.attach(actor), "
+                "not actor.SetMapper(mapper), and do not replace its shader property"
+            )
+        renderer = self._active.find(actor)
+        context = context_of(renderer.GetRenderWindow())
+        viewport = gl_viewport(context.window)
+        frame = frame_of(renderer, actor, viewport)
+        planes = world_planes(self)
+        view = self._view(frame, planes)
+        style = self._style(renderer, viewport)
+        slot = context.slot(self)
+        with context.foreign():
+            engine = self._engine(context, slot)
+            buffer = engine.render(view, style)
+            textures = self._textures(context, slot, buffer)
+            units = context.texture_units(len(textures))
+            for unit, texture in zip(units, textures.values(), strict=True):
+                texture.use(unit)
+        for unit, name in zip(units, textures, strict=True):
+            program.SetUniformi(name, unit)
+        self._set_uniforms(program, frame, planes)
+        self._last_drawn = renderer.GetAddressAsString("")
+        slot.drawn.pop(self._last_drawn, None)
+        slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
+
+    def _view(self, frame: Frame, planes: npt.NDArray[np.float64]) -> View:
+        size = frame.viewport[2:]
+        if _ENGINE_CLIPS and len(planes):
+            clip_planes = tuple(map(tuple, frame.planes_in_clip(planes)))
+            return View(size, frame.model_view_projection, clip_planes=clip_planes)  # type: ignore[call-arg]
+        return View(size, frame.model_view_projection)
+
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
+        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window."""
+        enlarged = viewport[2] / max(1, renderer.GetSize()[0])
+        width = self._line_width * max(1.0, enlarged)
+        return Style(line_width=width, values=self._colouring.point_source)
+
+    def _engine(self, context: WindowContext, slot: Slot) -> Any:
+        """Return the engine's renderer of a window, made anew for other fiblets."""
+        if slot.versions.get("fiblets") is not self._fiblets:
+            slot.drop_renderer()
+            slot.versions["fiblets"] = self._fiblets
+        if slot.renderer is None:
+            slot.renderer = self._factory(context.ctx, self._fiblets)
+        return slot.renderer
+
+    def _textures(self, context: WindowContext, slot: Slot, buffer: Any) -> dict[str, Any]:
+        """Return the textures of this draw by the names of their samplers."""
+        textures = {"fibletDepthMap": buffer.depth, "fibletIdMap": buffer.ids}
+        colouring = self._colouring
+        features = colouring.features
+        name = None
+        if "colour_streamline" in features:
+            name, pixels = "fibletStreamlineColours", colouring.streamline_colours
+        elif "colour_point_value" in features:
+            textures["fibletPositionMap"] = buffer.position
+            name, pixels = "fibletTable", colouring.table
+        for unused in set(slot.textures) - {name}:
+            slot.textures.pop(unused).release()
+        if name is not None:
+            textures[name] = slot.list_texture(name, colouring, pixels, context.ctx)
+        return textures
+
+    def _set_uniforms(self, program: Any, frame: Frame, planes: npt.NDArray[np.float64]) -> None:
+        x, y, width, height = frame.viewport
+        program.SetUniform2i("fibletOrigin", (x, y))
+        program.SetUniform2i("fibletSize", (width, height))
+        # VTK takes matrices column by column here.
+        program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())
+        program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
+        colouring = self._colouring
+        if colouring.mode == "solid":
+            program.SetUniform3f("fibletColour", colouring.color)
+        if colouring.mode == "point_value" and colouring.lut is not None:
+            program.SetUniformi("fibletTableSize", len(colouring.lut))
+            program.SetUniform3f("fibletTableRange", colouring.scaled_range())
+        if len(planes) and not _ENGINE_CLIPS:
+            rows = np.zeros((_MAX_PLANES, 4))
+            rows[: len(planes)] = frame.planes_in_view(planes[:_MAX_PLANES])
+            program.SetUniformi("fibletPlaneCount", min(len(planes), _MAX_PLANES))
+            program.SetUniform4fv("fibletPlanes", _MAX_PLANES, rows.ravel().tolist())
+
+    # Questions
+
+    def pick_at(
+        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    ) -> tuple[int, float] | None:
+        """Return the streamline nearest to a pixel of what was drawn last.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 2
+            How many pixels away a line may be.
+
+        Returns
+        -------
+        tuple of int and float, or None
+            Streamline id and position along it: the index of the point before, plus the fraction of
+            the segment. None where there is no fiblet. Other actors in front are not looked at.
+        """
+        key = self._last_drawn if renderer is None else renderer.GetAddressAsString("")
+        for context in contexts_with(self):
+            slot = context.slots[self.GetAddressAsString("")]
+            drawn = slot.drawn.get(key or "")
+            if drawn is not None and slot.renderer is not None and context.alive:
+                context.window.MakeCurrent()
+                with context.foreign():
+                    return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance)
+        return None
+
+    def explain(self) -> dict[str, Any]:
+        """Return what is active: the engine's passes, features and buffers, and the resolve's.
+
+        Returns
+        -------
+        dict
+            Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
+            shader; ``textures``: name and bytes of the mapper's own textures.
+        """
+        windows = []
+        textures = []
+        for context in contexts_with(self):
+            slot = context.slots[self.GetAddressAsString("")]
+            if slot.renderer is not None:
+                windows.append(slot.renderer.explain())
+            textures += [
+                {"name": name, "bytes": texture.width * texture.height * texture.components}
+                for name, texture in slot.textures.items()
+            ]
+        return {"features": sorted(self.features), "textures": textures, "windows": windows}
+
+    def release(self, window: Any = None) -> None:
+        """Delete the GL objects of one window, or of all; twice is harmless.
+
+        Parameters
+        ----------
+        window : vtkRenderWindow, optional
+            All windows when left out. Call it before a window is closed, to have the memory back at once.
+        """
+        for context in contexts_with(self):
+            if window is None or context.window is window:
+                context.release(self)
+
+
+@calldata_type(VTK_OBJECT)
+def _update_shader(mapper: FibletMapper, _event: str, program: Any) -> None:
+    mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
+
+
+def _modified(mapper: FibletMapper, _event: str) -> None:
+    mapper._install()  # noqa: SLF001  clipping planes come and go without any other word
+
+
+def _check_count(colouring: Colouring, fiblets: Any) -> None:
+    """Raise unless per-streamline colours are as many as streamlines."""
+    if "colour_streamline" not in colouring.features or colouring.values is None:
+        return
+    if len(colouring.values) != fiblets.n_streamlines:
+        raise ValueError(
+            f"{colouring.mode} has {len(colouring.values)} values for {fiblets.n_streamlines} "
+            "streamlines; give one per streamline, empty ones included"
+        )

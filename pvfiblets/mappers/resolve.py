@@ -1,0 +1,166 @@
+"""The resolve: GLSL pieces that make VTK's polydata shader draw a G-buffer.
+
+The pieces live in ``shaders/resolve``, one file per feature. A file is prose followed by sections
+
+    //@ stage where TAG
+
+with ``stage`` ``vertex`` or ``fragment``, ``where`` ``before``, ``after`` or ``instead`` and ``TAG`` one
+of VTK's own tags (``//VTK::Color::Impl``) or a tag of another piece (``//pvfiblets::Scale::Impl``).
+`assemble` turns a set of features into replacements for a ``vtkShaderProperty``; a feature that is not
+asked for leaves no text behind.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+from pvfiblets.engine.shaders import read_shader
+
+FEATURES = (
+    "gbuffer",
+    "normal",
+    "clip",
+    "colour_orientation",
+    "colour_solid",
+    "colour_streamline",
+    "colour_point_value",
+    "scale_logarithm",
+)
+"""Every feature, in the order in which pieces for the same tag follow each other."""
+
+_OWN_TAG = "//pvfiblets::"
+_SECTION = re.compile(r"//@ (?P<stage>\w+) (?P<where>\w+) (?P<tag>//\S+)$")
+_UNUSED_TAG = re.compile(r"^//pvfiblets::\S+\n?", re.MULTILINE)
+_STAGES = ("vertex", "fragment")
+_PLACES = ("before", "instead", "after")
+
+# VTK writes gl_FragCoord.z where it wants a fragment's depth (coincident topology, peeling); the
+# covering triangle's depth is not the fiblet's.
+_DEPTH_OF_TRIANGLE = "gl_FragCoord.z"
+_DEPTH_OF_FIBLET = "fibletDepth"
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """One replacement for a ``vtkShaderProperty``.
+
+    Attributes
+    ----------
+    stage : str
+        ``'vertex'`` or ``'fragment'``.
+    original : str
+        Text to be replaced.
+    first : bool
+        Before VTK makes its own replacements, or after.
+    text : str
+        What takes its place.
+    """
+
+    stage: str
+    original: str
+    first: bool
+    text: str
+
+
+@dataclass
+class _Edits:
+    """What pieces want done at one tag of one stage."""
+
+    parts: dict[str, list[str]] = field(default_factory=lambda: {place: [] for place in _PLACES})
+    replaced: bool = False
+
+    def text(self, tag: str) -> str:
+        """Return the composed text, VTK's tag included unless a piece takes its place."""
+        middle = self.parts["instead"] if self.replaced else [tag]
+        lines = [*self.parts["before"], *middle, *self.parts["after"]]
+        return "\n".join(line for line in lines if line)
+
+
+@cache
+def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
+    """Return (stage, where, tag, text) of every section of a feature's file."""
+    path = f"resolve/{feature}.glsl"
+    sections: list[tuple[str, str, str, list[str]]] = []
+    for number, line in enumerate(read_shader(path).splitlines(), start=1):
+        if line.startswith("//@"):
+            match = _SECTION.match(line.rstrip())
+            if not match or match["stage"] not in _STAGES or match["where"] not in _PLACES:
+                raise ValueError(
+                    f"{path}:{number}: found {line!r}, expected '//@ stage where //TAG' with stage "
+                    f"one of {_STAGES} and where one of {_PLACES}"
+                )
+            sections.append((match["stage"], match["where"], match["tag"], []))
+        elif sections:
+            sections[-1][3].append(line)
+    return tuple(
+        (stage, where, tag, "\n".join(lines).strip("\n")) for stage, where, tag, lines in sections
+    )
+
+
+@cache
+def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
+    """Return the shader replacements of a set of features.
+
+    Parameters
+    ----------
+    features : frozenset of str
+        Names from `FEATURES`.
+
+    Returns
+    -------
+    tuple of Replacement
+        For `install`.
+
+    Raises
+    ------
+    ValueError
+        A name is unknown, or a piece's tag is left without the piece that has it.
+    """
+    unknown = features - set(FEATURES)
+    if unknown:
+        raise ValueError(f"unknown resolve features {sorted(unknown)}; known are {FEATURES}")
+    edits: dict[tuple[str, str], _Edits] = {}
+    for feature in FEATURES:
+        if feature not in features:
+            continue
+        for stage, where, tag, text in _sections(feature):
+            edit = edits.setdefault((stage, tag), _Edits())
+            edit.parts[where].append(text)
+            edit.replaced = edit.replaced or where == "instead"
+    own = {key: edit for key, edit in edits.items() if key[1].startswith(_OWN_TAG)}
+    result = []
+    for (stage, tag), edit in edits.items():
+        if (stage, tag) in own:
+            continue
+        text = edit.text(tag)
+        for (own_stage, own_tag), own_edit in own.items():
+            if own_stage == stage:
+                text = text.replace(own_tag, own_edit.text(""))
+        result.append(Replacement(stage, tag, True, _UNUSED_TAG.sub("", text)))
+    joined = "\n".join(replacement.text for replacement in result)
+    for (_, own_tag), own_edit in own.items():
+        if own_edit.text("") not in joined:
+            raise ValueError(f"{own_tag} is in no piece of {sorted(features)}")
+    result.append(Replacement("fragment", _DEPTH_OF_TRIANGLE, False, _DEPTH_OF_FIBLET))
+    return tuple(result)
+
+
+def install(shader_property: Any, replacements: tuple[Replacement, ...]) -> None:
+    """Add replacements to an actor's ``vtkShaderProperty``."""
+    for edit in replacements:
+        if edit.stage == "vertex":
+            shader_property.AddVertexShaderReplacement(edit.original, edit.first, edit.text, True)
+        else:
+            shader_property.AddFragmentShaderReplacement(edit.original, edit.first, edit.text, True)
+
+
+def uninstall(shader_property: Any, replacements: tuple[Replacement, ...]) -> None:
+    """Take the replacements out again; those of others stay."""
+    for edit in replacements:
+        if edit.stage == "vertex":
+            shader_property.ClearVertexShaderReplacement(edit.original, edit.first)
+        else:
+            shader_property.ClearFragmentShaderReplacement(edit.original, edit.first)

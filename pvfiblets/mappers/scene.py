@@ -1,0 +1,117 @@
+"""Which renderer is drawing, and from where it looks: VTK's matrices in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
+
+Matrix = npt.NDArray[np.float64]
+
+# 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.
+_FROM_COMPLEMENT = np.array(
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One draw of one actor: viewport and matrices, all float64, column vectors.
+
+    Attributes
+    ----------
+    viewport : tuple of 4 ints
+        x, y, width, height in pixels of the bound framebuffer.
+    model_view : numpy.ndarray
+        (4, 4), data mm to view coordinates: camera times actor.
+    view : numpy.ndarray
+        (4, 4), world to view coordinates.
+    projection : numpy.ndarray
+        (4, 4), view to clip coordinates.
+    """
+
+    viewport: tuple[int, int, int, int]
+    model_view: Matrix
+    view: Matrix
+    projection: Matrix
+
+    @property
+    def model_view_projection(self) -> Matrix:
+        """(4, 4), data mm to clip coordinates."""
+        product: Matrix = self.projection @ self.model_view
+        return product
+
+    @property
+    def pixel_to_view(self) -> Matrix:
+        """(4, 4), (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous.
+
+        Scaled so that its largest entry is 1, which changes no position and keeps float32 in range.
+        """
+        inverse = np.linalg.inv(self.projection) @ _FROM_COMPLEMENT
+        scaled: Matrix = inverse / np.abs(inverse).max()
+        return scaled
+
+    @property
+    def directions_to_view(self) -> Matrix:
+        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range."""
+        linear = self.model_view[:3, :3]
+        scaled: Matrix = linear / np.abs(linear).max()
+        return scaled
+
+    def planes_in_view(self, planes: Matrix) -> Matrix:
+        """Return (k, 4) world planes in view coordinates."""
+        moved: Matrix = planes @ np.linalg.inv(self.view)
+        return moved
+
+    def planes_in_clip(self, planes: Matrix) -> Matrix:
+        """Return (k, 4) world planes in clip coordinates, each scaled to a largest entry of 1."""
+        moved = planes @ np.linalg.inv(self.projection @ self.view)
+        scaled: Matrix = moved / np.abs(moved).max(axis=1, keepdims=True)
+        return scaled
+
+
+def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int]) -> Frame:
+    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included."""
+    camera = renderer.GetActiveCamera()
+    model = vtkMatrix4x4()
+    actor.GetModelToWorldMatrix(model)
+    view = to_array(camera.GetModelViewTransformMatrix())
+    aspect = renderer.GetTiledAspectRatio()
+    projection = to_array(camera.GetProjectionTransformMatrix(aspect, -1.0, 1.0))
+    return Frame(viewport, view @ to_array(model), view, projection)
+
+
+def to_array(matrix: vtkMatrix4x4) -> Matrix:
+    """Return a VTK matrix as (4, 4) float64."""
+    return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+
+
+def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
+    """Yield every renderer that holds a prop, directly or inside an assembly."""
+    for index in range(prop.GetNumberOfConsumers()):
+        consumer = prop.GetConsumer(index)
+        if isinstance(consumer, vtkRenderer):
+            yield consumer
+        elif isinstance(consumer, vtkProp):
+            yield from renderers_of(consumer)
+
+
+def world_planes(mapper: Any) -> Matrix:
+    """Return the clipping planes of a mapper.
+
+    Returns
+    -------
+    numpy.ndarray
+        (k, 4) float64 (a, b, c, d) in world mm; a point is kept where ax + by + cz + d >= 0.
+    """
+    planes = []
+    for index in range(mapper.GetNumberOfClippingPlanes()):
+        plane = mapper.GetClippingPlanes().GetItem(index)
+        normal, origin = np.array(plane.GetNormal()), np.array(plane.GetOrigin())
+        planes.append([*normal, -float(normal @ origin)])
+    return np.array(planes, dtype=np.float64).reshape(-1, 4)

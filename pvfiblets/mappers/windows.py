@@ -1,0 +1,269 @@
+"""The GL side of a render window: its moderngl context, and what each mapper keeps in it.
+
+VTK gives every render window a GL context of its own. `WindowContext` is the one object per window that
+holds the moderngl context and a `Slot` per mapper: the mapper's engine renderer and its textures.
+
+Nobody tells a Python mapper that it should let go of its GL objects: VTK calls C++ methods for that.
+So a window's context looks after every frame (``EndEvent``) whether each mapper is still alive and its
+actor still in the window, and releases the slot if not. A texture object of VTK's own stands by as a
+witness: VTK empties it when the window's context is finalised. What was created in a dead context is
+forgotten and never deleted, because its names may belong to others in the next context.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import moderngl
+from vtkmodules.util.vtkConstants import VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonCore import vtkWeakReference
+from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
+
+from pvfiblets.mappers.scene import renderers_of
+
+GL_VIEWPORT = 0x0BA2
+MAX_ROW = 4096
+"""Greatest width of a texture that holds a list: below every driver's limit."""
+
+_contexts: dict[str, WindowContext] = {}
+
+
+def weak(target: Any) -> vtkWeakReference:
+    """Return VTK's weak reference: Python's dies with the wrapper, which VTK makes anew at will."""
+    reference = vtkWeakReference()
+    reference.Set(target)
+    return reference
+
+
+def gl_viewport(window: Any) -> tuple[int, int, int, int]:
+    """Return x, y, width, height of the viewport that VTK draws into now, in pixels."""
+    values = [0, 0, 0, 0]
+    window.GetState().vtkglGetIntegerv(GL_VIEWPORT, values)
+    x, y, width, height = values
+    return x, y, width, height
+
+
+class Slot:
+    """What one mapper keeps in one window.
+
+    Attributes
+    ----------
+    renderer : Any
+        The engine's renderer, None until first needed.
+    textures : dict
+        Name to moderngl texture.
+    versions : dict
+        Name to the object the texture was made from.
+    drawn : dict
+        Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
+    """
+
+    def __init__(self, mapper: Any) -> None:
+        self.mapper = weak(mapper)
+        self.renderer: Any = None
+        self.textures: dict[str, Any] = {}
+        self.versions: dict[str, Any] = {}
+        self.drawn: dict[str, Any] = {}
+
+    def release(self) -> None:
+        """Delete the GL objects. The window's context must be current."""
+        if self.renderer is not None:
+            self.renderer.release()
+            self.renderer = None
+        for texture in self.textures.values():
+            texture.release()
+        self.textures.clear()
+        self.versions.clear()
+        self.drawn.clear()
+
+    def drop_renderer(self) -> None:
+        """Delete the engine's renderer only. The window's context must be current."""
+        if self.renderer is not None:
+            self.renderer.release()
+            self.renderer = None
+        self.drawn.clear()
+
+    def list_texture(self, name: str, source: Any, pixels: Any, ctx: Any) -> Any:
+        """Return an RGBA texture that holds a list of colours row by row.
+
+        Parameters
+        ----------
+        name : str
+            Name of the texture in this slot.
+        source : Any
+            The texture is made anew only when this is another object than last time.
+        pixels : callable
+            Returns (n, 4) uint8; called when the texture is made.
+        ctx : moderngl.Context
+            The window's context.
+        """
+        if name in self.textures and self.versions.get(name) is source:
+            return self.textures[name]
+        colours = pixels()
+        width = max(1, min(len(colours), MAX_ROW))
+        height = max(1, -(-len(colours) // width))
+        data = bytearray(colours.tobytes())
+        data.extend(bytes(width * height * 4 - len(data)))
+        old = self.textures.get(name)
+        if old is not None and old.size == (width, height):
+            old.write(data)
+        else:
+            if old is not None:
+                old.release()
+            self.textures[name] = ctx.texture((width, height), 4, data, alignment=1)
+            self.textures[name].filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self.versions[name] = source
+        return self.textures[name]
+
+
+class WindowContext:
+    """GL context of a render window; make it with `context_of`.
+
+    Parameters
+    ----------
+    window : vtkOpenGLRenderWindow
+        Its context must be current.
+    """
+
+    def __init__(self, window: Any) -> None:
+        self._window = weak(window)
+        self.slots: dict[str, Slot] = {}
+        previous = getattr(moderngl, "_store", None)
+        default = getattr(previous, "default_context", None)
+        moderngl.init_context()
+        self.ctx: Any = moderngl.get_context()
+        if previous is not None:
+            previous.default_context = default
+        self._witness = vtkTextureObject()
+        self._witness.SetContext(window)
+        self._witness.Allocate2D(1, 1, 4, VTK_UNSIGNED_CHAR)
+        self._observers = [
+            window.AddObserver("EndEvent", lambda *_: self._sweep()),
+            window.AddObserver("DeleteEvent", lambda *_: self._forget()),
+        ]
+        self._address = window.GetAddressAsString("")
+
+    @property
+    def window(self) -> Any:
+        """The window, or None once it is gone."""
+        return self._window.Get()
+
+    @property
+    def alive(self) -> bool:
+        """Whether the GL context that the objects were made in still exists."""
+        return self.window is not None and self._witness.GetHandle() != 0
+
+    def slot(self, mapper: Any) -> Slot:
+        """Return the slot of a mapper, made when there is none."""
+        return self.slots.setdefault(mapper.GetAddressAsString(""), Slot(mapper))
+
+    @contextmanager
+    def foreign(self) -> Iterator[None]:
+        """Keep VTK's record of the GL state true around GL calls that are not VTK's."""
+        state = self.window.GetState()
+        state.Reset()
+        state.Push()
+        try:
+            yield
+        finally:
+            state.Pop()
+
+    def texture_units(self, count: int) -> list[int]:
+        """Return units that VTK does not use at this moment, the highest first.
+
+        VTK hands out the lowest free ones. moderngl makes textures on the very last.
+
+        Raises
+        ------
+        RuntimeError
+            Fewer than `count` are free.
+        """
+        manager = self.window.GetState().GetTextureUnitManager()
+        last = min(manager.GetNumberOfTextureUnits(), self.ctx.max_texture_units) - 1
+        units = [unit for unit in range(last - 1, -1, -1) if not manager.IsAllocated(unit)]
+        if len(units) < count:
+            raise RuntimeError(
+                f"{len(units)} of {last + 1} texture units are free, but fiblets need {count}; "
+                "remove textures from other actors of the scene"
+            )
+        return units[:count]
+
+    def release(self, mapper: Any) -> None:
+        """Delete what a mapper keeps in this window; twice is harmless."""
+        slot = self.slots.pop(mapper.GetAddressAsString(""), None)
+        if slot is not None:
+            self._release_slots([slot])
+        if not self.slots:
+            self._close()
+
+    def _release_slots(self, slots: list[Slot]) -> None:
+        if not self.alive:
+            return
+        self.window.MakeCurrent()
+        with self.foreign():
+            for slot in slots:
+                slot.release()
+
+    def _sweep(self) -> None:
+        """Release the slots of mappers that are gone or no longer in the window."""
+        if not self.alive:
+            self._forget()
+            return
+        gone = {
+            address: slot for address, slot in self.slots.items() if not self._holds(slot.mapper.Get())
+        }
+        for address in gone:
+            del self.slots[address]
+        if gone:
+            self._release_slots(list(gone.values()))
+        if not self.slots:
+            self._close()
+
+    def _holds(self, mapper: Any) -> bool:
+        """Whether the actor of a mapper is in this window."""
+        actor = None if mapper is None else mapper.actor
+        if actor is None:
+            return False
+        return any(
+            renderer.GetRenderWindow() is not None
+            and renderer.GetRenderWindow().GetAddressAsString("") == self._address
+            for renderer in renderers_of(actor)
+        )
+
+    def _close(self) -> None:
+        """Give back what the context itself holds in a living window."""
+        if self.alive:
+            self.window.MakeCurrent()
+            self._witness.ReleaseGraphicsResources(self.window)
+        self._forget()
+
+    def _forget(self) -> None:
+        """Leave the window alone without touching GL."""
+        self.slots.clear()
+        window = self.window
+        if window is not None:
+            for observer in self._observers:
+                window.RemoveObserver(observer)
+        self._observers = []
+        if _contexts.get(self._address) is self:
+            del _contexts[self._address]
+
+
+def context_of(window: Any) -> WindowContext:
+    """Return the context of a window whose GL context is current, a new one after re-creation."""
+    address = window.GetAddressAsString("")
+    context = _contexts.get(address)
+    if context is not None and not context.alive:
+        context._forget()  # noqa: SLF001  this module's own
+        context = None
+    if context is None:
+        context = _contexts[address] = WindowContext(window)
+    return context
+
+
+def contexts_with(mapper: Any) -> list[WindowContext]:
+    """Return the contexts in which a mapper keeps something."""
+    address = mapper.GetAddressAsString("")
+    return [context for context in _contexts.values() if address in context.slots]
