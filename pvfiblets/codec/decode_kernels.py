@@ -58,7 +58,7 @@ def _decode_lattice(a: Any, kind: int, shape: int, step: int, h: float, codes: A
         l0 = _signed(_take(codes, at, 4), 32)
         l1 = _signed(_take(codes, at + 4, 4), 32)
         l2 = _signed(_take(codes, at + 8, 4), 32)
-        nx, ny = _take(codes, at + 12, 4), _take(codes, at + 16, 4)
+        nx, ny = max(_take(codes, at + 12, 4), 1), max(_take(codes, at + 16, 4), 1)
         width = step & 7
         at += WIDE_HEADER
     else:
@@ -83,8 +83,8 @@ def _decode_lattice(a: Any, kind: int, shape: int, step: int, h: float, codes: A
 @_parallel  # type: ignore[untyped-decorator]
 def decode(
     fiblets: Any, destination: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, out: Any
-) -> None:
-    """Decode fiblets into ``out``.
+) -> int:
+    """Decode fiblets into ``out``; returns how many were damaged and left out.
 
     Parameters
     ----------
@@ -107,7 +107,9 @@ def decode(
     """
     anchors, decoding, codes, code_base = arrays
     lo, hi, lattice = steps
-    for block in numba.prange((len(fiblets) + BLOCK - 1) // BLOCK):
+    n_blocks = (len(fiblets) + BLOCK - 1) // BLOCK
+    missed = np.zeros(n_blocks, np.int64)
+    for block in numba.prange(n_blocks):
         a = np.empty(3)
         for m in range(block * BLOCK, min((block + 1) * BLOCK, len(fiblets))):
             f = fiblets[m]
@@ -120,14 +122,24 @@ def decode(
                 q2 = q2 * 65536.0 + float(low[f, 2])
             a[0], a[1], a[2] = scale[0] * q0, scale[1] * q1, scale[2] * q2
             n = (w4 >> 20 & 0x3F) + 1
+            step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
+            at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
+            size = n - 2
+            if kind == WIDE:
+                size = WIDE_HEADER + (n - 1) * (step & 7)
+            elif kind != DIRECTION:
+                size = (n - 1) * kind
+            # A record read from a damaged file must not reach beyond the arrays.
+            if at < 0 or at + size > len(codes) or destination[m] < 0 or destination[m] + n > len(out):
+                missed[block] += 1
+                continue
             p = out[destination[m] : destination[m] + n]
             p[0, 0], p[0, 1], p[0, 2] = a[0] + origin[0], a[1] + origin[1], a[2] + origin[2]
             if n == 1:
                 continue
-            step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
-            at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
             if kind == DIRECTION:
                 length = lo if hi <= lo else lo + step * (hi - lo) / STEP_LEVELS
                 _decode_direction(a, shape, length, tables[cap], codes, at, n, origin, p)
             else:
                 _decode_lattice(a, kind, shape, step, lattice * 0.5**cap, codes, at, n, origin, p)
+    return int(missed.sum())

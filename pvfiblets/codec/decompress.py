@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import FormatError
 from ..streamlines import Streamlines
 from . import decode_kernels
 from .layout import MAX_POINTS, unpack
@@ -60,11 +61,16 @@ def decode_fiblets(
         ``(m,)`` int64: row of ``points`` that each one's first point goes to.
     points : numpy.ndarray
         ``(n, 3)`` float32 or float64, filled in place, mm RAS+.
+
+    Raises
+    ------
+    FormatError
+        If records point beyond the arrays, as they may in a damaged file.
     """
     p = fiblets.parameters
     low = fiblets.anchors_low
     arrays = (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1]))
-    decode_kernels.decode(
+    damaged = decode_kernels.decode(
         which,
         destination,
         arrays,
@@ -76,6 +82,8 @@ def decode_fiblets(
         quaternions().astype(np.float64),
         points,
     )
+    if damaged:
+        raise FormatError("the set of fiblets", None, f"{damaged} records that point beyond its arrays", "an undamaged file")
 
 
 def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None = None) -> Streamlines:

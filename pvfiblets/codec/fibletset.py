@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
@@ -262,7 +262,14 @@ class FibletSet:
 
         return open_fiblets(path)
 
-    @classmethod
-    def from_parts(cls, header: Mapping[str, Any], arrays: Mapping[str, Any]) -> FibletSet:
-        """Build a set from a file's header and arrays; used by :mod:`pvfiblets.codec.storage`."""
-        return cls(**header, **arrays)
+    def verify(self) -> None:
+        """Check that all records agree with each other; :func:`pvfiblets.codec.storage.verify_file` checks a file's bytes.
+
+        Raises
+        ------
+        FormatError
+            Naming the first fiblet that is damaged and how.
+        """
+        from .check import check_records
+
+        check_records(self)

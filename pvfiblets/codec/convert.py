@@ -1,0 +1,283 @@
+"""File to file, in memory that does not grow with the file."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import IO, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from .. import formats
+from ..streamlines import Streamlines
+from .archive import Member, write_archive
+from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
+from .encode import Effort, Encoder
+from .error import CodingError, ErrorTally
+from .fibletset import FibletSet
+from .parameters import Parameters, survey
+from .quantised import QuantisedPoints
+from .resample import resample
+from .storage import make_header, open_fiblets
+
+__all__ = ["compress_file", "measure_file_error"]
+
+
+def compress_file(
+    source: str | PathLike[str],
+    target: str | PathLike[str],
+    *,
+    step: float | Literal["auto"] = "auto",
+    max_error: float | None = None,
+    effort: Effort = "fast",
+    per_point: Sequence[str] = (),
+    per_point_bits: int = 8,
+    progress: bool = False,
+) -> dict[str, Any]:
+    """Compress a tractogram file into a ``.fiblets`` file.
+
+    The source is read three times: for its bounds and steps, for coding, and to compare the finished file with it.
+
+    Parameters
+    ----------
+    source : str or PathLike
+        Any format that :func:`pvfiblets.iter_chunks` reads.
+    target : str or PathLike
+        A name ending in ``.fiblets``; it appears when it is whole.
+    step, max_error, effort, per_point, per_point_bits
+        As in :func:`pvfiblets.compress`.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    dict
+        ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
+        error_steps{...}, promise_mm, seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped``.
+
+    Raises
+    ------
+    FormatError
+        If the source breaks its format.
+    ValueError
+        As :func:`pvfiblets.compress`.
+    """
+    started = time.perf_counter()
+
+    def chunks() -> Iterator[Streamlines]:
+        for chunk in formats.iter_chunks(source, CHUNK_POINTS):
+            check_per_point(chunk, per_point, per_point_bits)
+            yield chunk if step == "auto" else resample(chunk, step)
+
+    found = survey(_shown(chunks(), None, "surveying", progress), per_point)
+    encoder = Encoder(Parameters.choose(found, max_error), effort)
+    folder = Path(target).resolve().parent
+    with tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch:
+        spool = _Spool(Path(scratch))
+        whole = _Whole()
+        for chunk in _shown(chunks(), found.n_points, "compressing", progress):
+            records = encoder.add(chunk)
+            for name in ("anchors", "decoding", "reach", "codes", "anchors_low"):
+                if getattr(records, name) is not None:
+                    spool.add(f"{name}.npy", getattr(records, name))
+            for name, values in quantise_chosen(chunk, found, per_point, per_point_bits).items():
+                spool.add(name, values.codes)
+                whole.add_values(name, values)
+            whole.add(chunk)
+        spool.close()
+        if not encoder.n_fiblets:
+            spool.add_empty(per_point, per_point_bits, whole)
+        pages, ids = encoder.page_table(), encoder.rank_to_id()
+        spool.add("pages.npy", pages)
+        if ids is not None:
+            spool.add("rank_to_id.npy", ids)
+        spool.close()
+        header_set = FibletSet(
+            parameters=encoder.parameters,
+            anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
+            decoding=np.empty((0, 3), np.uint32),
+            reach=np.empty(0, np.uint16),
+            codes=np.empty(0, np.uint8),
+            pages=pages,
+            bounds=bounds_of(found),
+            n_streamlines=encoder.n_streamlines,
+            per_point=whole.per_point,
+            per_streamline={k: np.concatenate(v) for k, v in whole.per_streamline.items()},
+            groups={k: np.concatenate(v) for k, v in whole.groups.items()},
+            per_group=whole.per_group,
+            affine=whole.affine,
+            space=whole.space,
+            dropped=whole.dropped,
+        )
+        members = spool.members()
+        header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
+        write_archive(target, header, members | more)
+    seconds = time.perf_counter() - started
+    error = _compare(chunks(), found.n_points, target, progress)
+    size = Path(target).stat().st_size
+    return {
+        "streamlines": encoder.n_streamlines,
+        "points": encoder.n_points,
+        "fiblets": encoder.n_fiblets,
+        "bytes": size,
+        "bytes_per_point": size / max(encoder.n_points, 1),
+        **error.summary(),
+        "promise_mm": encoder.parameters.promise,
+        "seconds": seconds,
+        "points_per_second": encoder.n_points / seconds,
+        "seconds_to_measure": time.perf_counter() - started - seconds,
+        "dropped": whole.dropped,
+    }
+
+
+def measure_file_error(
+    fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: bool = False
+) -> CodingError:
+    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
+
+    Raises
+    ------
+    FormatError
+        If one of the files breaks its format.
+    ValueError
+        If the two do not hold the same streamlines and points.
+    """
+    total = open_fiblets(fiblets).n_points
+    return _compare(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
+
+
+def _compare(
+    originals: Iterable[Streamlines], total: int, target: str | PathLike[str], progress: bool
+) -> CodingError:
+    """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
+    coded = open_fiblets(target)
+    tally = ErrorTally(coded.promise, coded.step)
+    decoded = coded.iter_chunks()
+    rest: Streamlines | None = None
+    seen = 0
+    for chunk in _shown(originals, total, "measuring", progress):
+        done = 0
+        while done < len(chunk):
+            if rest is None or len(rest) == 0:
+                rest = next(decoded, None)
+                if rest is None:
+                    raise ValueError(f"the original has more streamlines than the {coded.n_streamlines} of the fiblets")
+            n = min(len(rest), len(chunk) - done)
+            a, b = _plain(chunk, done, done + n), _plain(rest, 0, n)
+            if not np.array_equal(a.offsets, b.offsets):
+                differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
+                raise ValueError(
+                    f"streamline {seen + differs} has {a.counts[differs]} points in the original and {b.counts[differs]} in "
+                    "the fiblets: errors can be measured only against what was compressed"
+                )
+            tally.add(a, b.points)
+            rest = _plain(rest, n, len(rest))
+            done += n
+            seen += n
+    if seen != coded.n_streamlines:
+        raise ValueError(f"the fiblets hold {coded.n_streamlines} streamlines, the original {seen}")
+    return tally.result()
+
+
+def _plain(s: Streamlines, a: int, b: int) -> Streamlines:
+    """Streamlines ``a`` to ``b`` without their data."""
+    offsets = np.asarray(s.offsets)
+    return Streamlines(s.points[offsets[a] : offsets[b]], offsets[a : b + 1] - offsets[a])
+
+
+def _shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress: bool) -> Iterator[Streamlines]:
+    with tqdm(total=total, desc=what, unit="points", unit_scale=True, disable=not progress) as bar:
+        for chunk in chunks:
+            yield chunk
+            bar.update(chunk.n_points)
+
+
+class _Whole:
+    """What is kept whole: per-streamline data, groups and the header, gathered over chunks."""
+
+    def __init__(self) -> None:
+        self.n = 0
+        self.per_point: dict[str, QuantisedPoints] = {}
+        self.per_streamline: dict[str, list[npt.NDArray[Any]]] = {}
+        self.groups: dict[str, list[npt.NDArray[Any]]] = {}
+        self.per_group: dict[str, dict[str, Any]] = {}
+        self.affine: npt.NDArray[np.float64] = np.eye(4)
+        self.space: dict[str, Any] = {}
+        self.dropped: dict[str, int] = {}
+
+    def add(self, chunk: Streamlines) -> None:
+        for name, values in chunk.per_streamline.items():
+            self.per_streamline.setdefault(name, []).append(np.array(values))
+        for name, members in chunk.groups.items():
+            self.groups.setdefault(name, []).append(np.asarray(members, np.int64) + self.n)
+        for name, data in chunk.per_group.items():
+            self.per_group.setdefault(name, {}).update(data)
+        if self.n == 0:
+            self.affine, self.space = np.asarray(chunk.affine, np.float64), dict(chunk.space)
+        for reason, count in chunk.dropped.items():
+            self.dropped[reason] = self.dropped.get(reason, 0) + int(count)
+        self.n += len(chunk)
+
+    def add_values(self, name: str, values: QuantisedPoints) -> None:
+        """Remember a per-point array's range and largest error, not its codes."""
+        before = self.per_point.get(name)
+        error = values.max_error if before is None else max(before.max_error, values.max_error)
+        self.per_point[name] = QuantisedPoints(np.empty(0, values.codes.dtype), values.lo, values.hi, error)
+
+
+class _Spool:
+    """Arrays that grow on disk, because a zip's members need their shapes before their bytes."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._streams: dict[str, IO[bytes]] = {}
+        self._paths: dict[str, Path] = {}
+        self._shapes: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {}
+
+    def add(self, name: str, rows: npt.NDArray[Any]) -> None:
+        if name not in self._paths:
+            self._paths[name] = self._folder / str(len(self._paths))
+        if name not in self._streams:
+            self._streams[name] = self._paths[name].open("ab")
+        before = self._shapes[name][1][0] if name in self._shapes else 0
+        self._shapes[name] = (rows.dtype, (before + len(rows), *rows.shape[1:]))
+        self._streams[name].write(np.ascontiguousarray(rows).tobytes())
+
+    def add_empty(self, per_point: Sequence[str], bits: int, whole: _Whole) -> None:
+        """Empty arrays, for a source without points."""
+        for name, dtype, shape in (
+            ("anchors.npy", np.uint32, (0, 2)),
+            ("decoding.npy", np.uint32, (0, 3)),
+            ("reach.npy", np.uint16, (0,)),
+            ("codes.npy", np.uint8, (0,)),
+        ):
+            if name not in self._shapes:
+                self.add(name, np.empty(shape, dtype))
+        for name in per_point:
+            if name not in self._shapes:
+                empty = QuantisedPoints(np.empty(0, np.uint8 if bits == 8 else np.uint16), 0.0, 0.0, 0.0)
+                self.add(name, empty.codes)
+                whole.add_values(name, empty)
+
+    def close(self) -> None:
+        for stream in self._streams.values():
+            stream.close()
+        self._streams.clear()
+
+    def members(self) -> dict[str, Member]:
+        return {name: self._member(name) for name in self._paths}
+
+    def _member(self, name: str) -> Member:
+        dtype, shape = self._shapes[name]
+
+        def pieces() -> Iterator[bytes]:
+            with self._paths[name].open("rb") as stream:
+                while piece := stream.read(1 << 24):
+                    yield piece
+
+        return Member(dtype, shape, pieces)

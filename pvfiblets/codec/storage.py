@@ -1,0 +1,268 @@
+"""``.fiblets`` files: a FibletSet on disk, and the functions that the formats room calls for that suffix.
+
+The file is a stored zip (:mod:`.archive`): ``header.json``, then ``anchors.npy``, ``decoding.npy``, ``reach.npy``,
+``codes.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json`` names the members
+of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the file's size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, fields
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import FormatError
+from ..streamlines import Streamlines
+from .archive import Member, array_member, check_members, open_archive, write_archive
+from .compress import compress
+from .fibletset import FibletSet
+from .layout import PAGE
+from .parameters import Parameters
+from .quantised import QuantisedPoints
+
+__all__ = ["VERSION", "info", "iter_chunks", "make_header", "open_fiblets", "read", "save", "verify_file", "write"]
+
+VERSION = 1
+_CORE = ("anchors", "decoding", "reach", "codes", "pages")
+_OPTIONAL = ("anchors_low", "rank_to_id")
+_SHAPES: dict[str, tuple[str, int]] = {
+    "anchors": ("<u4", 2),
+    "decoding": ("<u4", 3),
+    "reach": ("<u2", 0),
+    "anchors_low": ("<u2", 3),
+}
+
+
+def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
+    """Write a set to disk.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        The set.
+    path : str or PathLike
+        A name ending in ``.fiblets``; written aside and renamed, so that a half-written file never bears it.
+
+    Raises
+    ------
+    OSError
+        If the place cannot be written to.
+    ValueError
+        If the header holds something that JSON cannot.
+    """
+    members = {f"{name}.npy": array_member(np.asarray(getattr(fiblets, name))) for name in _CORE}
+    for name in _OPTIONAL:
+        if getattr(fiblets, name) is not None:
+            members[f"{name}.npy"] = array_member(np.asarray(getattr(fiblets, name)))
+    header, more = make_header(fiblets, {k: array_member(np.asarray(v.codes)) for k, v in fiblets.per_point.items()})
+    write_archive(path, header, members | more)
+
+
+def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[str, Any], dict[str, Member]]:
+    """The JSON header of a set, and the members that it names."""
+    members: dict[str, Member] = {}
+
+    def name(kind: str, member: Member) -> str:
+        members[f"{kind}/{len(members)}.npy"] = member
+        return list(members)[-1]
+
+    def plain(a: Any) -> Member:
+        return array_member(np.asarray(a))
+
+    header = {
+        "format": "fiblets",
+        "version": VERSION,
+        "parameters": asdict(fiblets.parameters),
+        "bounds": list(fiblets.bounds),
+        "n_streamlines": fiblets.n_streamlines,
+        "n_points": fiblets.n_points,
+        "n_fiblets": fiblets.n_fiblets,
+        "per_point": {
+            k: {"member": name("per_point", per_point[k]), "lo": v.lo, "hi": v.hi, "max_error": v.max_error}
+            for k, v in fiblets.per_point.items()
+        },
+        "per_streamline": {k: name("per_streamline", plain(v)) for k, v in fiblets.per_streamline.items()},
+        "groups": {k: name("groups", plain(v)) for k, v in fiblets.groups.items()},
+        "per_group": {
+            g: {k: name("per_group", plain(v)) for k, v in values.items()} for g, values in fiblets.per_group.items()
+        },
+        "affine": np.asarray(fiblets.affine, float).tolist(),
+        "space": _jsonable(fiblets.space),
+        "dropped": {k: int(v) for k, v in fiblets.dropped.items()},
+    }
+    return header, members
+
+
+def open_fiblets(path: str | PathLike[str]) -> FibletSet:
+    """Map a ``.fiblets`` file.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        The file. It must stay as it is while the set is in use.
+
+    Returns
+    -------
+    FibletSet
+        Its arrays are read-only maps of the file.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, is something else, or was written by a newer version.
+    FileNotFoundError
+        If there is no such file.
+    """
+    header, arrays = open_archive(path)
+    if header.get("format") != "fiblets":
+        raise FormatError(path, 0, f"format {header.get('format')!r} in header.json", "'fiblets'")
+    version = header.get("version")
+    if not isinstance(version, int) or version < 1:
+        raise FormatError(path, 0, f"version {version!r} in header.json", f"a version of 1 to {VERSION}")
+    if version > VERSION:
+        raise FormatError(path, 0, f"version {version} in header.json", f"at most {VERSION}: update pvfiblets to read this file")
+    try:
+        fiblets = _assemble(header, arrays)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise FormatError(path, 0, f"a header.json that does not fit its members ({error!r})", "a whole .fiblets file") from error
+    _check_shapes(path, fiblets, header)
+    return fiblets
+
+
+def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
+    values = header["parameters"]
+    parameters = Parameters(
+        **{f.name: tuple(values[f.name]) if isinstance(values[f.name], list) else values[f.name] for f in fields(Parameters)}
+    )
+    numbers = [*parameters.origin, *parameters.anchor_scale, *header["bounds"]]
+    numbers += [getattr(parameters, k) for k in ("step", "step_lo", "step_hi", "lattice", "reach_scale", "promise")]
+    if len(numbers) != 18 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
+        raise ValueError("parameters out of range")
+    b = [float(v) for v in header["bounds"]]
+    return FibletSet(
+        parameters=parameters,
+        bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
+        n_streamlines=int(header["n_streamlines"]),
+        per_point={
+            k: QuantisedPoints(arrays[v["member"]], float(v["lo"]), float(v["hi"]), float(v["max_error"]))
+            for k, v in header["per_point"].items()
+        },
+        per_streamline={k: arrays[v] for k, v in header["per_streamline"].items()},
+        groups={k: arrays[v] for k, v in header["groups"].items()},
+        per_group={g: {k: arrays[v] for k, v in values.items()} for g, values in header["per_group"].items()},
+        affine=np.array(header["affine"], float).reshape(4, 4),
+        space=dict(header["space"]),
+        dropped={k: int(v) for k, v in header["dropped"].items()},
+        **{name: arrays[f"{name}.npy"] for name in _CORE},
+        **{name: arrays.get(f"{name}.npy") for name in _OPTIONAL},
+    )
+
+
+def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any]) -> None:
+    """Everything that can be checked without reading the arrays."""
+    n = int(header["n_fiblets"])
+
+    def expect(true: bool, found: str, expected: str) -> None:
+        if not true:
+            raise FormatError(path, None, found, expected)
+
+    for name, (dtype, columns) in _SHAPES.items():
+        array = getattr(f, name)
+        if array is None:
+            continue
+        shape = (n, columns) if columns else (n,)
+        expect(array.dtype == dtype and array.shape == shape, f"{name} {array.dtype}{array.shape}", f"{dtype}{shape}")
+    pages = -(-n // PAGE)
+    expect(f.codes.dtype == np.uint8 and f.codes.ndim == 1, f"codes {f.codes.dtype}{f.codes.shape}", "bytes")
+    expect(f.pages.dtype == "<i8" and f.pages.shape == (pages + 1, 3), f"pages {f.pages.shape}", f"{(pages + 1, 3)}")
+    f.pages = np.array(f.pages)  # small, and read all the time
+    table = f.pages
+    rising = bool((np.diff(table, axis=0) >= 0).all()) and bool((table >= 0).all())
+    expect(rising, "a page table that does not rise", "one that does")
+    last = table[-1]
+    expect(int(last[1]) == len(f.codes), f"{len(f.codes)} code bytes", f"the {last[1]} of the page table")
+    expect(int(last[2]) == header["n_points"], f"{header['n_points']} points", f"the {last[2]} of the page table")
+    ranks = int(last[0])
+    if f.rank_to_id is None:
+        expect(ranks == f.n_streamlines, f"{f.n_streamlines} streamlines", f"the {ranks} of the page table")
+    else:
+        expect(f.rank_to_id.shape == (ranks,), f"rank_to_id {f.rank_to_id.shape}", f"({ranks},)")
+    expect((f.anchors_low is not None) == (f.parameters.anchor_bits == 32), "anchors_low", "it with 32-bit anchors only")
+    for name, points in f.per_point.items():
+        fits = points.codes.shape == (f.n_points,) and points.codes.dtype in (np.dtype(np.uint8), np.dtype("<u2"))
+        expect(fits, f"per-point {name} {points.codes.dtype}{points.codes.shape}", f"({f.n_points},)")
+    for name, rows in f.per_streamline.items():
+        expect(rows.ndim > 0 and len(rows) == f.n_streamlines, f"per-streamline {name} {rows.shape}", f"{f.n_streamlines}")
+
+
+def verify_file(path: str | PathLike[str]) -> None:
+    """Check a file's every byte against its checksums, and its records for sense.
+
+    Raises
+    ------
+    FormatError
+        Naming what is damaged.
+    """
+    from .check import check_records
+
+    fiblets = open_fiblets(path)
+    damaged = check_members(path)
+    if damaged:
+        raise FormatError(path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again")
+    check_records(fiblets, path)
+
+
+# ---------------------------------------------------------------------------------- what the formats room calls
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
+    """Decode a whole file; see :func:`pvfiblets.read`."""
+    del progress  # decoding outruns the bar
+    return open_fiblets(path).decompress()
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
+    yield from open_fiblets(path).iter_chunks(max_points)
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Compress with default settings, every per-point array kept at one byte a point, and save."""
+    compress(streamlines, per_point=tuple(streamlines.per_point)).save(path)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Header facts, in constant time."""
+    f = open_fiblets(path)
+    return {
+        "format": "fiblets",
+        "path": fspath(path),
+        "streamlines": f.n_streamlines,
+        "points": f.n_points,
+        "fiblets": f.n_fiblets,
+        "bytes": f.nbytes,
+        "step_mm": f.step,
+        "promise_mm": f.promise,
+        "bounds_mm": list(f.bounds),
+        "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
+        "per_streamline": sorted(f.per_streamline),
+        "groups": {k: len(v) for k, v in f.groups.items()},
+        "affine": f.affine.tolist(),
+        "dropped": f.dropped,
+    }
+
+
+def _jsonable(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(k): _jsonable(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_jsonable(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return _jsonable(value.tolist())
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
