@@ -189,10 +189,14 @@ def encode_directions(
                 step_index[slot] = index
                 smallest = _smallest_cap(true, n, tables[2])
                 best, mine, used = math.inf, 0, 0
-                for cap in range(max(smallest - 1, 0), min(smallest + 3, len(tables[2]))):
-                    score = _beam(true, n, step, cap, give_up, tables, near, scratch, trial[1 - mine])
-                    if score < best:
-                        best, mine, used = score, 1 - mine, cap
+                # Half the promise first: a low mean is not worth a point near the limit.
+                for bound in (0.25 * give_up, give_up):
+                    for cap in range(max(smallest - 1, 0), min(smallest + 3, len(tables[2]))):
+                        score = _beam(true, n, step, cap, bound, tables, near, scratch, trial[1 - mine])
+                        if score < best:
+                            best, mine, used = score, 1 - mine, cap
+                    if best < math.inf:
+                        break
                 if best < math.inf:
                     shape[slot] = pack_direction(true[1, 0] - anchor[0], true[1, 1] - anchor[1], true[1, 2] - anchor[2])
                     cap_index[slot] = used

@@ -15,7 +15,7 @@ import numpy as np
 from .layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .nearest import CELLS, EXTENT
 
-__all__ = ["encode_directions", "first_frame", "longest_segment", "pack_direction", "quantise"]
+__all__ = ["encode_directions", "first_frame", "pack_direction", "quantise", "scan"]
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
@@ -24,18 +24,32 @@ _parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
 @_parallel  # type: ignore[untyped-decorator]
-def longest_segment(points: Any, offsets: Any) -> float:
-    """Longest segment of all streamlines, mm."""
-    longest = 0.0
-    for s in numba.prange(len(offsets) - 1):
-        mine = 0.0
-        for i in range(offsets[s] + 1, offsets[s + 1]):
-            dx = np.float64(points[i, 0]) - np.float64(points[i - 1, 0])
-            dy = np.float64(points[i, 1]) - np.float64(points[i - 1, 1])
-            dz = np.float64(points[i, 2]) - np.float64(points[i - 1, 2])
-            mine = max(mine, dx * dx + dy * dy + dz * dz)
-        longest = max(longest, mine)
-    return math.sqrt(longest)
+def scan(points: Any, offsets: Any, found: Any) -> None:
+    """Bounds and longest squared segment, by thousands of streamlines.
+
+    ``found`` is ``(ceil(n_streamlines / 1024), 7)`` float64: least x, y, z; greatest x, y, z; longest segment squared. A
+    coordinate that is not finite makes the row's bounds infinite.
+    """
+    n = len(offsets) - 1
+    for row in numba.prange(len(found)):
+        for axis in range(3):
+            found[row, axis] = math.inf
+            found[row, 3 + axis] = -math.inf
+        found[row, 6] = 0.0
+        for s in range(row * 1024, min((row + 1) * 1024, n)):
+            for i in range(offsets[s], offsets[s + 1]):
+                squares = 0.0
+                for axis in range(3):
+                    value = np.float64(points[i, axis])
+                    if not math.isfinite(value):
+                        found[row, axis] = -math.inf
+                        found[row, 3 + axis] = math.inf
+                        continue
+                    found[row, axis] = min(found[row, axis], value)
+                    found[row, 3 + axis] = max(found[row, 3 + axis], value)
+                    if i > offsets[s]:
+                        squares += (value - np.float64(points[i - 1, axis])) ** 2
+                found[row, 6] = max(found[row, 6], squares)
 
 
 @_jit  # type: ignore[untyped-decorator]

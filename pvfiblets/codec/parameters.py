@@ -66,30 +66,31 @@ class Survey:
                 self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
         if not len(points):
             return
-        lower, upper = points.min(0).astype(np.float64), points.max(0).astype(np.float64)
+        from .kernels import scan  # numba loads only when something is compressed
+
+        rows = np.empty((-(-len(streamlines) // 1024), 7))
+        scan(points, streamlines.offsets, rows)
+        lower, upper, longest = rows[:, :3].min(0), rows[:, 3:6].max(0), float(np.sqrt(rows[:, 6].max()))
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
             bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise ValueError(
                 f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair that point"
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
-        lengths, longest = _segments(points, streamlines.offsets)
         self.longest = max(self.longest, longest)
-        self.sample.append(lengths)
+        self.sample.append(_segments(points, streamlines.offsets))
 
 
-def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> tuple[Vector, float]:
-    """Evenly sampled segment lengths, and the longest of all."""
-    from .kernels import longest_segment
-
-    longest = float(longest_segment(points, offsets))
+def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> Vector:
+    """Lengths of evenly sampled segments, mm."""
     n = max(len(points) - 1, 0)
     first = np.arange(0, n, max(1, n // SAMPLE))
     joins = np.searchsorted(offsets, first + 1)  # a segment that would cross into the next streamline is none
     inside = offsets[np.minimum(joins, len(offsets) - 1)] != first + 1
     first = first[inside]
     delta = points[first + 1].astype(np.float64) - points[first].astype(np.float64)
-    return np.sqrt((delta**2).sum(1)), longest
+    lengths: Vector = np.sqrt((delta**2).sum(1))
+    return lengths
 
 
 def survey(chunks: Iterable[Streamlines], per_point: Iterable[str] = ()) -> Survey:
