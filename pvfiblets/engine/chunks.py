@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from ..codec import layout
 from .errors import EngineError
+from .passes import is_software
 
 __all__ = ["Chunk", "ChunkPlan", "FibletData", "plan_chunks", "storage_buffer", "upload_chunk"]
 
@@ -250,9 +251,8 @@ def _with_next(array: npt.NDArray[Any], first: int, last: int) -> npt.NDArray[An
 
 def available_memory(ctx: moderngl.Context) -> int | None:
     """Bytes that buffers can still take, where it can be known beforehand: software OpenGL on Linux."""
-    renderer = str(ctx.info["GL_RENDERER"]).lower()
     table = Path("/proc/meminfo")
-    if not any(name in renderer for name in ("llvmpipe", "softpipe", "swrast")) or not table.is_file():
+    if not is_software(ctx) or not table.is_file():
         return None
     for line in table.read_text(encoding="ascii").splitlines():
         if line.startswith("MemAvailable:"):

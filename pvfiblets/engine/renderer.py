@@ -14,6 +14,7 @@ from .gbuffer import GBuffer
 from .passes import Passes
 from .pipelines.compute import CONSTANTS, ComputePipeline
 from .shaders import Programs
+from .values import ValueSources
 from .view import Style, View
 
 __all__ = ["FibletRenderer"]
@@ -70,14 +71,15 @@ class FibletRenderer:
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
         self._features: list[str] = []
+        self._values: ValueSources | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         limit = int(ctx.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
         groups = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
         try:
             self._upload(min(limit, max_buffer_bytes or limit), max_total_bytes, progress)
-            self._pipeline = ComputePipeline(
-                ctx, self._programs, self._buffers["directions"], min(groups, max_groups or groups)
-            )
+            groups = min(groups, max_groups or groups)
+            self._pipeline = ComputePipeline(ctx, self._programs, groups)
+            self._values = ValueSources(ctx, self._programs, fiblets, self._chunks, groups)
         except BaseException:
             self.release()
             raise
@@ -122,17 +124,20 @@ class FibletRenderer:
             After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
         """
         style = style or Style()
-        if self._pipeline is None:
-            raise EngineError("this renderer has been released; make a new one")
+        pipeline, values = self._alive()
         if self._target is not None and self._drawn == (view, style):
             return self._target
+        self._drawn = None
         if self._target is None or self._target.size != view.size:
             if self._target is not None:
                 self._target.release()
                 self._target = None
             self._target = GBuffer(self._ctx, view.size)
-        self._drawn = None
-        self._features = self._active_features(style)
+        self._bind_shared()
+        features = self._decoding_features()
+        source = values.activate(style.values, features)
+        features += ["WIDE_LINES"] if style.line_width > 1.0 else []
+        self._features = features + ([source] if source else [])
         block = frame_block(
             view,
             style.line_width,
@@ -141,18 +146,46 @@ class FibletRenderer:
             self._top,
         )
         self._buffers["frame"].write(block)
-        self._buffers["frame"].bind_to_uniform_block(0)
-        self._buffers["coding"].bind_to_uniform_block(1)
         self._passes.begin()
-        self._pipeline.draw(self._chunks, self._target, self._features, self._passes)
+        pipeline.draw(self._chunks, self._target, self._features, self._passes)
         self._generation += 1
         self._target.generation = self._generation
         self._drawn = (view, style)
         return self._target
 
-    def _active_features(self, style: Style) -> list[str]:
-        if style.values is not None:
-            raise EngineError(f"style.values is {style.values!r}; the fiblets hold no such array")
+    def value_range(self, values: str) -> tuple[float, float]:
+        """Return the least and the greatest of a per-point value, for a colour map's range.
+
+        Parameters
+        ----------
+        values : str
+            As in :class:`Style`. Arc length and curvature are measured on the GPU, once.
+
+        Returns
+        -------
+        tuple of float
+            Of a stored array: the range that its codes span.
+
+        Raises
+        ------
+        EngineError
+            If there is no such array, or after :meth:`release`.
+        """
+        sources = self._alive()[1]
+        self._bind_shared()
+        return sources.range(values, self._decoding_features())
+
+    def _alive(self) -> tuple[ComputePipeline, ValueSources]:
+        if self._pipeline is None or self._values is None:
+            raise EngineError("this renderer has been released; make a new one")
+        return self._pipeline, self._values
+
+    def _bind_shared(self) -> None:
+        self._buffers["frame"].bind_to_uniform_block(0)
+        self._buffers["coding"].bind_to_uniform_block(1)
+        self._buffers["directions"].bind_to_storage_buffer(3)
+
+    def _decoding_features(self) -> list[str]:
         kinds = frozenset().union(*(chunk.kinds for chunk in self._chunks))
         wanted = {
             "ANCHORS_LOW": self._fiblets.anchors_low is not None,
@@ -160,7 +193,6 @@ class FibletRenderer:
             "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
             "WIDE_LATTICE": layout.Kind.WIDE in kinds,
             "RANK_TO_ID": self._fiblets.rank_to_id is not None,
-            "WIDE_LINES": style.line_width > 1.0,
         }
         return [name for name, on in wanted.items() if on]
 
@@ -195,7 +227,7 @@ class FibletRenderer:
         self._buffers.clear()
         if self._pipeline is not None:
             self._pipeline.release()
-            self._pipeline = None
+            self._pipeline = self._values = None
         if self._target is not None:
             self._target.release()
             self._target = None

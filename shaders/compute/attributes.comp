@@ -48,7 +48,7 @@ uint packed_direction(vec3 d) {
 void start_segment(uint segment, vec3 delta) {
     float size = max(abs(delta.x), max(abs(delta.y), abs(delta.z)));
     if (size > 0.0) tangent = normalize(delta / size);
-    start_values(segment);
+    start_values(segment, delta);
 }
 
 void plot(ivec2 pixel, float z, float s, uint segment) {

@@ -50,21 +50,18 @@ class ComputePipeline:
     ----------
     ctx : moderngl.Context
     programs : Programs
-    table : moderngl.Buffer
-        The direction table.
     max_groups : int
         Work groups per axis of a dispatch.
     """
 
-    def __init__(self, ctx: moderngl.Context, programs: Programs, table: moderngl.Buffer, max_groups: int) -> None:
+    def __init__(self, ctx: moderngl.Context, programs: Programs, max_groups: int) -> None:
         self._ctx = ctx
         self._programs = programs
-        self._table = table
         self._max_groups = max_groups
         self._status = ctx.buffer(reserve=16)
 
     def draw(self, chunks: Sequence[Chunk], target: GBuffer, features: Iterable[str], passes: Passes) -> None:
-        """Draw all chunks; the ``Frame`` and ``Coding`` blocks are bound already.
+        """Draw all chunks; the ``Frame`` and ``Coding`` blocks and the direction table are bound already.
 
         Parameters
         ----------
@@ -84,7 +81,6 @@ class ComputePipeline:
         target.owner.bind_to_image(1, read=True, write=True)
         target.ids.bind_to_image(2, read=False, write=True)
         target.position.bind_to_image(3, read=False, write=True)
-        self._table.bind_to_storage_buffer(3)
         self._status.write(bytes(16))
         with passes.timed("clear"):
             dispatch(clear, target.size[1], self._max_groups)

@@ -1,0 +1,250 @@
+"""Per-point values on the GPU, made when a style asks for them and dropped when it no longer does.
+
+============================  ==========================================  ==============================
+value                         what the GPU holds for it                   unit
+============================  ==========================================  ==============================
+a name in ``per_point``       its codes, one or two bytes per point       the array's own
+``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
+``'curvature'``               a float32 per fiblet: the anchor's          1/mm
+============================  ==========================================  ==============================
+
+Curvature at a point is the angle between the segments before and after it over half their joint length; the ends of a
+streamline take their neighbour's. It is that of the decoded points, so that it carries the codec's error: a tenth of a
+step is a tenth of a radian per step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ..codec import layout
+from .chunks import Chunk, FibletData, storage_buffer
+from .errors import EngineError
+from .passes import dispatch
+from .shaders import Programs
+
+__all__ = ["ValueSources"]
+
+ARC_LENGTH, CURVATURE = "arc_length", "curvature"
+BATCH = 1 << 16  # fiblets measured at a time: 3 MB
+MEASURE_BINDINGS = {"anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "anchors_low": 8}
+GROUP_SIZE = 64
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass
+class _Measures:
+    """What ``measure.comp`` says of some consecutive fiblets, in float64."""
+
+    begin: npt.NDArray[np.bool_]
+    end: npt.NDArray[np.bool_]
+    single: npt.NDArray[np.bool_]  # fiblets of one point
+    first: Floats
+    joint: Floats
+    length: Floats
+    last_turn: Floats
+    least: Floats
+    greatest: Floats
+    first_turn: Floats
+
+
+class ValueSources:
+    """Keeps the buffers of the one active per-point value.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    programs : Programs
+    fiblets : FibletData
+    chunks : sequence of Chunk
+        Gain and lose the buffers ``values`` and ``starts``.
+    max_groups : int
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        programs: Programs,
+        fiblets: FibletData,
+        chunks: Sequence[Chunk],
+        max_groups: int,
+    ) -> None:
+        self._ctx = ctx
+        self._programs = programs
+        self._fiblets = fiblets
+        self._chunks = chunks
+        self._max_groups = max_groups
+        self._active: str | None = None
+        self._ranges: dict[str, tuple[float, float]] = {}
+
+    def activate(self, name: str | None, features: Sequence[str]) -> str | None:
+        """Make the buffers of a value, and drop those of the last one.
+
+        Parameters
+        ----------
+        name : str, optional
+            ``Style.values``.
+        features : sequence of str
+            What the fiblets need to be decoded.
+
+        Returns
+        -------
+        str or None
+            The feature that reads them.
+
+        Raises
+        ------
+        EngineError
+            If there is no such array, or memory does not suffice.
+        """
+        if name is not None:
+            self._check(name)
+        if name != self._active:
+            self._drop()
+            if name in (ARC_LENGTH, CURVATURE):
+                self._make_starts(name, features)
+            elif name is not None:
+                self._copy_stored(name)
+            self._active = name
+        if name is None:
+            return None
+        return {ARC_LENGTH: "VALUES_ARC_LENGTH", CURVATURE: "VALUES_CURVATURE"}.get(name, "VALUES_STORED")
+
+    def range(self, name: str, features: Sequence[str]) -> tuple[float, float]:
+        """Least and greatest value over all points; see :meth:`FibletRenderer.value_range`."""
+        self._check(name)
+        if name not in (ARC_LENGTH, CURVATURE):
+            stored = self._fiblets.per_point[name]
+            return float(stored.lo), float(stored.hi)
+        if name not in self._ranges:
+            for _ in self._starts(name, features):
+                pass
+        return self._ranges[name]
+
+    def _check(self, name: str) -> None:
+        if name not in (ARC_LENGTH, CURVATURE) and name not in self._fiblets.per_point:
+            raise EngineError(
+                f"the fiblets hold no per-point array {name!r}; there are "
+                f"{sorted(self._fiblets.per_point)}, {ARC_LENGTH!r} and {CURVATURE!r}"
+            )
+
+    def _drop(self) -> None:
+        for chunk in self._chunks:
+            for key in ("values", "starts"):
+                if key in chunk.buffers:
+                    chunk.buffers.pop(key).release()
+        self._active = None
+
+    def _copy_stored(self, name: str) -> None:
+        stored = self._fiblets.per_point[name]
+        bits = stored.codes.dtype.itemsize * 8
+        scale = (stored.hi - stored.lo) / (2**bits - 2)
+        for chunk in self._chunks:
+            first, last = chunk.plan.points
+            # One more point: the chunk's last fiblet may be joined to the next chunk's first.
+            codes = np.asarray(stored.codes[first : last + 1])
+            chunk.buffers["values"] = storage_buffer(self._ctx, codes, name)
+            chunk.buffers["chunk"].write(np.uint32(bits).tobytes(), offset=20)
+            chunk.buffers["chunk"].write(np.array([stored.lo, scale], "<f4").tobytes(), offset=32)
+
+    def _make_starts(self, name: str, features: Sequence[str]) -> None:
+        starts = dict(enumerate(self._starts(name, features)))
+        for index, chunk in enumerate(self._chunks):
+            following = starts[index + 1][:1] if index + 1 in starts else np.zeros(1)
+            values = np.concatenate([starts[index], following]).astype("<f4")
+            chunk.buffers["starts"] = storage_buffer(self._ctx, values, name)
+
+    def _starts(self, name: str, features: Sequence[str]) -> Iterator[Floats]:
+        """Yield the value at every anchor, chunk by chunk, and note its range."""
+        make = _arc_lengths if name == ARC_LENGTH else _curvatures
+        carry: Any = None
+        low, high = np.inf, -np.inf
+        for chunk in self._chunks:
+            values, carry, extremes = make(self._measure(chunk, features), carry)
+            low, high = min(low, extremes[0]), max(high, extremes[1])
+            yield values
+        self._ranges[name] = (float(low), float(high)) if low <= high else (0.0, 0.0)
+
+    def _measure(self, chunk: Chunk, features: Sequence[str]) -> _Measures:
+        program = self._programs.compute("compute/measure.comp", features)
+        chunk.buffers["chunk"].bind_to_uniform_block(2)
+        for key, binding in MEASURE_BINDINGS.items():
+            if key in chunk.buffers:
+                chunk.buffers[key].bind_to_storage_buffer(binding)
+        rows = np.empty((chunk.n_fiblets, 12), "<f4")
+        scratch = storage_buffer(self._ctx, bytes(min(BATCH, chunk.n_fiblets) * 48), "measures")
+        try:
+            scratch.bind_to_storage_buffer(12)
+            for first in range(0, chunk.n_fiblets, BATCH):
+                size = min(BATCH, chunk.n_fiblets - first)
+                program["batch_first"], program["batch_size"] = first, size
+                dispatch(program, -(-size // GROUP_SIZE), self._max_groups)
+                self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+                batch = np.frombuffer(scratch.read(size * 48), "<f4").reshape(-1, 12)
+                rows[first : first + size] = batch
+        finally:
+            scratch.release()
+        begin, end = chunk.plan.fiblets
+        words = np.asarray(self._fiblets.anchors[begin:end])
+        m = rows.astype(np.float64)
+        return _Measures(
+            begin=layout.unpack("begin", words) == 1,
+            end=layout.unpack("end", words) == 1,
+            single=layout.unpack("last", np.asarray(self._fiblets.decoding[begin:end])) == 0,
+            first=m[:, 0:3],
+            length=m[:, 3],
+            joint=m[:, 4:7],
+            last_turn=m[:, 7],
+            least=m[:, 8],
+            greatest=m[:, 9],
+            first_turn=m[:, 10],
+        )
+
+
+def _arc_lengths(m: _Measures, carry: float | None) -> tuple[Floats, float, tuple[float, float]]:
+    """Arc length at every anchor; ``carry`` is that at the chunk's first, if a streamline runs into it."""
+    before = np.cumsum(m.length) - m.length
+    streamline = np.maximum.accumulate(np.where(m.begin, np.arange(len(m.begin)), -1))
+    starts = before - np.where(streamline >= 0, before[streamline], -(carry or 0.0))
+    ends = starts + m.length
+    return starts, float(ends[-1]), (0.0, float(ends.max()))
+
+
+def _curvatures(m: _Measures, carry: Any) -> tuple[Floats, Any, tuple[float, float]]:
+    """Curvature at every anchor; ``carry`` is the joint, last turn, curvature and singleness of the fiblet before."""
+    n = len(m.begin)
+    joint0, turn0, start0, single0 = carry or (np.zeros(3), 0.0, 0.0, False)
+    joint = np.concatenate([[joint0], m.joint[:-1]])
+    starts = _turns(joint, m.first)
+    # A streamline's first point takes the turn at its second.
+    starts[m.begin] = m.first_turn[m.begin]
+    alone = np.flatnonzero(m.begin & m.single & ~m.end)  # its second point is the next fiblet's anchor
+    alone = alone[alone + 1 < n]
+    starts[alone] = np.where(m.end[alone + 1] & m.single[alone + 1], 0.0, starts[np.minimum(alone + 1, n - 1)])
+    # A last point that is an anchor takes the turn at the point before it.
+    tail = np.flatnonzero(m.end & m.single & ~m.begin)
+    turns = np.concatenate([[turn0], m.last_turn[:-1]])
+    singles = np.concatenate([[single0], m.single[:-1]])
+    anchors_before = np.concatenate([[start0], starts[:-1]])
+    starts[tail] = np.where(singles[tail], anchors_before[tail], turns[tail])
+    turned = m.greatest >= m.least
+    low = min(float(starts.min()), float(m.least[turned].min(initial=np.inf)))
+    high = max(float(starts.max()), float(m.greatest[turned].max(initial=-np.inf)))
+    return starts, (m.joint[-1], m.last_turn[-1], starts[-1], bool(m.single[-1])), (low, high)
+
+
+def _turns(a: Floats, b: Floats) -> Floats:
+    """``turn()`` of ``shaders/compute/turn.glsl`` on rows."""
+    la, lb = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
+    good = (la > 0.0) & (lb > 0.0)
+    a = a / np.where(good, la, 1.0)[:, None]
+    b = b / np.where(good, lb, 1.0)[:, None]
+    angle = 2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
+    return np.where(good, 2.0 * angle / np.where(good, la + lb, 1.0), 0.0)
