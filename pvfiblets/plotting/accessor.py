@@ -11,7 +11,7 @@ from pvfiblets.plotting.sources import as_fiblets
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
-    from pvfiblets.codec import FibletSet
+    from pvfiblets.codec.fibletset import FibletSet
 
 
 @pv.register_dataset_accessor("fiblets", pv.PolyData)

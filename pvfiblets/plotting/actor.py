@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import weakref
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import FibletMapper
+from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
 from pvfiblets.plotting.scalars import Scalars, find_scalars
 from pvfiblets.plotting.sources import with_point_values
@@ -16,7 +15,7 @@ from pvfiblets.plotting.sources import with_point_values
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from pvfiblets.codec import FibletSet
+    from pvfiblets.codec.fibletset import FibletSet
 
 
 class PlottedMapper(FibletMapper):
@@ -28,23 +27,19 @@ class PlottedMapper(FibletMapper):
         What to draw.
     """
 
-    def attach(self, actor: FibletActor) -> None:
-        """Tell the mapper whose colours it shows."""
-        self._actor = weakref.ref(actor)
-
     @property
     def lookup_table(self) -> pv.LookupTable:
         """The table that colours both the picture and the scalar bar."""
-        return self._actor().lookup_table
+        return self.actor.lookup_table
 
     @property
     def scalar_range(self) -> tuple[float, float]:
         """Values of the first and last colour; bars that several actors share set it."""
-        return self._actor().clim
+        return self.actor.clim
 
     @scalar_range.setter
     def scalar_range(self, clim: tuple[float, float]) -> None:
-        self._actor().clim = clim
+        self.actor.clim = clim
 
 
 class FibletActor(pv.Actor):
@@ -95,13 +90,17 @@ class FibletActor(pv.Actor):
         self._table = pv.LookupTable()
         self._bar_changed: Callable[[FibletActor], None] | None = None
         mapper = PlottedMapper(fiblets)
-        super().__init__(mapper=mapper, prop=pv.Property(theme=theme), name=name)
+        super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
         self.prop.opacity = _fraction(opacity)
         self.prop.lighting = theme.lighting if lighting is None else bool(lighting)
         self.line_width = theme.line_width if line_width is None else line_width
         self._recolour()
+
+    def __repr__(self) -> str:
+        colours = "one colour" if self._scalars is None else self._scalars.name
+        return f"<{type(self).__name__} {self.name!r}: {self._fiblets!r}, coloured by {colours}>"
 
     # Data ---------------------------------------------------------------------------------------
 
@@ -113,19 +112,31 @@ class FibletActor(pv.Actor):
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        self._mapper.set_fiblets(fiblets)
-        self._fiblets = fiblets
+        self._draw(fiblets)
         self._show(scalars)
 
     def explain(self) -> dict[str, Any]:
-        """Return what drawing this actor costs: passes, shader features, buffers, milliseconds.
+        """Return what is active for this actor and what it costs, over all windows that show it.
 
         Returns
         -------
         dict
-            As the engine reports it; see :meth:`pvfiblets.engine.FibletRenderer.explain`.
+            ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
+            shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
+            their sum; ``fiblets_total``.
         """
-        return self._mapper.explain()
+        report = self._mapper.explain()
+        windows = report["windows"]
+        buffers = [buffer for window in windows for buffer in window["buffers"]]
+        buffers += report["textures"]
+        features = {feature for window in windows for feature in window["features"]}
+        return {
+            "passes": [item for window in windows for item in window["passes"]],
+            "features": sorted(features | set(report["features"])),
+            "buffers": buffers,
+            "gpu_bytes": sum(buffer["bytes"] for buffer in buffers),
+            "fiblets_total": self._fiblets.n_fiblets,
+        }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
         """Return the streamline id and the position along it (in points) at a window pixel.
@@ -154,8 +165,7 @@ class FibletActor(pv.Actor):
         fiblets, scalars = with_point_values(self._fiblets, scalars)
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:
-            self._mapper.set_fiblets(fiblets)
-            self._fiblets = fiblets
+            self._draw(fiblets)
         before, self._choice = self._choice, scalars
         try:
             self._show(found)
@@ -286,6 +296,13 @@ class FibletActor(pv.Actor):
         self._bar_changed = bar_changed
 
     # Inside -------------------------------------------------------------------------------------
+
+    def _draw(self, fiblets: FibletSet) -> None:
+        """Give the mapper other fiblets; colours for another number of streamlines go first."""
+        if fiblets.n_streamlines != self._fiblets.n_streamlines:
+            self._mapper.colouring = Colouring()
+        self._mapper.set_fiblets(fiblets)
+        self._fiblets = fiblets
 
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:

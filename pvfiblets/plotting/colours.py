@@ -128,16 +128,14 @@ def make_colouring(
         )
     if not scalars.mapped:
         return Colouring(mode=scalars.kind, values=scalars.values)
-    low, high = table.scalar_range
-    if high <= low:  # all values alike: a hair of width keeps the shader from dividing by zero
-        high = low + max(abs(low) * 1e-6, 1e-12)
     return Colouring(
         mode=scalars.kind,
-        values=scalars.name if scalars.values is None else scalars.values,
+        values=scalars.values,
+        source=scalars.name if scalars.values is None else None,
         lut=np.asarray(table.values, dtype=np.uint8),
-        clim=(low, high),
+        clim=tuple(table.scalar_range),
         log_scale=bool(settings.log_scale),
-        nan_color=_rgba(table.nan_color),
+        nan_color=pv.Color(table.nan_color).float_rgba,
         below_color=_rgba(table.below_range_color),
         above_color=_rgba(table.above_range_color),
     )

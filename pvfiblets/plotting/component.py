@@ -24,7 +24,7 @@ from pvfiblets.plotting.sources import as_fiblets
 if TYPE_CHECKING:
     from os import PathLike
 
-    from pvfiblets.codec import FibletSet
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.streamlines import Streamlines
 
     Source = str | PathLike | FibletSet | Streamlines | pv.PolyData | list

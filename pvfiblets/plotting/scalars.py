@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from pvfiblets.codec import FibletSet
+    from pvfiblets.codec.fibletset import FibletSet
 
 ORIENTATION = "orientation"
 BUILT_IN = (ORIENTATION, "length", "curvature", "arc_length")
@@ -34,7 +34,7 @@ class Scalars:
     kind : {"orientation", "streamline_rgb", "streamline_scalar", "point_value"}
         How the mapper has to use them.
     values : array, optional
-        (n_streamlines,) float64 or (n_streamlines, 3) uint8.
+        (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
     range : tuple of float
         Least and largest finite value.
     positive : float
@@ -119,8 +119,7 @@ def missing_message(fiblets: FibletSet, name: str) -> str:
 def per_streamline(name: str, values: Any, n_streamlines: int) -> Scalars:
     """Make :class:`Scalars` of one number, or one colour, per streamline.
 
-    Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1. An alpha column is
-    ignored; the actor's ``opacity`` is for that.
+    Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
     """
     values = np.asarray(values)
     if values.ndim == 2 and values.shape[1] == 1:
@@ -148,7 +147,7 @@ def per_streamline(name: str, values: Any, n_streamlines: int) -> Scalars:
             f"scalars {name!r} have {values.shape[1]} columns; expected 1 (numbers), or 3 or 4 "
             "(colours). Pick a column, or take a norm, first"
         )
-    colours = values[:, :3]
+    colours = values
     if values.dtype.kind == "f":
         if np.nanmin(colours, initial=0.0) < 0.0 or np.nanmax(colours, initial=0.0) > 1.0:
             raise ValueError(

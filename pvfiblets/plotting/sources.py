@@ -12,7 +12,8 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets import formats
-from pvfiblets.codec import FibletSet, compress
+from pvfiblets.codec.compress import compress
+from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.plotting.scalars import UNNAMED
 from pvfiblets.streamlines import Streamlines

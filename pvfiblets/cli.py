@@ -1,0 +1,210 @@
+"""The ``pvfiblets`` command.
+
+Exit codes: 0 when it did what was asked, 1 when it could not, with one plain sentence on standard
+error, 2 when it was called wrongly. With ``--json`` the result is one JSON object on standard
+output and nothing else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from pvfiblets.errors import FibletsError
+
+VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
+
+# What bad input and a bad environment raise. Anything else is a mistake in this program, and its
+# traceback is worth more than a sentence.
+EXPECTED = (FibletsError, OSError, ValueError, KeyError, TypeError, ImportError, MemoryError)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Instead of the command line.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    options = vars(make_parser().parse_args(arguments))
+    debug = options.pop("debug")
+    module, function = options.pop("run").split(":")
+    try:
+        return getattr(import_module(module), function)(**options) or 0
+    except BrokenPipeError:  # the reader of our output, such as `head`, has gone: not an error
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("pvfiblets: interrupted", file=sys.stderr)
+        return 1
+    except EXPECTED as error:
+        if debug:
+            raise
+        print(f"pvfiblets: {sentence(error)}", file=sys.stderr)
+        return 1
+
+
+def sentence(error: BaseException) -> str:
+    """Return an error's message as one line."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        text = f"{error.filename}: {error.strerror}"
+    elif isinstance(error, KeyError) and error.args:
+        text = str(error.args[0])
+    else:
+        text = str(error)
+    return " ".join(text.split()) or type(error).__name__
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(
+        prog="pvfiblets", description="Compress, check and draw tractograms of any size."
+    )
+    parser.add_argument("--version", action=_Version)
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    convert = commands.add_parser(
+        "convert",
+        help="compress a tractogram, or write it in another format",
+        description="Compress IN to a .fiblets file, or convert between any two formats; the suffixes say which.",
+    )
+    convert.add_argument("source", metavar="IN")
+    convert.add_argument("target", metavar="OUT")
+    convert.add_argument(
+        "--step", type=positive, metavar="MM", help="resample to this distance between points (default: keep points)"
+    )
+    convert.add_argument(
+        "--max-error", type=positive, metavar="MM", help="greatest error of any point (default: a tenth of a step)"
+    )
+    convert.add_argument(
+        "--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error, same size"
+    )
+    convert.add_argument(
+        "--per-point",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="keep this per-point array; may be given several times (default: keep none)",
+    )
+    convert.add_argument(
+        "--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)"
+    )
+    _quiet_and_json(convert)
+    convert.set_defaults(run="pvfiblets.cli_files:convert")
+
+    info = commands.add_parser("info", help="say what a file holds")
+    info.add_argument("path", metavar="FILE")
+    _json(info)
+    info.set_defaults(run="pvfiblets.cli_files:info")
+
+    verify = commands.add_parser(
+        "verify",
+        help="check a .fiblets file against its checksums and against its original",
+        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL. "
+        "Fails if the file is damaged or an error is greater than the file promises.",
+    )
+    verify.add_argument("path", metavar="FILE")
+    verify.add_argument("original", metavar="ORIGINAL", nargs="?")
+    _quiet_and_json(verify)
+    verify.set_defaults(run="pvfiblets.cli_files:verify")
+
+    screenshot = commands.add_parser("screenshot", help="draw files into a PNG, without a display")
+    _scene(screenshot)
+    screenshot.add_argument("-o", "--output", required=True, metavar="PNG")
+    screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
+    screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
+    screenshot.set_defaults(run="pvfiblets.cli_pictures:screenshot")
+
+    show = commands.add_parser("show", help="open files in a window")
+    _scene(show)
+    show.set_defaults(run="pvfiblets.cli_pictures:show")
+
+    demo = commands.add_parser(
+        "demo", help="make, compress and draw a whole-brain-like tractogram, and print size and error"
+    )
+    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="default: %(default)s")
+    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="default: %(default)s")
+    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="default: %(default)s")
+    demo.add_argument("--seed", type=int, default=0)
+    _json(demo)
+    demo.set_defaults(run="pvfiblets.cli_pictures:demo")
+    return parser
+
+
+def _json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+
+
+def _quiet_and_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    _json(parser)
+
+
+def _scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("paths", metavar="FILE", nargs="+", help="tractograms of any format; meshes are drawn too")
+    parser.add_argument(
+        "--view", choices=VIEWS, default="oblique", help="from where (default: oblique; coronal is seen from the front)"
+    )
+    parser.add_argument(
+        "--scalars", metavar="NAME", help="orientation, length, curvature, arc_length or an array of the file"
+    )
+    parser.add_argument("--color", help="one colour for all, such as white or #ff8800")
+    parser.add_argument("--cmap", help="colour map, such as viridis")
+    parser.add_argument("--clim", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colour map")
+    parser.add_argument("--line-width", type=positive, metavar="PIXELS")
+    parser.add_argument("--opacity", type=float, default=1.0)
+    parser.add_argument("--background", default="black", metavar="COLOR")
+    parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
+
+
+def positive(text: str) -> float:
+    """Parse a finite number above zero."""
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return value
+
+
+def count(text: str) -> int:
+    """Parse a whole number above zero."""
+    if (value := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return value
+
+
+def size(text: str) -> tuple[int, int]:
+    """Parse ``WIDTHxHEIGHT`` in pixels."""
+    width, by, height = text.lower().partition("x")
+    if not (by and width.isdigit() and height.isdigit()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, such as 1200x900")
+    pixels = int(width), int(height)
+    if not all(1 <= side <= 16384 for side in pixels):
+        raise argparse.ArgumentTypeError(f"{text}: each side must be from 1 to 16384 pixels")
+    return pixels
+
+
+class _Version(argparse.Action):
+    """Print the versions that a report of a problem needs."""
+
+    def __init__(self, option_strings: Sequence[str], **_: object) -> None:
+        super().__init__(option_strings, dest=argparse.SUPPRESS, nargs=0, help="print the version")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"pvfiblets {version('pvfiblets')} (pyvista {version('pyvista')}, vtk {version('vtk')})")
+        parser.exit()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,216 @@
+"""What ``pvfiblets convert``, ``info`` and ``verify`` do."""
+
+from __future__ import annotations
+
+import json as json_
+import math
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pvfiblets import formats
+from pvfiblets.errors import FibletsError
+
+COMPRESSED = ".fiblets"
+
+
+class VerificationError(FibletsError):
+    """A file is damaged, or farther from its original than it promises."""
+
+
+def convert(
+    source: str,
+    target: str,
+    *,
+    step: float | None,
+    max_error: float | None,
+    effort: str,
+    per_point: list[str],
+    per_point_bits: int,
+    quiet: bool,
+    json: bool,
+) -> None:
+    """Compress a file, or write it in another format."""
+    if Path(source).resolve() == Path(target).resolve():
+        raise ValueError(f"{source} would be overwritten by itself; give another name")
+    formats.registry.module_for(target, "write")  # before hours of work, not after
+    if Path(target).suffix.lower() == COMPRESSED:
+        from pvfiblets.codec.convert import compress_file
+
+        result = compress_file(
+            source,
+            target,
+            step="auto" if step is None else step,
+            max_error=max_error,
+            effort=effort,
+            per_point=tuple(per_point),
+            per_point_bits=per_point_bits,
+            progress=not (quiet or json),
+        )
+    else:
+        if step is not None or max_error is not None or per_point:
+            raise ValueError(f"--step, --max-error and --per-point are for {COMPRESSED} files; {target} is none")
+        result = rewrite(source, target, progress=not (quiet or json))
+    if json:
+        print_json(result)
+    else:
+        print(summary(source, target, result))
+
+
+def rewrite(source: str, target: str, *, progress: bool) -> dict[str, Any]:
+    """Write a tractogram in another format; return the keys of ``convert --json``."""
+    begin = time.perf_counter()
+    streamlines = formats.read(source, progress=progress)
+    lost = formats.write(target, streamlines)
+    seconds = time.perf_counter() - begin
+    size = Path(target).stat().st_size
+    dropped = dict(streamlines.dropped)
+    for part in lost:
+        dropped[f"{part}: {Path(target).suffix} cannot hold it"] = len(getattr(streamlines, part))
+    return {
+        "streamlines": len(streamlines),
+        "points": streamlines.n_points,
+        "fiblets": None,
+        "bytes": size,
+        "bytes_per_point": size / max(streamlines.n_points, 1),
+        "error_mm": None,
+        "error_steps": None,
+        "seconds": seconds,
+        "points_per_second": streamlines.n_points / max(seconds, 1e-9),
+        "dropped": dropped,
+    }
+
+
+def info(path: str, *, json: bool) -> None:
+    """Print what a file holds."""
+    facts: dict[str, Any] = {"file": path, "bytes": Path(path).stat().st_size, **formats.info(path)}
+    if json:
+        print_json(facts)
+        return
+    for key, value in facts.items():
+        if value is None or (isinstance(value, (list, dict, tuple)) and not value):
+            continue
+        print(f"{key:<16} {readable(value)}")
+
+
+def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
+    """Check a compressed file's checksums and, given the original, every point."""
+    from pvfiblets.codec.fibletset import FibletSet
+
+    if Path(path).suffix.lower() != COMPRESSED:
+        raise ValueError(f"{path} is no {COMPRESSED} file; give the compressed file first, then its original")
+    fiblets = FibletSet.open(path)
+    fiblets.verify()
+    result: dict[str, Any] = {
+        "file": path,
+        "checksums": "good",
+        "streamlines": fiblets.n_streamlines,
+        "points": fiblets.n_points,
+        "promise_mm": fiblets.promise,
+    }
+    if original is not None:
+        error = compare(fiblets, original, progress=not (quiet or json))
+        result.update(original=original, **error.summary())
+        # Points come back as float32 wherever that is far finer than the promise: allow its grain.
+        result["kept"] = bool(error.max_mm <= fiblets.promise * 1.02)
+    if json:
+        print_json(result)
+    else:
+        for key, value in result.items():
+            print(f"{key:<16} {readable(value)}")
+    if not result.get("kept", True):
+        raise VerificationError(
+            f"{path}: a point is {result['error_mm']['max']:.3g} mm from its original in {original}, more than "
+            f"the {fiblets.promise:.3g} mm that the file promises"
+        )
+
+
+def compare(fiblets: Any, original: str, *, progress: bool) -> Any:
+    """Measure the error of every point against the original file, in bounded memory."""
+    from tqdm import tqdm
+
+    from pvfiblets.codec.error import ErrorTally
+
+    tally = ErrorTally(fiblets.promise, fiblets.step)
+    first = 0
+    with tqdm(total=fiblets.n_points, unit="points", unit_scale=True, disable=not progress) as bar:
+        for chunk in formats.iter_chunks(original):
+            last = first + len(chunk)
+            if last > fiblets.n_streamlines:
+                break
+            decoded = fiblets.decompress(np.arange(first, last))
+            if not np.array_equal(decoded.offsets, chunk.offsets):
+                raise VerificationError(
+                    f"{original}: streamlines {first} to {last - 1} have other numbers of points than in the "
+                    "compressed file; it was made from another file, or resampled with --step"
+                )
+            tally.add(chunk, decoded.points)
+            bar.update(chunk.n_points)
+            first = last
+        else:
+            last = first
+    if last != fiblets.n_streamlines:
+        raise VerificationError(
+            f"{original} has {'more' if last > fiblets.n_streamlines else 'fewer'} streamlines than the "
+            f"{fiblets.n_streamlines} of the compressed file; it was made from another file"
+        )
+    return tally.result()
+
+
+def summary(source: str, target: str, result: dict[str, Any]) -> str:
+    """Return the outcome of ``convert`` for people."""
+    before, after = Path(source).stat().st_size, result["bytes"]
+    lines = [
+        f"{target}: {result['streamlines']:,} streamlines, {result['points']:,} points",
+        f"size     {after:,} bytes, {result['bytes_per_point']:.2f} per point; "
+        f"{100.0 * after / max(before, 1):.1f} % of {Path(source).name}",
+    ]
+    if result.get("error_mm"):
+        lines += [
+            "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
+            "         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()),
+        ]
+    speed = result["points_per_second"] / 1e6
+    lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
+    lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]
+    return "\n".join(lines)
+
+
+def print_json(result: dict[str, Any]) -> None:
+    """Print a result as strict JSON: no NaN, no NumPy types."""
+    print(json_.dumps(plain(result), allow_nan=False))
+
+
+def plain(value: Any) -> Any:
+    """Return a value in JSON's own types; what is no finite number becomes null."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple, set, frozenset)):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, (str, int, float, bool)) or value is None else str(value)
+
+
+def readable(value: Any) -> str:
+    """Return a value on one line, for people."""
+    value = plain(value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int):
+        return f"{value:,}"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {readable(item)}" for key, item in value.items())
+    if isinstance(value, list):
+        return ", ".join(f"[{readable(item)}]" if isinstance(item, list) else readable(item) for item in value)
+    return str(value)
