@@ -1,0 +1,340 @@
+"""TRX (``.trx``): a zip of plain arrays, RAS+ mm.
+
+Format: https://github.com/tee-ar-ex/trx-spec. Entries are named ``folder/name.columns.dtype``;
+one column is not named. Stored entries are memory-mapped, deflated ones inflated from front to
+back, so either kind streams.
+
+What is made of input that breaks the rules:
+
+=================================================  ================================================
+the file                                           the result
+=================================================  ================================================
+no zip, damaged or truncated zip, encryption,      FormatError
+a compression other than deflate
+an array's size that contradicts the header, or    FormatError at the entry
+offsets that decrease or leave the points
+a group that names streamlines that do not exist   FormatError at the entry
+a point with NaN or infinity                       left out with its data and counted
+entries outside the specification's folders        left out and counted
+=================================================  ================================================
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.mapped import replacing
+from pvfiblets.formats.rows import finite, without_rows
+from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
+from pvfiblets.streamlines import Streamlines, blocks
+
+Array = NDArray[Any]
+
+HOLDS = ("per_point", "per_streamline", "groups", "per_group")
+"""Parts of Streamlines besides the points that the format can carry."""
+
+UNKNOWN = "entries of unknown meaning"
+
+
+class _Trx:
+    """The entries of one trx file, checked against its header."""
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        self.zip = ZipArrays(path)
+        self.path = self.zip.path
+        header = self._header()
+        self.n_streamlines = self._count(header, "NB_STREAMLINES")
+        self.n_points = self._count(header, "NB_VERTICES")
+        self.affine = self._affine(header)
+        self.space: dict[str, Any] = {}
+        dimensions = header.get("DIMENSIONS")
+        if (
+            isinstance(dimensions, list)
+            and len(dimensions) == 3
+            and all(isinstance(d, int) for d in dimensions)
+        ):
+            self.space["dimensions"] = tuple(dimensions)
+        self.per_point: dict[str, ArrayEntry] = {}
+        self.per_streamline: dict[str, ArrayEntry] = {}
+        self.groups: dict[str, ArrayEntry] = {}
+        self.per_group: dict[str, dict[str, ArrayEntry]] = {}
+        self.positions: ArrayEntry | None = None
+        self.offsets: ArrayEntry | None = None
+        self.unknown = self.zip.odd_names
+        for entry in self.zip.entries:
+            self._sort(entry)
+        self._check_sizes()
+
+    def _header(self) -> dict[str, Any]:
+        raw, position = self.zip.raw("header.json")
+        try:
+            header = json.loads(raw)
+        except (ValueError, RecursionError) as error:
+            raise FormatError(self.path, position, f"header.json ({error})", "JSON") from error
+        if not isinstance(header, dict):
+            raise FormatError(self.path, position, f"a {type(header).__name__}", "a JSON object")
+        self._header_position = position
+        return header
+
+    def _count(self, header: dict[str, Any], key: str) -> int:
+        value = header.get(key)
+        if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+            raise FormatError(
+                self.path, self._header_position, f"{key} = {value!r}", "a whole number, 0 or more"
+            )
+        return value
+
+    def _affine(self, header: dict[str, Any]) -> NDArray[np.float64]:
+        value = header.get("VOXEL_TO_RASMM", np.eye(4).tolist())
+        try:
+            affine = np.asarray(value, np.float64)
+        except (TypeError, ValueError, OverflowError):
+            affine = np.zeros(0)
+        if affine.shape != (4, 4) or not np.isfinite(affine).all():
+            raise FormatError(
+                self.path,
+                self._header_position,
+                f"VOXEL_TO_RASMM = {value!r}"[:200],
+                "4 x 4 finite numbers",
+            )
+        return affine
+
+    def _sort(self, entry: ArrayEntry) -> None:
+        """Put an entry where its folder says."""
+        folder = entry.folder
+        if folder == ("dpv",):
+            self.per_point[_free(entry.name, self.per_point)] = entry
+        elif folder == ("dps",):
+            self.per_streamline[_free(entry.name, self.per_streamline)] = entry
+        elif folder == ("groups",):
+            self.groups[_free(entry.name, self.groups)] = entry
+        elif len(folder) == 2 and folder[0] == "dpg":
+            self.per_group.setdefault(folder[1].rstrip(), {})[entry.name] = entry
+        elif folder == () and entry.name == "positions":
+            self.positions = entry
+        elif folder == () and entry.name == "offsets":
+            self.offsets = entry
+        else:
+            self.unknown += 1
+
+    def _check_sizes(self) -> None:
+        position = self._header_position
+        if self.positions is None and self.n_points:
+            raise FormatError(
+                self.path, position, "no positions", f"an array of {self.n_points} points"
+            )
+        if self.offsets is None and self.n_streamlines:
+            raise FormatError(
+                self.path, position, "no offsets", f"offsets of {self.n_streamlines} streamlines"
+            )
+        if self.positions is not None:
+            if self.positions.columns != 3 or self.positions.dtype.kind != "f":
+                raise FormatError(
+                    self.path,
+                    self.positions.position,
+                    f"positions of {self.positions.columns} columns of {self.positions.dtype}",
+                    "3 columns of float16, float32 or float64",
+                )
+            self.positions.expect(self.n_points, "positions", "NB_VERTICES")
+        if self.offsets is not None and (
+            self.offsets.columns != 1 or self.offsets.dtype.kind not in "iu"
+        ):
+            raise FormatError(
+                self.path, self.offsets.position, f"offsets of {self.offsets.dtype}", "integers"
+            )
+        for name, entry in self.per_point.items():
+            entry.expect(self.n_points, f"dpv/{name}", "NB_VERTICES")
+        for name, entry in self.per_streamline.items():
+            entry.expect(self.n_streamlines, f"dps/{name}", "NB_STREAMLINES")
+
+    def all_offsets(self) -> NDArray[np.int64]:
+        """Read the (n_streamlines + 1,) offsets; files have them with or without the last one."""
+        entry = self.offsets
+        if entry is None:
+            return np.zeros(1, np.int64)
+        if entry.rows not in (self.n_streamlines, self.n_streamlines + 1):
+            entry.expect(self.n_streamlines, "offsets", "NB_STREAMLINES")
+        raw = entry.whole().reshape(-1)
+        offsets = np.append(raw[: self.n_streamlines].astype(np.int64), self.n_points)
+        steps = np.diff(offsets, prepend=0)
+        # The last entry, where there is one, is a total; some writers leave it 0.
+        total = int(raw[-1]) if len(raw) > self.n_streamlines else self.n_points
+        bad = np.flatnonzero(steps < 0)
+        if len(bad) or (len(offsets) > 1 and offsets[0] != 0) or total not in (0, self.n_points):
+            at = int(bad[0]) if len(bad) else 0 if offsets[0] else self.n_streamlines
+            raise FormatError(
+                self.path,
+                entry.position,
+                f"offset {at} is {int(raw[min(at, len(raw) - 1)])}",
+                f"offsets from 0 up to {self.n_points} that never decrease",
+            )
+        if len(offsets) == 1 and self.n_points:
+            raise FormatError(
+                self.path,
+                self._header_position,
+                f"{self.n_points} points and no streamline",
+                "a streamline for every point",
+            )
+        return offsets
+
+    def all_groups(self) -> tuple[dict[str, Array], dict[str, dict[str, Array]]]:
+        """Read groups, checked to name streamlines that exist, and their data."""
+        groups = {}
+        for name, entry in self.groups.items():
+            ids = entry.whole().reshape(-1)
+            if ids.dtype.kind not in "iu":
+                raise FormatError(
+                    self.path, entry.position, f"group {name!r} of {ids.dtype}", "integers"
+                )
+            if len(ids) and not (ids.min() >= 0 and ids.max() < self.n_streamlines):
+                raise FormatError(
+                    self.path,
+                    entry.position,
+                    f"group {name!r} with streamlines {ids.min()} to {ids.max()}",
+                    f"indices below {self.n_streamlines}",
+                )
+            # Ascending, so that pieces joined again give the same groups.
+            groups[name] = np.sort(ids.astype(np.int64))
+        data = {
+            group: {name: _one_row(entry.whole()) for name, entry in values.items()}
+            for group, values in self.per_group.items()
+        }
+        return groups, data
+
+    def chunks(self, max_points: int) -> Iterator[Streamlines]:
+        """Yield consecutive streamlines of at most `max_points` points, at least one piece."""
+        offsets = self.all_offsets()
+        groups, per_group = self.all_groups()
+        dropped = {UNKNOWN: self.unknown} if self.unknown else {}
+        for start, stop in list(blocks(offsets, max_points)) or [(0, 0)]:
+            first, last = int(offsets[start]), int(offsets[stop])
+            if self.positions is None:
+                points = np.zeros((0, 3), np.float32)
+            else:
+                raw = self.positions.take(first, last)
+                kind = np.float64 if raw.dtype.itemsize == 8 else np.float32
+                points = without_rows(raw, np.zeros(0, np.int64), kind)
+            yield finite(
+                points,
+                np.diff(offsets[start : stop + 1]),
+                {k: e.flat(e.take(first, last)) for k, e in self.per_point.items()},
+                dropped,
+                per_streamline={
+                    k: e.flat(e.take(start, stop)) for k, e in self.per_streamline.items()
+                },
+                groups={k: v[(v >= start) & (v < stop)] - start for k, v in groups.items()},
+                per_group=per_group,
+                affine=self.affine,
+                space=self.space,
+            )
+            dropped = {}
+
+
+def _one_row(values: Array) -> Array:
+    """Return a group's value without the axis of one row that the format stores."""
+    return values[0] if values.ndim == 2 and len(values) == 1 else values
+
+
+def _free(name: str, taken: dict[str, Any]) -> str:
+    """Return the name without the blanks that some writers pad it with, made unique."""
+    bare = name.rstrip() or name
+    return bare if bare not in taken else name
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+    """Read a whole trx file (see :func:`pvfiblets.formats.read`)."""
+    trx = _Trx(path)
+    return next(trx.chunks(max(1, trx.n_points)))
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Stream a trx file (see :func:`pvfiblets.formats.iter_chunks`).
+
+    In memory besides a piece: the offsets, the groups and the groups' data.
+    """
+    yield from _Trx(path).chunks(max_points)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Header facts (see :func:`pvfiblets.formats.info`)."""
+    trx = _Trx(path)
+    return {
+        "streamlines": trx.n_streamlines,
+        "points": trx.n_points,
+        "dtype": trx.positions.dtype.name if trx.positions else None,
+        "per_point": list(trx.per_point),
+        "per_streamline": list(trx.per_streamline),
+        "groups": list(trx.groups),
+        "affine": trx.affine,
+        **trx.space,
+    }
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Write a trx file, stored without compression (see :func:`pvfiblets.formats.write`).
+
+    Raises
+    ------
+    ValueError
+        For a name that cannot be part of a file name in a zip, or values that are no numbers.
+    """
+    from zipfile import ZIP_STORED, ZipFile
+
+    arrays: dict[str, Array] = {
+        _entry("positions", streamlines.points, "positions"): streamlines.points,
+        "offsets.uint64": streamlines.offsets.astype("<u8"),
+    }
+    for folder, columns in (("dpv", streamlines.per_point), ("dps", streamlines.per_streamline)):
+        for name, values in columns.items():
+            arrays[_entry(f"{folder}/{name}", values, name)] = values
+    for name, members in streamlines.groups.items():
+        ids = members.astype(np.uint32 if len(streamlines) < 2**32 else np.uint64)
+        arrays[_entry(f"groups/{name}", ids, name)] = ids
+    for group, data in streamlines.per_group.items():
+        for name, values in data.items():
+            # The format stores one row per group.
+            row = values.reshape(1, -1)
+            arrays[_entry(f"dpg/{_checked(group)}/{name}", row, name)] = row
+    dimensions = streamlines.space.get("dimensions", (1, 1, 1))
+    header = {
+        "DIMENSIONS": [int(d) for d in dimensions],
+        "VOXEL_TO_RASMM": streamlines.affine.tolist(),
+        "NB_VERTICES": streamlines.n_points,
+        "NB_STREAMLINES": len(streamlines),
+    }
+    with replacing(path) as file, ZipFile(file, "w", ZIP_STORED, allowZip64=True) as archive:
+        archive.writestr("header.json", json.dumps(header))
+        for name, values in arrays.items():
+            with archive.open(name, "w", force_zip64=values.nbytes > 2**31 - 1) as target:
+                for i in range(0, len(values), 1 << 20):
+                    part = np.ascontiguousarray(values[i : i + (1 << 20)])
+                    target.write(part.astype(part.dtype.newbyteorder("<"), copy=False).data)
+
+
+def _entry(base: str, values: Array, name: str) -> str:
+    kind = values.dtype
+    if kind.kind not in "fiub" or kind.itemsize > 8:
+        raise ValueError(f"{base!r} is {kind}; a trx file holds integers and floats up to 64 bits")
+    if values.ndim > 2:
+        raise ValueError(f"{base!r} has the shape {values.shape}; a trx file holds at most 2 axes")
+    columns = values.shape[1] if values.ndim == 2 else 1
+    _checked(name)
+    # Without the number, a name that itself ends in ".3" would be read as three columns.
+    explicit = columns != 1 or base.rsplit(".", 1)[-1].isdecimal()
+    suffix = "bit" if kind.kind == "b" else kind.name
+    return f"{base}.{columns}.{suffix}" if explicit else f"{base}.{suffix}"
+
+
+def _checked(name: str) -> str:
+    if not name or name != name.strip() or any(c in name for c in "/\\\0"):
+        raise ValueError(
+            f"{name!r} cannot be a name in a trx file: remove slashes and outer blanks"
+        )
+    return name

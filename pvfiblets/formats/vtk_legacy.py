@@ -1,0 +1,77 @@
+"""Legacy VTK files (``.vtk``) of poly data, ASCII and binary, versions 1.0 to 5.1.
+
+Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html. Read by
+:class:`LegacyParser`, which checks every size against the file, since VTK's own reader trusts a
+damaged header and may end the process; written by VTK. Coordinates are taken as RAS+ mm, unless
+the title line says ``SPACE=LPS`` as 3D Slicer writes it: then x and y change sign.
+
+The file must be read whole: the data of a streamline lie in several places of it.
+
+Damage (a missing or unknown keyword, sizes that contradict each other or the file, point indices
+outside the points) is a FormatError at the keyword or the number. Cells that are not lines,
+points of no line, points with NaN or infinity and arrays of text are left out and counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from pvfiblets.formats.vtk_parser import LegacyParser
+from pvfiblets.formats.vtk_writer import write_with
+from pvfiblets.formats.whole import TEXT_ARRAYS, facts, only_finite, pieces
+from pvfiblets.streamlines import Streamlines, from_cells
+
+__all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
+
+HOLDS = ("per_point", "per_streamline", "groups", "per_group")
+"""Parts of Streamlines besides the points that the format can carry (groups as field data)."""
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+    """Read a legacy vtk file (see :func:`pvfiblets.formats.read`)."""
+    parser = LegacyParser(path)
+    parser.parse()
+    points = parser.points
+    if "SPACE=LPS" in parser.title.upper():
+        points = points * np.array([-1, -1, 1], points.dtype)
+    offsets, ids = parser.lines
+    n = len(offsets) - 1
+    first = parser.cells_before_lines
+    streamlines = from_cells(
+        points,
+        offsets,
+        ids,
+        parser.point_data,
+        {k: v[first : first + n] for k, v in parser.cell_data.items()},
+        other_cells=parser.n_cells - n,
+        field=parser.field,
+    )
+    return only_finite(streamlines, {TEXT_ARRAYS: parser.text_arrays})
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
+    yield from pieces(read(path), max_points)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
+    return facts(read(path))
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`).
+
+    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits.
+    """
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+
+    writer = vtkPolyDataWriter()
+    writer.SetFileTypeToBinary()
+    words = streamlines.n_points + len(streamlines)
+    writer.SetFileVersion(42 if words < 2**31 else 51)
+    write_with(writer, path, streamlines)

@@ -1,0 +1,223 @@
+"""Arrays in a zip archive: stored ones through a memory map, deflated ones front to back."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from os import PathLike
+from typing import IO, Any
+from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.mapped import MappedFile
+
+Array = NDArray[Any]
+
+_SIZES = {"float": (16, 32, 64), "int": (8, 16, 32, 64), "uint": (8, 16, 32, 64)}
+_TYPES = {
+    f"{kind}{bits}": np.dtype(f"{kind}{bits}").newbyteorder("<")
+    for kind, sizes in _SIZES.items()
+    for bits in sizes
+} | {"bit": np.dtype(bool), "bool": np.dtype(bool)}
+"""Type by the last part of an entry's name; truth values take a byte each."""
+
+_DEFLATE_LIMIT = 1040
+"""Deflate cannot compress by more than 1032 to 1: a larger promise is damage."""
+
+_ZIP_ERRORS = (
+    BadZipFile,
+    EOFError,
+    IndexError,
+    KeyError,
+    NotImplementedError,
+    OSError,
+    OverflowError,
+    RuntimeError,
+    ValueError,
+    struct.error,
+    zlib.error,
+)
+"""What zipfile raises on damaged archives (RuntimeError: encrypted; OSError: absurd seeks)."""
+
+
+class ZipArrays:
+    """The arrays of a zip archive.
+
+    Attributes
+    ----------
+    path : str
+    entries : list of ArrayEntry
+        Those whose name ends in a known type.
+    odd_names : int
+        How many files have a name that says no type, besides ``header.json``.
+    """
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        self.file = MappedFile(path)
+        self.path = self.file.path
+        if self.file.size == 0:
+            raise FormatError(self.path, 0, "an empty file", "a zip archive")
+        with self.damage(0, "the archive"):
+            self.archive = ZipFile(self.path)
+            infos = [i for i in self.archive.infolist() if not i.is_dir()]
+        self._infos = {i.filename: i for i in infos}
+        self.entries: list[ArrayEntry] = []
+        self.odd_names = 0
+        for info in self._infos.values():
+            if info.filename == "header.json":
+                continue
+            *folder, last = info.filename.split("/")
+            *parts, kind = last.split(".")
+            if not parts or kind not in _TYPES:
+                self.odd_names += 1
+                continue
+            columns = 1
+            if len(parts) > 1 and parts[-1].isdecimal() and len(parts[-1]) < 9:
+                columns = int(parts.pop())
+            self.entries.append(
+                ArrayEntry(self, info, tuple(folder), ".".join(parts), columns, _TYPES[kind])
+            )
+
+    @contextmanager
+    def damage(self, position: int, what: str) -> Iterator[None]:
+        """Turn what zipfile raises on damaged input into FormatError."""
+        try:
+            yield
+        except FormatError:
+            raise
+        except _ZIP_ERRORS as error:
+            found = f"{what} is damaged ({type(error).__name__}: {error})"
+            raise FormatError(self.path, position, found, "an intact zip archive") from error
+
+    def raw(self, name: str) -> tuple[bytes, int]:
+        """Return the content of a small file in the archive, and where it begins."""
+        if name not in self._infos:
+            raise FormatError(self.path, None, f"no {name} in the archive", f"a file {name}")
+        info = self._infos[name]
+        self.check_size(info)
+        with self.damage(info.header_offset, name):
+            return self.archive.read(info), info.header_offset
+
+    def check_size(self, info: ZipInfo) -> None:
+        """Raise FormatError for a size that the archive cannot hold, before memory is spent."""
+        at = info.header_offset
+        if info.flag_bits & 1:
+            raise FormatError(self.path, at, f"{info.filename} encrypted", "no encryption")
+        if info.compress_type == ZIP_DEFLATED:
+            most = info.compress_size * _DEFLATE_LIMIT + 64
+        elif info.compress_type == ZIP_STORED:
+            most = info.compress_size
+        else:
+            raise FormatError(
+                self.path,
+                at,
+                f"{info.filename} compressed by method {info.compress_type}",
+                "stored or deflated; pack the file again",
+            )
+        if info.compress_size > self.file.size or info.file_size > most:
+            raise FormatError(
+                self.path,
+                at,
+                f"{info.filename} of {info.file_size} bytes",
+                f"at most {min(most, self.file.size * _DEFLATE_LIMIT)}: the archive is damaged",
+            )
+
+    def open(self, info: ZipInfo) -> IO[bytes]:
+        """Open a file in the archive for reading from its beginning."""
+        with self.damage(info.header_offset, info.filename):
+            return self.archive.open(info)
+
+
+class ArrayEntry:
+    """One array of the archive, ``(rows, columns)``, served from front to back or whole."""
+
+    def __init__(
+        self,
+        home: ZipArrays,
+        info: ZipInfo,
+        folder: tuple[str, ...],
+        name: str,
+        columns: int,
+        dtype: np.dtype[Any],
+    ) -> None:
+        home.check_size(info)
+        self._home, self._info = home, info
+        self.folder, self.name, self.columns, self.dtype = folder, name, columns, dtype
+        self.position = info.header_offset
+        stride = columns * dtype.itemsize
+        if columns == 0 or info.file_size % stride:
+            raise FormatError(
+                home.path,
+                self.position,
+                f"{info.filename} of {info.file_size} bytes",
+                f"a multiple of {stride} bytes ({columns} columns of {dtype})",
+            )
+        self.rows = info.file_size // stride
+        self._stream: IO[bytes] | None = None
+        self._next = 0
+
+    def expect(self, rows: int, what: str, source: str) -> None:
+        """Raise FormatError unless the array has as many rows as the header promises."""
+        if self.rows != rows:
+            raise FormatError(
+                self._home.path,
+                self.position,
+                f"{what} with {self.rows} rows",
+                f"{rows}, the header's {source}",
+            )
+
+    def whole(self) -> Array:
+        """Return the whole array in native order, one axis where it has one column."""
+        self._stream, self._next = None, 0
+        return self.flat(self.take(0, self.rows))
+
+    def flat(self, rows: Array) -> Array:
+        """Copy rows to native order; one axis where there is one column."""
+        if rows.dtype == bool:
+            native = rows.view(np.uint8) != 0  # a byte that is neither 0 nor 1 is true
+        else:
+            native = rows.astype(rows.dtype.newbyteorder("="))
+        return native[:, 0] if self.columns == 1 else native
+
+    def take(self, first: int, last: int) -> Array:
+        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed."""
+        if self._info.compress_type == ZIP_STORED:
+            return self._mapped(first, last)
+        if self._stream is None or first < self._next:
+            self._stream, self._next = self._home.open(self._info), 0
+        stride = self.columns * self.dtype.itemsize
+        with self._home.damage(self.position, self._info.filename):
+            self._read((first - self._next) * stride)
+            raw = self._read((last - first) * stride)
+        self._next = last
+        return np.frombuffer(raw, self.dtype).reshape(-1, self.columns)
+
+    def _read(self, n: int) -> bytes:
+        assert self._stream is not None
+        data = self._stream.read(n) if n else b""
+        if len(data) != n:
+            raise FormatError(
+                self._home.path,
+                self.position,
+                f"the end of {self._info.filename} after {self._stream.tell()} bytes",
+                f"{self._info.file_size} bytes",
+            )
+        return data
+
+    def _mapped(self, first: int, last: int) -> Array:
+        file, at = self._home.file, self.position
+        head = file.bytes(at, 30, f"the local header of {self._info.filename}")
+        if head[:4] != b"PK\x03\x04":
+            raise FormatError(file.path, at, repr(head[:4]), "a local header b'PK\\x03\\x04'")
+        name_size, extra_size = struct.unpack("<HH", head[26:30])
+        begin = at + 30 + name_size + extra_size
+        stride = self.columns * self.dtype.itemsize
+        values = file.array(
+            self.dtype, begin + first * stride, (last - first) * self.columns, self._info.filename
+        )
+        return values.reshape(-1, self.columns)
