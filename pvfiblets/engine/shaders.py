@@ -70,7 +70,13 @@ def read_shader(name: str) -> str:
     return source.read_text(encoding="utf-8")
 
 
-def assemble(name: str, features: Iterable[str] = (), constants: Mapping[str, object] | None = None) -> str:
+def assemble(
+    name: str,
+    features: Iterable[str] = (),
+    constants: Mapping[str, object] | None = None,
+    *,
+    source: str | None = None,
+) -> str:
     """Compose a program's source.
 
     Parameters
@@ -81,6 +87,8 @@ def assemble(name: str, features: Iterable[str] = (), constants: Mapping[str, ob
         Keys of :data:`FEATURES` that are on.
     constants : mapping, optional
         Values of ``{{ name }}``.
+    source : str, optional
+        The stage's text, instead of a file; ``name`` then only serves messages.
 
     Returns
     -------
@@ -95,32 +103,34 @@ def assemble(name: str, features: Iterable[str] = (), constants: Mapping[str, ob
     active, constants = set(features), constants or {}
     if unknown := active - set(FEATURES):
         raise EngineError(f"unknown features {sorted(unknown)}; there are {sorted(FEATURES)}")
-    included: set[str] = set()
+    included: set[str] = {name}
 
-    def paste(file: str) -> str:
-        included.add(file)
-        return _INCLUDE.sub(lambda m: "" if m[1] in included else paste(m[1]), read_shader(file))
+    def include(match: re.Match[str]) -> str:
+        if match[1] in included:
+            return ""
+        included.add(match[1])
+        return _INCLUDE.sub(include, read_shader(match[1]))
 
-    source = paste(name)
+    text = _INCLUDE.sub(include, read_shader(name) if source is None else source)
 
     def constant(match: re.Match[str]) -> str:
         if match[1] not in constants:
             raise EngineError(
                 f"{name} uses the constant {match[0]}, which is not given; given are {sorted(constants)}\n"
-                + _numbered(source)
+                + _numbered(text)
             )
         return str(constants[match[1]])
 
-    source = _CONSTANT.sub(constant, source)
-    used = set(_FEATURE.findall(source))
+    text = _CONSTANT.sub(constant, text)
+    used = set(_FEATURE.findall(text))
     if unknown := used - set(FEATURES):
         raise EngineError(
-            f"{name} asks for features {sorted(unknown)}; there are {sorted(FEATURES)}\n" + _numbered(source)
+            f"{name} asks for features {sorted(unknown)}; there are {sorted(FEATURES)}\n{_numbered(text)}"
         )
-    head, version, body = source.partition("#version 430")
+    head, version, body = text.partition("#version 430")
     if not version:
-        raise EngineError(f"{name} has no line '#version 430'\n" + _numbered(source))
-    switches = "".join(f"#define FEATURE_{used_name} {int(used_name in active)}\n" for used_name in sorted(used))
+        raise EngineError(f"{name} has no line '#version 430'\n{_numbered(text)}")
+    switches = "".join(f"#define FEATURE_{feature} {int(feature in active)}\n" for feature in sorted(used))
     return f"{version}\n{switches}{head}{body}"
 
 

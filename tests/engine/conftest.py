@@ -1,0 +1,64 @@
+"""Cameras, made-up lines and made-by-hand fiblets for the engine's tests."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+_spec = importlib.util.spec_from_file_location("fabricate", Path(__file__).with_name("fabricate.py"))
+_module = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(_module)
+
+
+@pytest.fixture(scope="session")
+def fabricate():
+    """Return the encoder of ``fabricate.py``."""
+    return _module.fabricate
+
+
+@pytest.fixture(scope="session")
+def random_lines():
+    """Return a maker of wandering lines with steps of about 1 mm in a box of 100 mm; some have one or two points."""
+
+    def make(n, *, seed=0, longest=200, spread=50.0, wander=0.15):
+        rng = np.random.default_rng(seed)
+        lines = []
+        for i in range(n):
+            count = 1 + i % 2 if i < 6 else int(rng.integers(3, longest))
+            d = rng.normal(0, 1, 3) + np.cumsum(rng.normal(0, wander, (count, 3)), axis=0)
+            d /= np.linalg.norm(d, axis=1)[:, None]
+            lines.append(rng.uniform(-spread, spread, 3) + np.cumsum(d, axis=0))
+        return lines
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def camera():
+    """Return a maker of model-view-projection matrices, perspective or parallel."""
+
+    def make(size, *, eye=(0, -260, 60), target=(0, 0, 0), up=(0, 0, 1), near=20.0, far=600.0, angle=40.0, height=None):
+        eye, target = np.asarray(eye, float), np.asarray(target, float)
+        z = (eye - target) / np.linalg.norm(eye - target)
+        x = np.cross(up, z)
+        x /= np.linalg.norm(x)
+        view = np.eye(4)
+        view[:3, :3] = x, np.cross(z, x), z
+        view[:3, 3] = -view[:3, :3] @ eye
+        aspect = size[0] / size[1]
+        projection = np.zeros((4, 4))
+        if height is None:
+            t = 1.0 / np.tan(np.radians(angle) / 2)
+            projection[0, 0], projection[1, 1] = t / aspect, t
+            projection[2, 2:] = -(far + near) / (far - near), -2 * far * near / (far - near)
+            projection[3, 2] = -1.0
+        else:
+            projection[0, 0], projection[1, 1] = 2 / (height * aspect), 2 / height
+            projection[2, 2:] = -2 / (far - near), -(far + near) / (far - near)
+            projection[3, 3] = 1.0
+        return projection @ view
+
+    return make
