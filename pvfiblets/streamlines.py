@@ -11,17 +11,29 @@ streamlines by position, so dropping one would shift all later ones.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias, cast, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pvfiblets.ragged import (
+    Array,
+    Floats,
+    Ints,
+    as_affine,
+    as_columns,
+    as_members,
+    as_offsets,
+    as_points,
+    blocks,
+    join,
+    offsets_from_counts,
+)
+
 if TYPE_CHECKING:
     import pyvista
 
-Array: TypeAlias = NDArray[Any]
-Floats: TypeAlias = NDArray[np.floating[Any]]
-Ints: TypeAlias = NDArray[np.int64]
+__all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
 
 _BLOCK_POINTS = 1 << 18
 """Points handled at a time by reductions: about 6 MB of float64, which stays in cache."""
@@ -73,20 +85,16 @@ class Streamlines:
         space: Mapping[str, Any] | None = None,
         dropped: Mapping[str, int] | None = None,
     ) -> None:
-        self.points: Floats = _as_points(points)
-        self.offsets: Ints = _as_offsets(offsets, len(self.points))
-        self.per_point = _as_columns(per_point, len(self.points), "per_point", "points")
-        self.per_streamline = _as_columns(
-            per_streamline, len(self), "per_streamline", "streamlines"
-        )
-        self.groups = {
-            name: _as_members(name, ids, len(self)) for name, ids in (groups or {}).items()
-        }
+        self.points: Floats = as_points(points)
+        self.offsets: Ints = as_offsets(offsets, len(self.points))
+        self.per_point = as_columns(per_point, len(self.points), "per_point", "points")
+        self.per_streamline = as_columns(per_streamline, len(self), "per_streamline", "streamlines")
+        self.groups = {name: as_members(name, ids, len(self)) for name, ids in (groups or {}).items()}
         self.per_group: dict[str, dict[str, Array]] = {
             group: {name: np.asarray(value) for name, value in values.items()}
             for group, values in (per_group or {}).items()
         }
-        self.affine: NDArray[np.float64] = np.eye(4) if affine is None else _as_affine(affine)
+        self.affine: NDArray[np.float64] = np.eye(4) if affine is None else as_affine(affine)
         self.space: dict[str, Any] = dict(space or {})
         self.dropped: dict[str, int] = {k: int(v) for k, v in (dropped or {}).items()}
 
@@ -143,9 +151,7 @@ class Streamlines:
         if isinstance(index, (int, np.integer)) and not isinstance(index, (bool, np.bool_)):
             i = int(index)
             if not -len(self) <= i < len(self):
-                raise IndexError(
-                    f"streamline {i} is out of range: there are {len(self)} streamlines"
-                )
+                raise IndexError(f"streamline {i} is out of range: there are {len(self)} streamlines")
             i %= len(self)
             return self.points[self.offsets[i] : self.offsets[i + 1]]
         if isinstance(index, slice):
@@ -161,9 +167,7 @@ class Streamlines:
             raise IndexError(f"an index array must have one dimension, not {ids.ndim}")
         if ids.dtype == bool:
             if len(ids) != len(self):
-                raise IndexError(
-                    f"a mask of {len(ids)} values cannot select among {len(self)} streamlines"
-                )
+                raise IndexError(f"a mask of {len(ids)} values cannot select among {len(self)} streamlines")
             return np.flatnonzero(ids).astype(np.int64)
         if len(ids) == 0:
             return np.zeros(0, np.int64)
@@ -171,8 +175,7 @@ class Streamlines:
             raise IndexError(f"streamlines are chosen by integers or a mask, not by {ids.dtype}")
         if ids.min() < -len(self) or ids.max() >= len(self):
             raise IndexError(
-                f"streamline indices run from {ids.min()} to {ids.max()}, but there are "
-                f"{len(self)} streamlines"
+                f"streamline indices run from {ids.min()} to {ids.max()}, but there are {len(self)} streamlines"
             )
         return np.where(ids < 0, ids + len(self), ids).astype(np.int64)
 
@@ -317,8 +320,8 @@ class Streamlines:
         return cls(
             np.concatenate([p.points for p in full]),
             offsets_from_counts(np.concatenate([p.counts for p in full])),
-            _join([p.per_point for p in full], "per_point"),
-            _join([p.per_streamline for p in full], "per_streamline"),
+            join([p.per_point for p in full], "per_point"),
+            join([p.per_streamline for p in full], "per_streamline"),
             {name: np.concatenate(members) for name, members in groups.items()},
             per_group,
             first.affine,
@@ -379,9 +382,7 @@ class Streamlines:
 
         mesh = pyvista.PolyData()
         mesh.points = np.ascontiguousarray(self.points)
-        cells = pyvista.CellArray.from_arrays(
-            self.offsets, np.arange(self.n_points, dtype=np.int64), deep=True
-        )
+        cells = pyvista.CellArray.from_arrays(self.offsets, np.arange(self.n_points, dtype=np.int64), deep=True)
         mesh.SetLines(cells)
         for name, values in self.per_point.items():
             mesh.point_data[name] = np.ascontiguousarray(_vtk_values(values))
@@ -450,108 +451,7 @@ def from_cells(
             per_group.setdefault(group, {})[key] = array
         elif name == "affine" and array.size == 16:
             affine = array.reshape(4, 4)
-    return Streamlines(
-        points, offsets, point_data, cell_data, groups, per_group, affine, None, dropped
-    )
-
-
-def offsets_from_counts(counts: ArrayLike) -> Ints:
-    """(n + 1,) int64 running sum of the `n` counts, beginning with 0."""
-    counts = np.asarray(counts, np.int64)
-    offsets = np.zeros(len(counts) + 1, np.int64)
-    np.cumsum(counts, out=offsets[1:])
-    return offsets
-
-
-def blocks(offsets: Ints, max_points: int) -> Iterator[tuple[int, int]]:
-    """Consecutive ranges of streamlines of at most `max_points` points (see Streamlines.blocks)."""
-    if max_points < 1:
-        raise ValueError(f"max_points is {max_points}, expected at least 1")
-    n = len(offsets) - 1
-    start = 0
-    while start < n:
-        stop = int(np.searchsorted(offsets, offsets[start] + max_points, side="right")) - 1
-        stop = min(max(stop, start + 1), n)
-        yield start, stop
-        start = stop
-
-
-def _as_points(points: ArrayLike) -> Floats:
-    array = np.asarray(points) if not isinstance(points, np.ndarray) else points
-    if array.size == 0 and array.ndim < 2:
-        array = np.zeros((0, 3), np.float32)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"points have the shape {array.shape}, expected (n_points, 3)")
-    if array.dtype in (np.float32, np.float64) and array.dtype.isnative:
-        return array
-    if array.dtype.kind not in "fiub":
-        raise ValueError(f"points have the type {array.dtype}, expected numbers")
-    narrow = array.dtype.kind == "f" and array.dtype.itemsize <= 4
-    return array.astype(np.float32 if narrow else np.float64)
-
-
-def _as_offsets(offsets: ArrayLike, n_points: int) -> Ints:
-    array = np.asarray(offsets)
-    if array.ndim != 1 or len(array) == 0 or array.dtype.kind not in "iu":
-        raise ValueError(
-            f"offsets have the shape {array.shape} and type {array.dtype}, expected "
-            "(n_streamlines + 1,) integers"
-        )
-    array = array.astype(np.int64, copy=False)
-    if array[0] != 0 or array[-1] != n_points:
-        raise ValueError(
-            f"offsets run from {array[0]} to {array[-1]}, expected 0 to {n_points} (the points)"
-        )
-    if np.any(array[1:] < array[:-1]):
-        at = int(np.argmax(array[1:] < array[:-1]))
-        raise ValueError(f"offsets decrease after streamline {at}; they must never decrease")
-    return array
-
-
-def _as_columns(
-    columns: Mapping[str, ArrayLike] | None, n: int, title: str, what: str
-) -> dict[str, Array]:
-    result: dict[str, Array] = {}
-    for name, values in (columns or {}).items():
-        array = np.asarray(values)
-        if array.ndim == 0 or len(array) != n:
-            raise ValueError(
-                f"{title}[{name!r}] has the shape {array.shape}, expected one row for each of "
-                f"the {n} {what}"
-            )
-        result[name] = array
-    return result
-
-
-def _as_members(name: str, ids: ArrayLike, n: int) -> Ints:
-    array = np.asarray(ids)
-    if array.size == 0:
-        return np.zeros(0, np.int64)
-    if array.ndim != 1 or array.dtype.kind not in "iu":
-        raise ValueError(f"group {name!r} must be a list of integers, not {array.dtype}")
-    if array.min() < 0 or array.max() >= n:
-        raise ValueError(
-            f"group {name!r} refers to streamlines {array.min()} to {array.max()}, but there "
-            f"are {n}"
-        )
-    return array.astype(np.int64)
-
-
-def _as_affine(affine: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(affine, np.float64)
-    if array.shape != (4, 4):
-        raise ValueError(f"the affine has the shape {array.shape}, expected (4, 4)")
-    return array
-
-
-def _join(parts: Sequence[Mapping[str, Array]], title: str) -> dict[str, Array]:
-    names = list(parts[0])
-    for part in parts[1:]:
-        if odd := sorted(set(names) ^ set(part)):
-            raise ValueError(
-                f"{title} {odd} is not in every part; add it to all of them or remove it"
-            )
-    return {name: np.concatenate([p[name] for p in parts]) for name in names}
+    return Streamlines(points, offsets, point_data, cell_data, groups, per_group, affine, None, dropped)
 
 
 def _vtk_values(values: Array) -> Array:

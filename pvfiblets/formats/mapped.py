@@ -40,9 +40,7 @@ class MappedFile:
         with Path(self.path).open("rb") as file:
             self.size = os.fstat(file.fileno()).st_size
             # An empty file cannot be mapped.
-            self.buffer: mmap.mmap | bytes = (
-                mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if self.size else b""
-            )
+            self.buffer: mmap.mmap | bytes = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if self.size else b""
 
     def array(self, dtype: DTypeLike, position: int, count: int, what: str) -> NDArray[Any]:
         """`count` values of `dtype` from byte `position`, without copying.
@@ -66,9 +64,7 @@ class MappedFile:
     def check(self, position: int, n_bytes: int, what: str) -> None:
         """Raise FormatError unless the file holds `n_bytes` bytes from `position`."""
         if n_bytes < 0 or position < 0:
-            raise FormatError(
-                self.path, position, f"a size of {n_bytes} bytes", f"a sensible size for {what}"
-            )
+            raise FormatError(self.path, position, f"a size of {n_bytes} bytes", f"a sensible size for {what}")
         if position + n_bytes > self.size:
             raise FormatError(
                 self.path,

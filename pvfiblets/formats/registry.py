@@ -67,8 +67,7 @@ def suffix_of(path: str | PathLike[str]) -> str:
             return suffix
     known = ", ".join(sorted(_MODULES))
     raise UnknownFormatError(
-        f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of "
-        f"{known}"
+        f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of {known}"
     )
 
 
@@ -92,9 +91,7 @@ def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:
     for need in needs:
         if not hasattr(module, need):
             able = ", ".join(_able(need))
-            raise UnknownFormatError(
-                f"{fspath(path)}: the format {suffix} has no {need}(); formats that have: {able}"
-            )
+            raise UnknownFormatError(f"{fspath(path)}: the format {suffix} has no {need}(); formats that have: {able}")
     return module
 
 

@@ -66,7 +66,7 @@ class Header(NamedTuple):
     fields: dict[str, str]
     dtype: np.dtype[Any]
     data_position: int
-    count: int | None
+    n_streamlines: int | None
 
 
 def read_header(file: MappedFile, magic: str) -> Header:
@@ -103,9 +103,7 @@ def read_header(file: MappedFile, magic: str) -> Header:
 
     datatype = fields.get("datatype", "Float32LE")
     if datatype not in _DATATYPES:
-        raise FormatError(
-            file.path, places["datatype"], f"datatype {datatype!r}", f"one of {list(_DATATYPES)}"
-        )
+        raise FormatError(file.path, places["datatype"], f"datatype {datatype!r}", f"one of {list(_DATATYPES)}")
     words = fields.get("file", f". {end}").split()
     if len(words) != 2 or words[0] != "." or not words[1].isdecimal():
         raise FormatError(
@@ -189,7 +187,7 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
     )
 
 
-class _Data:
+class Data:
     """The rows of one file, parsed window by window."""
 
     def __init__(self, path: str | PathLike[str], magic: str, columns: int) -> None:
@@ -198,9 +196,7 @@ class _Data:
         kind = self.header.dtype
         self.columns = columns
         self.n_rows = (self.file.size - self.header.data_position) // (kind.itemsize * columns)
-        self.rows = self.file.array(
-            kind, self.header.data_position, self.n_rows * columns, "rows"
-        ).reshape(-1, columns)
+        self.rows = self.file.array(kind, self.header.data_position, self.n_rows * columns, "rows").reshape(-1, columns)
 
     def windows(self, max_rows: int) -> Iterator[tuple[Window, dict[str, int]]]:
         """Yield each window and what to report with it; the last one carries the count check."""
@@ -224,7 +220,7 @@ class _Data:
     def _closing(self, window: Window, position: int, found: int) -> dict[str, int]:
         """Judge the end of the data: what to report, or FormatError."""
         report: dict[str, int] = {}
-        promised = self.header.count
+        promised = self.header.n_streamlines
         stride = self.header.dtype.itemsize * self.columns
         end = self.header.data_position + position * stride
         if not window.ended:
@@ -248,7 +244,7 @@ class _Data:
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a whole tck file (see :func:`pvfiblets.formats.read`)."""
-    data = _Data(path, MAGIC_TRACKS, 3)
+    data = Data(path, MAGIC_TRACKS, 3)
     parts = [_streamlines(w, d) for w, d in data.windows(max(1, data.n_rows))]
     return parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
 
@@ -256,7 +252,7 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Stream a tck file (see :func:`pvfiblets.formats.iter_chunks`); memory-mapped."""
     # One row more than the points: the delimiter that closes the last streamline.
-    for window, dropped in _Data(path, MAGIC_TRACKS, 3).windows(max_points + 1):
+    for window, dropped in Data(path, MAGIC_TRACKS, 3).windows(max_points + 1):
         yield _streamlines(window, dropped)
 
 
@@ -266,8 +262,8 @@ def _streamlines(window: Window, dropped: dict[str, int]) -> Streamlines:
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Header facts (see :func:`pvfiblets.formats.info`); ``points`` follows from the count."""
-    data = _Data(path, MAGIC_TRACKS, 3)
-    count = data.header.count
+    data = Data(path, MAGIC_TRACKS, 3)
+    count = data.header.n_streamlines
     return {
         "streamlines": count,
         "points": None if count is None else max(0, data.n_rows - count - 1),
@@ -282,7 +278,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     float32, or float64 where rounding to float32 would move a point by more than a micrometre
     (coordinates beyond 16 m); few other programs read such a file.
     """
-    kind = np.dtype("<f4")
+    kind: np.dtype[Any] = np.dtype("<f4")
     if streamlines.points.dtype == np.float64 and streamlines.n_points:
         reach = max(abs(v) for v in streamlines.bounds)
         if reach * 2.0**-24 > 1e-3:

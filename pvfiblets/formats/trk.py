@@ -126,9 +126,7 @@ def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
     try:
         return stream.read(n)
     except (OSError, EOFError, zlib.error) as error:
-        raise FormatError(
-            path, stream.tell(), f"damaged gzip data ({error})", "an intact gzip file"
-        ) from error
+        raise FormatError(path, stream.tell(), f"damaged gzip data ({error})", "an intact gzip file") from error
 
 
 class _Batch(NamedTuple):
@@ -143,7 +141,7 @@ def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _B
     Each record says where the next begins, so this is sequential by nature: one integer is read
     per streamline. A negative count stops the walk too.
     """
-    ints = memoryview(np.ascontiguousarray(words, np.int32))
+    ints = np.ascontiguousarray(words, np.int32).data
     k, p, n_words = header.row_words, header.n_properties, len(ints)
     starts = array("q")
     position = points = 0
@@ -159,9 +157,7 @@ def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _B
     return _Batch(first, words[first].astype(np.int64), position)
 
 
-def _streamlines(
-    words: Array, batch: _Batch, header: Header, dropped: dict[str, int]
-) -> Streamlines:
+def _streamlines(words: Array, batch: _Batch, header: Header, dropped: dict[str, int]) -> Streamlines:
     k, p = header.row_words, header.n_properties
     floats = words[: batch.used].view(words.dtype.str.replace("i", "f"))
     after = batch.starts + 1 + batch.counts * k
@@ -186,12 +182,10 @@ def _column(rows: Array, part: slice) -> Array:
 
 
 def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamlines]:
-    promised = header.count or None
+    promised = header.n_streamlines or None
     position = found = 0
     # Enough for `max_points` points in streamlines of two points or more.
-    normal = size = max_points * header.row_words + (max_points // 2 + 1) * (
-        1 + header.n_properties
-    )
+    normal = size = max_points * header.row_words + (max_points // 2 + 1) * (1 + header.n_properties)
     while True:
         window = words.window(position, size)
         left = len(window) if promised is None else promised - found
@@ -207,8 +201,7 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
                     words.path,
                     HEADER_SIZE + 4 * (position + len(window)),
                     "the end of the file",
-                    f"{need} words of the streamline that begins at byte {at}: the file is "
-                    "truncated",
+                    f"{need} words of the streamline that begins at byte {at}: the file is truncated",
                 )
             # Grow by doubling, not to `need` at once: a damaged count must not cost memory.
             size = min(need, 2 * size)
@@ -222,9 +215,7 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
             yield _streamlines(window, batch, header, {})
             continue
         if not complete and (odd := words.odd_bytes()):
-            raise FormatError(
-                words.path, at, f"{odd} bytes and the end of the file", "a record: it is truncated"
-            )
+            raise FormatError(words.path, at, f"{odd} bytes and the end of the file", "a record: it is truncated")
         if promised is not None and not complete:
             raise FormatError(
                 words.path,
@@ -265,7 +256,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Header facts (see :func:`pvfiblets.formats.info`); the header has no number of points."""
     _, header = _open(path)
     return {
-        "streamlines": header.count or None,
+        "streamlines": header.n_streamlines or None,
         "points": None,
         "dtype": "float32",
         "per_point": list(header.scalars),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ class Header(NamedTuple):
 
     order: str
     """Byte order, ``"<"`` or ``">"``."""
-    count: int
+    n_streamlines: int
     """Streamlines; 0 where not recorded."""
     n_scalars: int
     n_properties: int
@@ -52,7 +52,8 @@ def parse_header(path: str, raw: bytes) -> Header:
     if len(raw) < HEADER_SIZE:
         raise FormatError(path, len(raw), "the end of the file", "a header of 1000 bytes")
     kind: np.dtype[Any] = header_2_dtype
-    for order in "<>":
+    orders: tuple[Literal["<", ">"], ...] = ("<", ">")
+    for order in orders:
         fields = np.frombuffer(raw, kind.newbyteorder(order))[0]
         if fields["hdr_size"] == HEADER_SIZE:
             break
@@ -64,9 +65,7 @@ def parse_header(path: str, raw: bytes) -> Header:
         raise FormatError(path, 992, f"version {version}", "1, 2 or 3")
     count = _at_least_zero(path, 988, int(fields["nb_streamlines"]), "number of streamlines")
     n_scalars = _at_least_zero(path, 36, int(fields["nb_scalars_per_point"]), "number of scalars")
-    n_properties = _at_least_zero(
-        path, 238, int(fields["nb_properties_per_streamline"]), "number of properties"
-    )
+    n_properties = _at_least_zero(path, 238, int(fields["nb_properties_per_streamline"]), "number of properties")
     affine, to_ras, space = _geometry(path, fields, version)
     scalars = _names(path, _SCALAR_NAMES, fields["scalar_name"], n_scalars, "scalars")
     return Header(
@@ -88,9 +87,7 @@ def _at_least_zero(path: str, position: int, value: int, what: str) -> int:
     return value
 
 
-def _geometry(
-    path: str, fields: Any, version: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, Any]]:
+def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, Any]]:
     from nibabel.orientations import aff2axcodes
 
     sizes = fields["voxel_sizes"].astype(np.float64)
@@ -106,16 +103,12 @@ def _geometry(
             invertible = abs(np.linalg.det(affine[:3, :3])) > 0
         axes = aff2axcodes(affine) if invertible else None
     if axes is None or None in axes or not np.array_equal(affine[3], [0, 0, 0, 1]):
-        raise FormatError(
-            path, 440, f"voxel-to-RAS matrix {affine.tolist()}", "an invertible affine"
-        )
+        raise FormatError(path, 440, f"voxel-to-RAS matrix {affine.tolist()}", "an invertible affine")
     voxel_order = fields["voxel_order"].decode("latin-1").strip("\0 ").upper() or "LPS"
     if len(voxel_order) != 3 or {frozenset("LR"), frozenset("PA"), frozenset("SI")} != {
         pair for c in voxel_order for pair in map(frozenset, ("LR", "PA", "SI")) if c in pair
     }:
-        raise FormatError(
-            path, 948, f"voxel order {voxel_order!r}", "one of L/R, one of P/A and one of S/I"
-        )
+        raise FormatError(path, 948, f"voxel order {voxel_order!r}", "one of L/R, one of P/A and one of S/I")
     dimensions = fields["dimensions"].astype(int)
     to_ras = trackvis_to_ras(sizes, dimensions, voxel_order, affine)
     space = {
@@ -152,9 +145,7 @@ def trackvis_to_ras(
 
     to_voxel = np.diag([*(1.0 / sizes), 1.0])
     to_voxel[:3, 3] = -0.5
-    move = orient.ornt_transform(
-        orient.axcodes2ornt(voxel_order), orient.axcodes2ornt(orient.aff2axcodes(affine))
-    )
+    move = orient.ornt_transform(orient.axcodes2ornt(voxel_order), orient.axcodes2ornt(orient.aff2axcodes(affine)))
     matrix: NDArray[np.float64] = affine @ orient.inv_ornt_aff(move, dimensions) @ to_voxel
     return matrix
 

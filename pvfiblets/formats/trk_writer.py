@@ -40,8 +40,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     header["nb_properties_per_streamline"] = n_properties
     if len(streamlines) > 2**31 - 1 or (n := int(streamlines.counts.max(initial=0))) > 2**31 - 1:
         raise ValueError(
-            f"{len(streamlines)} streamlines, or {n} points in one, exceed the format's 32 bits; "
-            "write .trx"
+            f"{len(streamlines)} streamlines, or {n} points in one, exceed the format's 32 bits; write .trx"
         )
     header["nb_streamlines"] = len(streamlines)
     with replacing(path) as file:
@@ -50,7 +49,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
             file.write(_records(streamlines, from_ras, points, values, start, stop).data)
 
 
-def _header(streamlines: Streamlines) -> tuple[Any, NDArray[np.float64]]:
+def _header(streamlines: Streamlines) -> tuple[Any, Array]:
     """Make the header record and the matrix from RAS+ mm to the file's coordinates."""
     from nibabel.orientations import aff2axcodes
     from nibabel.streamlines.trk import TrkFile, header_2_dtype
@@ -72,9 +71,7 @@ def _header(streamlines: Streamlines) -> tuple[Any, NDArray[np.float64]]:
     header["voxel_order"] = voxel_order.encode("ascii")
     header["voxel_to_rasmm"] = affine
     # From the header's own rounded numbers: a reader has nothing else to go by.
-    to_ras = trackvis_to_ras(
-        header["voxel_sizes"].astype(np.float64), dimensions, voxel_order, affine
-    )
+    to_ras = trackvis_to_ras(header["voxel_sizes"].astype(np.float64), dimensions, voxel_order, affine)
     return header, np.linalg.inv(to_ras)
 
 
@@ -92,9 +89,7 @@ def _columns(arrays: Mapping[str, Array], title: str) -> dict[str, Array]:
                     "cannot hold exactly; write .trx or convert them to floats"
                 )
         columns[name] = (
-            array.reshape(len(array), -1)
-            if array.size
-            else array.reshape(len(array), int(np.prod(array.shape[1:])))
+            array.reshape(len(array), -1) if array.size else array.reshape(len(array), int(np.prod(array.shape[1:])))
         )
     return columns
 
@@ -103,18 +98,13 @@ def _name_table(columns: Mapping[str, Array], title: str) -> tuple[Array, int]:
     from nibabel.streamlines.trk import encode_value_in_name
 
     if len(columns) > 10:
-        raise ValueError(
-            f"{title} has {len(columns)} arrays, a trk file holds at most 10; remove some or "
-            "write .trx"
-        )
+        raise ValueError(f"{title} has {len(columns)} arrays, a trk file holds at most 10; remove some or write .trx")
     table = np.zeros(10, "S20")
     for i, (name, array) in enumerate(columns.items()):
         try:
             table[i] = encode_value_in_name(array.shape[1], name)
         except (ValueError, UnicodeEncodeError) as error:
-            raise ValueError(
-                f"{title}[{name!r}] cannot be a name in a trk file: {error}"
-            ) from error
+            raise ValueError(f"{title}[{name!r}] cannot be a name in a trk file: {error}") from error
     total = sum(a.shape[1] for a in columns.values())
     if total > 32767:
         raise ValueError(f"{title} has {total} columns, a trk file holds at most 32767")
@@ -133,9 +123,7 @@ def _records(
     edges = streamlines.offsets[start : stop + 1]
     first, last = int(edges[0]), int(edges[-1])
     moved = transformed(streamlines.points[first:last], from_ras)
-    rows = np.concatenate(
-        [moved, *(a[first:last].astype(np.float32) for a in points.values())], axis=1
-    )
+    rows = np.concatenate([moved, *(a[first:last].astype(np.float32) for a in points.values())], axis=1)
     properties = [a[start:stop].astype(np.float32) for a in values.values()]
     tail = np.concatenate([np.zeros((stop - start, 0), np.float32), *properties], axis=1)
     counts = np.diff(edges)

@@ -55,11 +55,7 @@ class _Trx:
         self.affine = self._affine(header)
         self.space: dict[str, Any] = {}
         dimensions = header.get("DIMENSIONS")
-        if (
-            isinstance(dimensions, list)
-            and len(dimensions) == 3
-            and all(isinstance(d, int) for d in dimensions)
-        ):
+        if isinstance(dimensions, list) and len(dimensions) == 3 and all(isinstance(d, int) for d in dimensions):
             self.space["dimensions"] = tuple(dimensions)
         self.per_point: dict[str, ArrayEntry] = {}
         self.per_streamline: dict[str, ArrayEntry] = {}
@@ -86,9 +82,7 @@ class _Trx:
     def _count(self, header: dict[str, Any], key: str) -> int:
         value = header.get(key)
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-            raise FormatError(
-                self.path, self._header_position, f"{key} = {value!r}", "a whole number, 0 or more"
-            )
+            raise FormatError(self.path, self._header_position, f"{key} = {value!r}", "a whole number, 0 or more")
         return value
 
     def _affine(self, header: dict[str, Any]) -> NDArray[np.float64]:
@@ -127,13 +121,9 @@ class _Trx:
     def _check_sizes(self) -> None:
         position = self._header_position
         if self.positions is None and self.n_points:
-            raise FormatError(
-                self.path, position, "no positions", f"an array of {self.n_points} points"
-            )
+            raise FormatError(self.path, position, "no positions", f"an array of {self.n_points} points")
         if self.offsets is None and self.n_streamlines:
-            raise FormatError(
-                self.path, position, "no offsets", f"offsets of {self.n_streamlines} streamlines"
-            )
+            raise FormatError(self.path, position, "no offsets", f"offsets of {self.n_streamlines} streamlines")
         if self.positions is not None:
             if self.positions.columns != 3 or self.positions.dtype.kind != "f":
                 raise FormatError(
@@ -143,12 +133,8 @@ class _Trx:
                     "3 columns of float16, float32 or float64",
                 )
             self.positions.expect(self.n_points, "positions", "NB_VERTICES")
-        if self.offsets is not None and (
-            self.offsets.columns != 1 or self.offsets.dtype.kind not in "iu"
-        ):
-            raise FormatError(
-                self.path, self.offsets.position, f"offsets of {self.offsets.dtype}", "integers"
-            )
+        if self.offsets is not None and (self.offsets.columns != 1 or self.offsets.dtype.kind not in "iu"):
+            raise FormatError(self.path, self.offsets.position, f"offsets of {self.offsets.dtype}", "integers")
         for name, entry in self.per_point.items():
             entry.expect(self.n_points, f"dpv/{name}", "NB_VERTICES")
         for name, entry in self.per_streamline.items():
@@ -190,9 +176,7 @@ class _Trx:
         for name, entry in self.groups.items():
             ids = entry.whole().reshape(-1)
             if ids.dtype.kind not in "iu":
-                raise FormatError(
-                    self.path, entry.position, f"group {name!r} of {ids.dtype}", "integers"
-                )
+                raise FormatError(self.path, entry.position, f"group {name!r} of {ids.dtype}", "integers")
             if len(ids) and not (ids.min() >= 0 and ids.max() < self.n_streamlines):
                 raise FormatError(
                     self.path,
@@ -226,9 +210,7 @@ class _Trx:
                 np.diff(offsets[start : stop + 1]),
                 {k: e.flat(e.take(first, last)) for k, e in self.per_point.items()},
                 dropped,
-                per_streamline={
-                    k: e.flat(e.take(start, stop)) for k, e in self.per_streamline.items()
-                },
+                per_streamline={k: e.flat(e.take(start, stop)) for k, e in self.per_streamline.items()},
                 groups={k: v[(v >= start) & (v < stop)] - start for k, v in groups.items()},
                 per_group=per_group,
                 affine=self.affine,
@@ -334,7 +316,5 @@ def _entry(base: str, values: Array, name: str) -> str:
 
 def _checked(name: str) -> str:
     if not name or name != name.strip() or any(c in name for c in "/\\\0"):
-        raise ValueError(
-            f"{name!r} cannot be a name in a trx file: remove slashes and outer blanks"
-        )
+        raise ValueError(f"{name!r} cannot be a name in a trx file: remove slashes and outer blanks")
     return name

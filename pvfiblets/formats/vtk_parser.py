@@ -132,9 +132,7 @@ class LegacyParser:
             words = line.decode("latin-1").split()
             reader = readers.get(words[0].upper())
             if reader is None:
-                raise FormatError(
-                    self.path, self._line_at, repr(line[:40]), f"one of {', '.join(readers)}"
-                )
+                raise FormatError(self.path, self._line_at, repr(line[:40]), f"one of {', '.join(readers)}")
             reader(words)
         for word, (_, ids) in self._cells.items():
             if len(ids) and not (ids.min() >= 0 and ids.max() < len(self.points)):
@@ -150,9 +148,7 @@ class LegacyParser:
         ):
             for name, array in data.items():
                 if len(array) != n:
-                    raise FormatError(
-                        self.path, None, f"{what} {name!r} of {len(array)} rows", f"{n} rows"
-                    )
+                    raise FormatError(self.path, None, f"{what} {name!r} of {len(array)} rows", f"{n} rows")
 
     def _read_points(self, words: list[str]) -> None:
         n = self._number(words, 1)
@@ -179,7 +175,7 @@ class LegacyParser:
             return
         values = self._values(second, "int")
         starts = np.empty(first if first <= second else 0, np.int64)
-        table, position = memoryview(values), 0
+        table, position = values.data, 0
         for i in range(first):
             # Each count tells where the next one stands: sequential by nature.
             if position >= second or not 0 <= (n := table[position]) <= second - position - 1:
@@ -248,9 +244,7 @@ class LegacyParser:
             columns, rows = self._number(parts, 1), self._number(parts, 2)
             kind = self._word(parts, 3)
             if self._rows is not None and rows != self._rows:
-                raise FormatError(
-                    self.path, self._line_at, f"{parts[0]!r} of {rows} rows", f"{self._rows} rows"
-                )
+                raise FormatError(self.path, self._line_at, f"{parts[0]!r} of {rows} rows", f"{self._rows} rows")
             self._keep(parts[0], columns, kind, rows)
 
     def _skip_metadata(self, words: list[str]) -> None:  # noqa: ARG002
@@ -261,9 +255,7 @@ class LegacyParser:
     def _keep(self, name: str, columns: int, kind: str, rows: int | None = None) -> None:
         if rows is None:
             if self._rows is None:
-                raise FormatError(
-                    self.path, self._line_at, f"the array {name!r}", "POINT_DATA or CELL_DATA first"
-                )
+                raise FormatError(self.path, self._line_at, f"the array {name!r}", "POINT_DATA or CELL_DATA first")
             rows = self._rows
         if kind.lower() == "string":
             self._skip_strings(rows * columns)
@@ -302,17 +294,13 @@ class LegacyParser:
 
     def _word(self, words: list[str], i: int) -> str:
         if i >= len(words):
-            raise FormatError(
-                self.path, self._line_at, repr(" ".join(words)[:60]), f"{i} words after the keyword"
-            )
+            raise FormatError(self.path, self._line_at, repr(" ".join(words)[:60]), f"{i} words after the keyword")
         return words[i]
 
     def _number(self, words: list[str], i: int) -> int:
         text = self._word(words, i)
         if not (text.isascii() and text.isdecimal() and len(text) < 16):
-            raise FormatError(
-                self.path, self._line_at, repr(" ".join(words)[:60]), f"a count as word {i + 1}"
-            )
+            raise FormatError(self.path, self._line_at, repr(" ".join(words)[:60]), f"a count as word {i + 1}")
         return int(text)
 
     def _values(self, n: int, kind: str) -> Array:
@@ -323,9 +311,7 @@ class LegacyParser:
             self._at += len(packed)
             return np.unpackbits(packed, count=n)
         if kind not in _TYPES and kind != "bit":
-            raise FormatError(
-                self.path, self._line_at, f"type {kind!r}", f"one of bit, {', '.join(_TYPES)}"
-            )
+            raise FormatError(self.path, self._line_at, f"type {kind!r}", f"one of bit, {', '.join(_TYPES)}")
         dtype = np.dtype(_TYPES.get(kind, ">u1"))
         if self._ascii:
             return self._text_values(n, dtype.newbyteorder("="))

@@ -20,9 +20,7 @@ Array = NDArray[Any]
 
 _SIZES = {"float": (16, 32, 64), "int": (8, 16, 32, 64), "uint": (8, 16, 32, 64)}
 _TYPES = {
-    f"{kind}{bits}": np.dtype(f"{kind}{bits}").newbyteorder("<")
-    for kind, sizes in _SIZES.items()
-    for bits in sizes
+    f"{kind}{bits}": np.dtype(f"{kind}{bits}").newbyteorder("<") for kind, sizes in _SIZES.items() for bits in sizes
 } | {"bit": np.dtype(bool), "bool": np.dtype(bool)}
 """Type by the last part of an entry's name; truth values take a byte each."""
 
@@ -79,9 +77,7 @@ class ZipArrays:
             columns = 1
             if len(parts) > 1 and parts[-1].isdecimal() and len(parts[-1]) < 9:
                 columns = int(parts.pop())
-            self.entries.append(
-                ArrayEntry(self, info, tuple(folder), ".".join(parts), columns, _TYPES[kind])
-            )
+            self.entries.append(ArrayEntry(self, info, tuple(folder), ".".join(parts), columns, _TYPES[kind]))
 
     @contextmanager
     def damage(self, position: int, what: str) -> Iterator[None]:
@@ -217,7 +213,5 @@ class ArrayEntry:
         name_size, extra_size = struct.unpack("<HH", head[26:30])
         begin = at + 30 + name_size + extra_size
         stride = self.columns * self.dtype.itemsize
-        values = file.array(
-            self.dtype, begin + first * stride, (last - first) * self.columns, self._info.filename
-        )
+        values = file.array(self.dtype, begin + first * stride, (last - first) * self.columns, self._info.filename)
         return values.reshape(-1, self.columns)

@@ -1,0 +1,164 @@
+"""Values that lie in a file of their own beside the tractogram.
+
+``.tsf``
+    MRtrix track scalars: laid out as tck with one number per point, so it must have the same
+    streamlines with the same numbers of points. A missing value (NaN inside a streamline) cannot
+    be told from the end of a streamline; such a file does not fit and is refused.
+``.npy``
+    An array, ``(n,)`` or ``(n, k)``.
+``.txt``, ``.csv``
+    Numbers separated by blanks or commas, one row per line; ``#`` begins a comment. MRtrix
+    writes weights as one line: a single row of `n` numbers is taken as a column.
+
+Where n is the number of streamlines, the values are per streamline, where it is the number of
+points, per point; streamlines first, should both be equal.
+"""
+
+from __future__ import annotations
+
+import warnings
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.formats.registry import UnknownFormatError
+from pvfiblets.formats.rows import NONFINITE
+from pvfiblets.formats.tck import Data, write_rows
+from pvfiblets.streamlines import Streamlines, offsets_from_counts
+
+Array = NDArray[Any]
+
+MAGIC_SCALARS = "mrtrix track scalars"
+
+
+def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None = None) -> str:
+    """Add a file's values to `streamlines` (see :func:`pvfiblets.formats.attach`)."""
+    text = fspath(path)
+    suffix = Path(text).suffix.lower()
+    key = name if name is not None else Path(text).name[: -len(suffix)]
+    if suffix == ".tsf":
+        streamlines.per_point[key] = _scalars_of(streamlines, text)
+        return "per_point"
+    if suffix == ".npy":
+        values = _read_npy(text)
+    elif suffix in (".txt", ".csv"):
+        values = _read_text(text)
+    else:
+        raise UnknownFormatError(f"{text}: values can be attached from .tsf, .npy, .txt and .csv, not {suffix!r}")
+    return _place(streamlines, text, key, values)
+
+
+def _place(streamlines: Streamlines, path: str, key: str, values: Array) -> str:
+    if values.ndim == 2 and 1 in values.shape:
+        fits = (len(streamlines), streamlines.n_points)
+        # A row becomes a column, unless it is the one row of a single streamline or point.
+        if values.shape[1] == 1 or (len(values) not in fits and values.shape[1] in fits):
+            values = values.reshape(-1)
+    n = len(values) if values.ndim else 0
+    if n == len(streamlines) and values.ndim:
+        streamlines.per_streamline[key] = values
+        return "per_streamline"
+    if n == streamlines.n_points and values.ndim:
+        streamlines.per_point[key] = values
+        return "per_point"
+    raise FormatError(
+        path,
+        None,
+        f"values of shape {values.shape}",
+        f"{len(streamlines)} rows (one per streamline) or {streamlines.n_points} (one per point)",
+    )
+
+
+def read_scalars(path: str | PathLike[str]) -> tuple[Array, NDArray[np.int64]]:
+    """Read a tsf file.
+
+    Returns
+    -------
+    (n_points,) array of float32 or float64
+    (n_streamlines,) array of int64
+        How many values each streamline has.
+    """
+    data = Data(path, MAGIC_SCALARS, 1)
+    values, counts = [], []
+    for window, dropped in data.windows(max(1, data.n_rows)):
+        if NONFINITE in dropped:  # a row of one number is never partly finite
+            raise FormatError(fspath(path), None, "infinite values", "finite values")
+        values.append(window.rows[:, 0])
+        counts.append(window.counts)
+    return np.concatenate(values), np.concatenate(counts)
+
+
+def write_scalars(path: str | PathLike[str], streamlines: Streamlines, name: str) -> None:
+    """Write the per-point array `name`, of one column, as a tsf file.
+
+    Raises
+    ------
+    ValueError
+        If the array has several columns, or values that are not finite, which the format
+        cannot hold.
+    """
+    values = streamlines.per_point[name]
+    if values.ndim != 1 or not np.isfinite(values).all():
+        raise ValueError(
+            f"per_point[{name!r}] of shape {values.shape} must have one finite value per point to "
+            "be written as tsf; choose a column, or replace NaN first"
+        )
+    wide = values.dtype.itemsize == 8 and values.dtype.kind == "f"
+    kind = np.dtype("<f8" if wide else "<f4")
+    write_rows(path, MAGIC_SCALARS, streamlines, values[:, None], kind)
+
+
+def _scalars_of(streamlines: Streamlines, path: str) -> Array:
+    values, counts = read_scalars(path)
+    if np.array_equal(counts, streamlines.counts):
+        return values
+    if len(counts) != len(streamlines):
+        found, expected = f"{len(counts)} streamlines", f"{len(streamlines)} as the tractogram has"
+    else:
+        i = int(np.flatnonzero(counts != streamlines.counts)[0])
+        found = f"{counts[i]} values in streamline {i}"
+        expected = f"{streamlines.counts[i]}, one for each of its points"
+    at = offsets_from_counts(counts + 1)
+    size = values.dtype.itemsize
+    header = Data(path, MAGIC_SCALARS, 1).header
+    first = int(np.argmax(counts != streamlines.counts)) if len(counts) == len(streamlines) else 0
+    raise FormatError(path, header.data_position + int(at[first]) * size, found, expected)
+
+
+def _read_npy(path: str) -> Array:
+    file = MappedFile(path)
+    magic = file.bytes(0, min(6, file.size), "the magic")
+    if magic != b"\x93NUMPY":
+        raise FormatError(path, 0, repr(magic), "the magic b'\\x93NUMPY'")
+    try:
+        # Mapping checks the shape against the file's size before memory is spent.
+        values = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (ValueError, EOFError, OSError, OverflowError, TypeError, SyntaxError) as error:
+        raise FormatError(path, 6, f"a damaged header ({error})", "an array of numbers") from error
+    return _as_numbers(path, np.array(values))
+
+
+def _read_text(path: str) -> Array:
+    try:
+        text = Path(path).read_text("utf-8")
+    except UnicodeDecodeError as error:
+        raise FormatError(path, error.start, f"byte {error.object[error.start]}", "text") from error
+    with warnings.catch_warnings():
+        # An empty file gives an empty array, which is judged by its length.
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            values = np.loadtxt(text.replace(",", " ").splitlines(), np.float64, ndmin=2)
+        except ValueError as error:
+            raise FormatError(path, None, str(error), "rows of numbers of equal length") from error
+    return values
+
+
+def _as_numbers(path: str, values: Array) -> Array:
+    if values.dtype.kind not in "fiub" or values.ndim not in (1, 2):
+        raise FormatError(path, None, f"{values.dtype} of shape {values.shape}", "numbers of 1 or 2 dimensions")
+    return values.astype(values.dtype.newbyteorder("="))

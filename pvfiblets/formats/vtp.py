@@ -1,0 +1,143 @@
+"""VTK's XML poly data (``.vtp``): inline or appended arrays, text, base64 or raw, zlib or LZMA.
+
+Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html. Read by a parser
+of our own for the reason given in :mod:`pvfiblets.formats.vtk_legacy`, written by VTK. The file
+must be read whole: the data of a streamline lie in several places of it. Several pieces are
+joined. Damage is a FormatError at the array; cells that are not lines, points of no line, points
+with NaN or infinity and arrays of text are left out and counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.vtk_writer import write_with
+from pvfiblets.formats.vtp_arrays import Element, XmlFile
+from pvfiblets.formats.whole import TEXT_ARRAYS, facts, only_finite, pieces
+from pvfiblets.streamlines import Streamlines, from_cells
+
+Array = NDArray[Any]
+
+HOLDS = ("per_point", "per_streamline", "groups", "per_group")
+"""Parts of Streamlines besides the points that the format can carry (groups as field data)."""
+
+_CELLS = ("Verts", "Lines", "Polys", "Strips")
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+    """Read a vtp file (see :func:`pvfiblets.formats.read`)."""
+    file = XmlFile(path)
+    field, text = _arrays(file, file.poly_data.child("FieldData"), None)
+    parts = []
+    for piece in file.poly_data.children("Piece"):
+        streamlines, more_text = _piece(file, piece)
+        parts.append(streamlines)
+        text += more_text
+    if not parts:
+        parts.append(Streamlines(np.zeros((0, 3), np.float32), np.zeros(1, np.int64)))
+    try:
+        joined = parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
+        # The field data belong to the file, not to a piece, and name streamlines by number.
+        if field:
+            joined = _with_field(joined, field)
+    except ValueError as error:
+        raise FormatError(file.path, None, str(error), "data that agree with each other") from error
+    return only_finite(joined, {TEXT_ARRAYS: text})
+
+
+def _with_field(s: Streamlines, field: dict[str, Array]) -> Streamlines:
+    whole = from_cells(
+        s.points,
+        s.offsets,
+        np.arange(s.n_points),
+        s.per_point,
+        s.per_streamline,
+        field=field,
+    )
+    whole.dropped = s.dropped
+    return whole
+
+
+def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
+    n_points = piece.count("NumberOfPoints")
+    points = np.zeros((0, 3), np.float32)
+    if n_points:
+        holder = piece.child("Points")
+        if holder is None or not holder.children("DataArray"):
+            raise FormatError(file.path, piece.position, "no Points array", f"{n_points} points")
+        points = file.values(holder.children("DataArray")[0], n_points, columns=3)
+        if points.dtype not in (np.float32, np.float64):
+            points = points.astype(np.float64)
+    counts = {kind: piece.count(f"NumberOf{kind}") for kind in _CELLS}
+    n, first = counts["Lines"], counts["Verts"]
+    offsets, ids = np.zeros(n + 1, np.int64), np.zeros(0, np.int64)
+    if n:
+        lines = piece.child("Lines")
+        named = {a.attributes.get("Name"): a for a in lines.children("DataArray")} if lines else {}
+        if not {"offsets", "connectivity"} <= set(named):
+            raise FormatError(file.path, piece.position, f"arrays {list(named)}", "offsets and connectivity")
+        offsets[1:] = file.values(named["offsets"], n)
+        if (np.diff(offsets) < 0).any():
+            raise FormatError(file.path, named["offsets"].position, "offsets that decrease", "ascending offsets")
+        ids = file.values(named["connectivity"], int(offsets[-1])).astype(np.int64)
+        if len(ids) and not (ids.min() >= 0 and ids.max() < n_points):
+            raise FormatError(
+                file.path,
+                named["connectivity"].position,
+                f"point indices {ids.min()} to {ids.max()}",
+                f"indices below {n_points}",
+            )
+    point_data, text = _arrays(file, piece.child("PointData"), n_points)
+    cell_data, more = _arrays(file, piece.child("CellData"), sum(counts.values()))
+    streamlines = from_cells(
+        points,
+        offsets,
+        ids,
+        point_data,
+        {k: v[first : first + n] for k, v in cell_data.items()},
+        other_cells=sum(counts.values()) - n,
+    )
+    return streamlines, text + more
+
+
+def _arrays(file: XmlFile, holder: Element | None, rows: int | None) -> tuple[dict[str, Array], int]:
+    """Read the arrays of an element by name, and count those of text."""
+    arrays: dict[str, Array] = {}
+    if holder is None:
+        return arrays, 0
+    text = len(holder.children("Array"))
+    for i, element in enumerate(holder.children("DataArray")):
+        if element.attributes.get("type") == "String":
+            text += 1
+            continue
+        n = element.count("NumberOfTuples") if rows is None else rows
+        arrays[element.attributes.get("Name", f"array_{i}")] = file.values(element, n)
+    return arrays, text
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
+    yield from pieces(read(path), max_points)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
+    return facts(read(path))
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`)."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+    writer = vtkXMLPolyDataWriter()
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.SetCompressorTypeToZLib()
+    writer.SetHeaderTypeToUInt64()
+    write_with(writer, path, streamlines)
