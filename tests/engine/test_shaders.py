@@ -1,0 +1,89 @@
+"""Shader assembly is strict, and every source says what it is."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pvfiblets.engine import EngineError
+from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.shaders import FEATURES, Programs, assemble
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = sorted(
+    p for p in (ROOT / "shaders").rglob("*") if p.suffix in (".glsl", ".comp") and "resolve" not in p.parts
+)
+
+
+def test_there_are_shaders():
+    assert len(SOURCES) > 10
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: p.name)
+def test_every_source_starts_with_a_header(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("// ")
+    assert len(lines[0]) > 20
+
+
+@pytest.mark.parametrize("path", [p for p in SOURCES if p.suffix == ".comp"], ids=lambda p: p.name)
+@pytest.mark.parametrize("features", [(), tuple(FEATURES)], ids=["plain", "all"])
+def test_every_program_compiles(gl, path, features):
+    programs = Programs(gl, CONSTANTS)
+    name = path.relative_to(ROOT / "shaders").as_posix()
+    assert programs.compute(name, features) is programs.compute(name, list(reversed(features)))
+    programs.release()
+    programs.release()
+
+
+def test_unused_features_leave_no_code():
+    source = assemble("compute/cull.comp", (), CONSTANTS)
+    assert "WIDE_LINES" not in source
+    assert "#define FEATURE_ANCHORS_LOW 0" in source
+
+
+def test_a_file_is_pasted_once():
+    source = assemble("compute/attributes.comp", (), CONSTANTS)
+    assert source.count("buffer Anchors {") == 1
+    assert source.startswith("#version 430\n")
+
+
+@pytest.mark.parametrize(
+    ("source", "features", "message"),
+    [
+        ('#version 430\n#include "decode/nowhere.glsl"\n', (), "no shader 'decode/nowhere.glsl'"),
+        ("#version 430\nlayout(local_size_x = {{ group_siz }}) in;\n", (), "group_siz"),
+        ("#version 430\n#if FEATURE_WIDE_LINE\n#endif\n", (), "WIDE_LINE"),
+        ("#version 430\n", ("COLOUR",), "COLOUR"),
+        ("void main() {}\n", (), "#version 430"),
+    ],
+)
+def test_unknown_names_are_errors(source, features, message):
+    with pytest.raises(EngineError, match=message):
+        assemble("test", features, CONSTANTS, source=source)
+
+
+def test_a_compiler_error_shows_the_composed_source(gl, monkeypatch):
+    monkeypatch.setattr("pvfiblets.engine.shaders.read_shader", lambda name: "#version 430\nvoid main() { wrong(); }\n")
+    with pytest.raises(EngineError, match=r"(?s)wrong.*   3 void main\(\) \{ wrong\(\); \}"):
+        Programs(gl, CONSTANTS).compute("compute/broken.comp")
+
+
+def test_older_opengl_is_refused_plainly():
+    code = (
+        "import moderngl\n"
+        "from types import SimpleNamespace\n"
+        "from pvfiblets.engine import FibletRenderer, EngineError\n"
+        "ctx = moderngl.create_context(standalone=True, backend='egl')\n"
+        "try: FibletRenderer(ctx, SimpleNamespace())\n"
+        "except EngineError as error: print(error)\n"
+    )
+    environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": "4.1", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    if "4.1" not in done.stdout and not done.stdout:
+        pytest.skip("this OpenGL is not Mesa: its version cannot be lowered")
+    assert done.stdout.startswith("drawing fiblets needs OpenGL 4.3, found 4.1")
