@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json as json_
 import math
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets import formats
-from pvfiblets.errors import FibletsError
+from pvfiblets.errors import FibletsError, FormatError
 
 COMPRESSED = ".fiblets"
 
@@ -47,12 +48,12 @@ def convert(
             effort=effort,
             per_point=tuple(per_point),
             per_point_bits=per_point_bits,
-            progress=not (quiet or json),
+            progress=show_progress(quiet, json),
         )
     else:
         if step is not None or max_error is not None or per_point:
             raise ValueError(f"--step, --max-error and --per-point are for {COMPRESSED} files; {target} is none")
-        result = rewrite(source, target, progress=not (quiet or json))
+        result = rewrite(source, target, progress=show_progress(quiet, json))
     if json:
         print_json(result)
     else:
@@ -85,7 +86,9 @@ def rewrite(source: str, target: str, *, progress: bool) -> dict[str, Any]:
 
 def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
-    facts: dict[str, Any] = {"file": path, "bytes": Path(path).stat().st_size, **formats.info(path)}
+    facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
+    facts.pop("path", None)
+    facts["bytes"] = Path(path).stat().st_size
     if json:
         print_json(facts)
         return
@@ -97,6 +100,7 @@ def info(path: str, *, json: bool) -> None:
 
 def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
     """Check a compressed file's checksums and, given the original, every point."""
+    from pvfiblets.codec.convert import measure_file_error
     from pvfiblets.codec.fibletset import FibletSet
 
     if Path(path).suffix.lower() != COMPRESSED:
@@ -111,7 +115,12 @@ def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
         "promise_mm": fiblets.promise,
     }
     if original is not None:
-        error = compare(fiblets, original, progress=not (quiet or json))
+        try:
+            error = measure_file_error(path, original, progress=show_progress(quiet, json))
+        except FormatError:
+            raise
+        except ValueError as mismatch:
+            raise VerificationError(f"{path} was not made from {original} as it is: {mismatch}") from mismatch
         result.update(original=original, **error.summary())
         # Points come back as float32 wherever that is far finer than the promise: allow its grain.
         result["kept"] = bool(error.max_mm <= fiblets.promise * 1.02)
@@ -125,38 +134,6 @@ def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
             f"{path}: a point is {result['error_mm']['max']:.3g} mm from its original in {original}, more than "
             f"the {fiblets.promise:.3g} mm that the file promises"
         )
-
-
-def compare(fiblets: Any, original: str, *, progress: bool) -> Any:
-    """Measure the error of every point against the original file, in bounded memory."""
-    from tqdm import tqdm
-
-    from pvfiblets.codec.error import ErrorTally
-
-    tally = ErrorTally(fiblets.promise, fiblets.step)
-    first = 0
-    with tqdm(total=fiblets.n_points, unit="points", unit_scale=True, disable=not progress) as bar:
-        for chunk in formats.iter_chunks(original):
-            last = first + len(chunk)
-            if last > fiblets.n_streamlines:
-                break
-            decoded = fiblets.decompress(np.arange(first, last))
-            if not np.array_equal(decoded.offsets, chunk.offsets):
-                raise VerificationError(
-                    f"{original}: streamlines {first} to {last - 1} have other numbers of points than in the "
-                    "compressed file; it was made from another file, or resampled with --step"
-                )
-            tally.add(chunk, decoded.points)
-            bar.update(chunk.n_points)
-            first = last
-        else:
-            last = first
-    if last != fiblets.n_streamlines:
-        raise VerificationError(
-            f"{original} has {'more' if last > fiblets.n_streamlines else 'fewer'} streamlines than the "
-            f"{fiblets.n_streamlines} of the compressed file; it was made from another file"
-        )
-    return tally.result()
 
 
 def summary(source: str, target: str, result: dict[str, Any]) -> str:
@@ -176,6 +153,11 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
     lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]
     return "\n".join(lines)
+
+
+def show_progress(quiet: bool, json: bool) -> bool:
+    """Return whether a person is there to watch a progress bar."""
+    return not (quiet or json) and sys.stderr.isatty()
 
 
 def print_json(result: dict[str, Any]) -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import sys
 import time
+from itertools import product
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from pvfiblets import formats
 from pvfiblets.cli_files import plain, print_json
@@ -22,6 +25,8 @@ DIRECTIONS = {
     "right": ((1, 0, 0), (0, 0, 1)),
     "oblique": ((-1, 0.8, 0.45), (0, 0, 1)),
 }
+# Where a scalar bar covers nothing of a brain.
+UPRIGHT = {"vertical": True, "height": 0.5, "position_x": 0.9, "position_y": 0.25}
 
 
 def screenshot(
@@ -92,7 +97,7 @@ def fill(
             line_width=line_width,
             opacity=opacity,
             lighting=not no_lighting,
-            scalar_bar_args={"color": text},
+            scalar_bar_args={"color": text, **UPRIGHT},
             render=False,
             progress=sys.stderr.isatty(),
         )
@@ -114,11 +119,22 @@ def is_mesh(path: str) -> bool:
 
 
 def point_camera(plotter: Any, view: str) -> None:
-    """Look at everything from one of the named directions."""
+    """Look at everything from one of the named directions, as near as the picture's edges allow."""
     direction, up = DIRECTIONS[view]
     plotter.view_vector(direction, viewup=up)
     plotter.reset_camera()
-    plotter.camera.zoom(1.25)
+    camera, bounds = plotter.camera, plotter.bounds
+    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+    # The middles of the box's edges: exact from the front, and from aslant nearer to a brain's
+    # outline than the box's corners are.
+    edges = np.array([c for c in product((0.0, 0.5, 1.0), repeat=3) if c.count(0.5) == 1])
+    points = np.column_stack([low + edges * (high - low), np.ones(len(edges))])
+    width, height = plotter.window_size
+    matrix = camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+    seen = points @ np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]).T
+    reach = np.abs(seen[:, :2] / seen[:, 3:]).max()
+    if np.isfinite(reach) and reach > 0.0:
+        camera.zoom(0.92 / reach)
 
 
 def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -> None:

@@ -1,0 +1,254 @@
+"""The command: what it prints, writes and returns, called as a user calls it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import nibabel as nib
+import numpy as np
+import pytest
+from PIL import Image
+
+from pvfiblets import formats
+from pvfiblets.cli import main
+from pvfiblets.synthetic import brain_streamlines
+
+CONVERT_KEYS = {
+    "streamlines", "points", "fiblets", "bytes", "bytes_per_point", "error_mm", "error_steps",
+    "seconds", "points_per_second", "dropped",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def tractogram(tmp_path_factory):
+    """A small whole-brain-like file with one per-point array, and its streamlines."""
+    brain = brain_streamlines(300, 0.5, seed=4, fa=True)
+    path = tmp_path_factory.mktemp("cli") / "brain.trx"
+    formats.write(path, brain)
+    return path, brain
+
+
+@pytest.fixture
+def compressed(tractogram, tmp_path, capsys):
+    path = tmp_path / "brain.fiblets"
+    assert main(["convert", str(tractogram[0]), str(path), "--json"]) == 0
+    capsys.readouterr()
+    return path
+
+
+def fails(capsys, *arguments):
+    """Run, expect exit code 1, and return the one sentence on standard error."""
+    assert main([str(argument) for argument in arguments]) == 1
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert "Traceback" not in captured.err
+    return captured.err
+
+
+def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
+    source, brain = tractogram
+    target = tmp_path / "out.fiblets"
+    assert main(["convert", str(source), str(target), "--per-point", "fa", "--json"]) == 0
+    captured = capsys.readouterr()
+    result = json.loads(captured.out)
+    assert set(result) >= CONVERT_KEYS
+    assert result["streamlines"] == 300
+    assert result["points"] == brain.n_points
+    assert result["bytes"] == target.stat().st_size
+    assert result["bytes_per_point"] == pytest.approx(target.stat().st_size / brain.n_points)
+    assert result["dropped"] == {}
+    assert set(result["error_mm"]) == set(result["error_steps"]) == {"max", "mean", "p999"}
+    assert captured.err == ""
+
+    back = formats.read(target)
+    error = np.linalg.norm(back.points.astype(float) - brain.points.astype(float), axis=1)
+    assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
+    assert result["error_mm"]["mean"] == pytest.approx(error.mean(), rel=0.02)
+    assert result["error_steps"]["max"] == pytest.approx(error.max() / 0.5, rel=0.02)
+    np.testing.assert_allclose(back.per_point["fa"].ravel(), brain.per_point["fa"], atol=0.003)
+
+
+def test_convert_keeps_the_promise_that_was_asked_for(tractogram, tmp_path, capsys):
+    main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets"), "--max-error", "0.004", "--json"])
+    assert json.loads(capsys.readouterr().out)["error_mm"]["max"] <= 0.004 * 1.01
+
+
+def test_convert_speaks_to_people_too(tractogram, tmp_path, capsys):
+    assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets")]) == 0
+    out = capsys.readouterr().out
+    assert "300 streamlines" in out
+    assert "steps" in out
+    assert "per point" in out
+
+
+@pytest.mark.parametrize("suffix", [".tck", ".trk"])
+def test_convert_out_of_the_compressed_form_is_read_by_nibabel(compressed, tractogram, tmp_path, capsys, suffix):
+    target = tmp_path / f"back{suffix}"
+    assert main(["convert", str(compressed), str(target), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert set(result) >= CONVERT_KEYS
+    assert result["error_mm"] is None
+    loaded = nib.streamlines.load(target).streamlines
+    assert len(loaded) == 300
+    np.testing.assert_allclose(loaded.get_data(), tractogram[1].points, atol=0.06)
+
+
+def test_info_of_both_forms_agrees(compressed, tractogram, capsys):
+    facts = []
+    for path in (compressed, tractogram[0]):
+        assert main(["info", str(path), "--json"]) == 0
+        facts.append(json.loads(capsys.readouterr().out))
+        assert facts[-1]["bytes"] == path.stat().st_size
+        assert main(["info", str(path)]) == 0
+        assert "streamlines" in capsys.readouterr().out
+    assert facts[0]["streamlines"] == facts[1]["streamlines"] == 300
+    assert facts[0]["points"] == facts[1]["points"] == tractogram[1].n_points
+
+
+def test_verify_measures_against_the_original(compressed, tractogram, capsys):
+    assert main(["verify", str(compressed), str(tractogram[0]), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["kept"] is True
+    assert 0.0 < result["error_mm"]["max"] <= result["promise_mm"]
+    assert main(["verify", str(compressed)]) == 0
+
+
+def test_verify_finds_a_flipped_bit_a_moved_point_and_another_original(compressed, tractogram, tmp_path, capsys):
+    moved = tmp_path / "moved.trx"
+    brain = tractogram[1][:]
+    brain.points = brain.points.copy()
+    brain.points[1000] += 1.0
+    formats.write(moved, brain)
+    assert "more than" in fails(capsys, "verify", compressed, moved)
+
+    other = tmp_path / "other.tck"
+    formats.write(other, brain_streamlines(300, seed=9))
+    assert "was not made from" in fails(capsys, "verify", compressed, other)
+
+    content = bytearray(compressed.read_bytes())
+    content[len(content) // 2] ^= 4
+    damaged = tmp_path / "damaged.fiblets"
+    damaged.write_bytes(content)
+    assert "damaged.fiblets" in fails(capsys, "verify", damaged, tractogram[0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["info", "missing.trk"], "missing.trk"),
+        (["convert", "missing.trk", "a.fiblets"], "missing.trk"),
+        (["convert", "missing.trk", "a.xyz"], "suffix"),
+        (["convert", "same.tck", "same.tck"], "overwritten by itself"),
+        (["verify", "missing.tck"], "no .fiblets file"),
+        (["screenshot", "missing.tck", "-o", "a.png"], "missing.tck"),
+        (["screenshot", "missing.tck", "-o", "a.doc"], "a.doc"),
+    ],
+)
+def test_failures_are_one_plain_sentence(arguments, says, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert says in fails(capsys, *arguments)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_broken_file_is_one_plain_sentence_and_leaves_nothing(tmp_path, capsys):
+    (tmp_path / "a.trk").write_bytes(b"TRACK" + bytes(300))
+    assert "a.trk" in fails(capsys, "convert", tmp_path / "a.trk", tmp_path / "b.fiblets")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.trk"]
+
+
+def test_an_unknown_array_lists_those_that_exist(tractogram, tmp_path, capsys):
+    assert "fa" in fails(capsys, "convert", tractogram[0], tmp_path / "a.fiblets", "--per-point", "md")
+    assert "curvature" in fails(capsys, "screenshot", tractogram[0], "-o", tmp_path / "a.png", "--scalars", "md")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["compress", "a.trk"],
+        ["convert", "a.trk"],
+        ["convert", "a.trk", "b.fiblets", "--step", "-1"],
+        ["convert", "a.trk", "b.fiblets", "--max-error", "nan"],
+        ["screenshot", "a.trk"],
+        ["screenshot", "a.trk", "-o", "a.png", "--size", "big"],
+        ["screenshot", "a.trk", "-o", "a.png", "--size", "0x5"],
+        ["screenshot", "a.trk", "-o", "a.png", "--view", "sideways"],
+        ["demo", "--streamlines", "0"],
+    ],
+)
+def test_wrong_usage_is_exit_code_2(arguments, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    assert exit_.value.code == 2
+    assert "usage:" in capsys.readouterr().err
+
+
+def test_help_and_version_are_exit_code_0(capsys):
+    for arguments in (["--help"], ["--version"], ["convert", "--help"]):
+        with pytest.raises(SystemExit) as exit_:
+            main(arguments)
+        assert exit_.value.code == 0
+    assert "pvfiblets" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("view", ["axial", "coronal", "sagittal", "oblique"])
+def test_a_screenshot_shows_the_brain_the_right_way_up(tractogram, tmp_path, view):
+    picture = tmp_path / f"{view}.png"
+    source, brain = tractogram
+    arguments = ["screenshot", str(source), "-o", str(picture), "--size", "300x200", "--view", view]
+    assert main([*arguments, "--color", "white", "--no-lighting"]) == 0
+    pixels = np.asarray(Image.open(picture).convert("L")) > 0
+    assert pixels.shape == (200, 300)
+    rows, columns = np.nonzero(pixels)
+    assert len(rows) > 2000
+    if view == "oblique":
+        return
+    # Project the points by hand: which axis grows to the right, and which one upwards.
+    right, up = {"axial": (0, 1), "coronal": (0, 2), "sagittal": (1, 2)}[view]
+    to_the_right = {"axial": 1, "coronal": -1, "sagittal": -1}[view] * brain.points[:, right]
+    aspect = np.ptp(to_the_right) / np.ptp(brain.points[:, up])
+    assert np.ptp(columns) / np.ptp(rows) == pytest.approx(aspect, rel=0.15)
+    # Where the far half of the brain is wide, so is the picture: the outline is not upside down.
+    edges = np.linspace(brain.points[:, up].min(), brain.points[:, up].max(), 9)
+    counts, _ = np.histogram(brain.points[:, up], edges)
+    drawn, _ = np.histogram(-rows, np.linspace(-rows.max() - 0.5, -rows.min() + 0.5, 9))
+    assert np.corrcoef(counts, drawn)[0, 1] > np.corrcoef(counts[::-1], drawn)[0, 1]
+
+
+def test_a_screenshot_with_a_scalar_bar_and_with_two_files(tractogram, compressed, tmp_path):
+    picture = tmp_path / "two.png"
+    arguments = ["screenshot", str(compressed), str(tractogram[0]), "-o", str(picture), "--scalars", "length"]
+    assert main([*arguments, "--cmap", "plasma", "--clim", "20", "150", "--line-width", "2", "--size", "400x300"]) == 0
+    colours = np.unique(np.asarray(Image.open(picture).convert("RGB")).reshape(-1, 3), axis=0)
+    assert len(colours) > 100
+
+
+def test_show_says_that_there_is_no_display(tractogram, capsys, monkeypatch):
+    if not sys.platform.startswith("linux"):
+        pytest.skip("needs Linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert "no display" in fails(capsys, "show", tractogram[0])
+
+
+def test_the_demo_writes_and_prints_what_it_promises(tmp_path, capsys):
+    assert main(["demo", "--output", str(tmp_path / "demo"), "--streamlines", "400"]) == 0
+    out = capsys.readouterr().out
+    assert "bytes per point" in out
+    assert {path.name for path in (tmp_path / "demo").iterdir()} == {"brain.tck", "brain.fiblets", "brain.png"}
+    assert np.asarray(Image.open(tmp_path / "demo" / "brain.png")).any()
+
+
+def test_the_installed_command_runs_and_survives_a_closed_pipe(tractogram):
+    command = [sys.executable, "-m", "pvfiblets.cli", "info", str(tractogram[0])]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as gone:
+        done = subprocess.run(command, stdout=gone, stderr=subprocess.PIPE, text=True, check=False)
+    assert "Traceback" not in done.stderr
