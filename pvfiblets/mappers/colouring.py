@@ -11,9 +11,7 @@ import numpy.typing as npt
 Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value"]
 
 _TABLE_MODES = ("streamline_scalar", "point_value")
-_GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array(
-    [0, 0, 0, 255], dtype=np.uint8
-)
+_GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
 
 def _rgba(colour: Any, name: str) -> tuple[float, ...]:
@@ -107,9 +105,7 @@ class Colouring:
     def _check_table(self) -> None:
         lut = _GREY if self.lut is None else np.asarray(self.lut)
         if lut.ndim != 2 or lut.shape[1] != 4 or len(lut) < 1 or lut.dtype != np.uint8:
-            raise ValueError(
-                f"lut has shape {lut.shape} and dtype {lut.dtype}; expected (k, 4) uint8 with k >= 1"
-            )
+            raise ValueError(f"lut has shape {lut.shape} and dtype {lut.dtype}; expected (k, 4) uint8 with k >= 1")
         self._set("lut", lut)
         if self.mode == "streamline_scalar":
             values = None if self.values is None else np.asarray(self.values)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -114,6 +114,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     @line_width.setter
     def line_width(self, pixels: float) -> None:
         self._line_width = Style(line_width=float(pixels)).line_width
+        self._actor_modified()
 
     @property
     def colouring(self) -> Colouring:
@@ -125,13 +126,14 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         _check_count(colouring, self._fiblets)
         self._colouring = colouring
         self._install()
+        self._actor_modified()
 
     # The actor
 
     @property
     def actor(self) -> vtkActor | None:
         """The actor that this mapper was attached to, if it still exists."""
-        return self._actor.Get()
+        return cast("vtkActor | None", self._actor.Get())
 
     def attach(self, actor: vtkActor) -> None:
         """Make this the mapper of an actor and add the shader pieces to it.
@@ -154,6 +156,11 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             resolve.uninstall(actor.GetShaderProperty(), self._installed)
         self._installed = ()
         self._actor = weak(None)
+
+    def _actor_modified(self) -> None:
+        """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
+        if self.actor is not None:
+            self.actor.Modified()
 
     @property
     def features(self) -> frozenset[str]:
@@ -350,7 +357,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                 context.release(self)
 
 
-@calldata_type(VTK_OBJECT)
+@calldata_type(VTK_OBJECT)  # type: ignore[untyped-decorator]
 def _update_shader(mapper: FibletMapper, _event: str, program: Any) -> None:
     mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
 

@@ -30,9 +30,7 @@ class Drawn:
     style: Any
 
 
-def pick(
-    ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolerance: int
-) -> tuple[int, float] | None:
+def pick(ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolerance: int) -> tuple[int, float] | None:
     """Return (streamline id, position along it) near a pixel of the window, or None.
 
     Of several lines within `tolerance` pixels the nearest on the screen wins, and of those as near
@@ -68,9 +66,7 @@ def pick(
     return int(ids[(*at, 0)]), float(position[(*at, 0)])
 
 
-def _read(
-    ctx: Any, texture: Any, region: tuple[int, int, int, int], dtype: str, components: int
-) -> Any:
+def _read(ctx: Any, texture: Any, region: tuple[int, int, int, int], dtype: str, components: int) -> Any:
     """Read a rectangle of a texture as (height, width, components)."""
     framebuffer = ctx.framebuffer([texture])
     try:

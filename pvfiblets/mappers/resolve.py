@@ -95,9 +95,7 @@ def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
             sections.append((match["stage"], match["where"], match["tag"], []))
         elif sections:
             sections[-1][3].append(line)
-    return tuple(
-        (stage, where, tag, "\n".join(lines).strip("\n")) for stage, where, tag, lines in sections
-    )
+    return tuple((stage, where, tag, "\n".join(lines).strip("\n")) for stage, where, tag, lines in sections)
 
 
 @cache

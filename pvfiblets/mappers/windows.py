@@ -45,6 +45,19 @@ def gl_viewport(window: Any) -> tuple[int, int, int, int]:
     return x, y, width, height
 
 
+def _attach() -> Any:
+    """Return a moderngl context of its own on the current GL context.
+
+    ``moderngl.create_context`` may return one that was made for another window.
+    """
+    moderngl.init_context()
+    ctx = moderngl.get_context()
+    # It asks for properties of the default framebuffer, which a headless context lacks: an error of no
+    # consequence, but the next one to look would take it for his own.
+    ctx.clear_errors()
+    return ctx
+
+
 class Slot:
     """What one mapper keeps in one window.
 
@@ -130,18 +143,15 @@ class WindowContext:
     def __init__(self, window: Any) -> None:
         self._window = weak(window)
         self.slots: dict[str, Slot] = {}
-        previous = getattr(moderngl, "_store", None)
-        default = getattr(previous, "default_context", None)
-        moderngl.init_context()
-        self.ctx: Any = moderngl.get_context()
-        if previous is not None:
-            previous.default_context = default
-        self._witness = vtkTextureObject()
-        self._witness.SetContext(window)
-        self._witness.Allocate2D(1, 1, 4, VTK_UNSIGNED_CHAR)
+        with self.foreign():
+            self.ctx: Any = _attach()
+            self._witness = vtkTextureObject()
+            self._witness.SetContext(window)
+            self._witness.Allocate2D(1, 1, 4, VTK_UNSIGNED_CHAR)
+            self._witness.Deactivate()  # or it would keep a texture unit
         self._observers = [
             window.AddObserver("EndEvent", lambda *_: self._sweep()),
-            window.AddObserver("DeleteEvent", lambda *_: self._forget()),
+            window.AddObserver("DeleteEvent", lambda *_: self._unregister()),
         ]
         self._address = window.GetAddressAsString("")
 
@@ -211,9 +221,7 @@ class WindowContext:
         if not self.alive:
             self._forget()
             return
-        gone = {
-            address: slot for address, slot in self.slots.items() if not self._holds(slot.mapper.Get())
-        }
+        gone = {address: slot for address, slot in self.slots.items() if not self._holds(slot.mapper.Get())}
         for address in gone:
             del self.slots[address]
         if gone:
@@ -247,6 +255,11 @@ class WindowContext:
             for observer in self._observers:
                 window.RemoveObserver(observer)
         self._observers = []
+        self._unregister()
+
+    def _unregister(self) -> None:
+        """Leave the list of contexts; the window may be half destroyed and is not touched."""
+        self.slots.clear()
         if _contexts.get(self._address) is self:
             del _contexts[self._address]
 

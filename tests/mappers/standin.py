@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import moderngl
 import numpy as np
@@ -117,7 +117,7 @@ class PlainFiblets:
 class LineRenderer:
     """Draws `PlainFiblets` into a G-buffer with GL_LINE_STRIP."""
 
-    made: list[LineRenderer] = []
+    made: ClassVar[list[LineRenderer]] = []
 
     def __init__(self, ctx: Any, fiblets: PlainFiblets) -> None:
         self.ctx = ctx
@@ -128,9 +128,7 @@ class LineRenderer:
         owner = np.repeat(np.arange(len(counts)), counts)
         index = np.arange(len(fiblets.points)) - np.repeat(fiblets.offsets[:-1], counts)
         values = np.zeros(len(owner)) if fiblets.values is None else fiblets.values
-        vertex = np.empty(
-            len(owner), [("point", "f4", 3), ("id", "u4"), ("index", "f4"), ("value", "f4")]
-        )
+        vertex = np.empty(len(owner), [("point", "f4", 3), ("id", "u4"), ("index", "f4"), ("value", "f4")])
         vertex["point"] = fiblets.points - self.origin
         vertex["id"], vertex["index"], vertex["value"] = owner, index, values
         starts = np.flatnonzero(index == 0)[1:]
@@ -177,9 +175,7 @@ class LineRenderer:
         self.draws += 1
         self._key = key
         depth, ids, position = self._target.color_attachments
-        self._gbuffer = SimpleNamespace(
-            depth=depth, ids=ids, position=position, generation=self.draws
-        )
+        self._gbuffer = SimpleNamespace(depth=depth, ids=ids, position=position, generation=self.draws)
         return self._gbuffer
 
     def explain(self) -> dict[str, Any]:

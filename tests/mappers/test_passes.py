@@ -1,0 +1,180 @@
+"""VTK's render passes: translucency, ambient occlusion, eye dome lighting, anti-aliasing, stereo."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.mappers import Colouring
+
+
+def scene_with(make_plotter, actor, **options):
+    plotter = make_plotter(**options)
+    plotter.add_actor(actor, reset_camera=False)
+    plotter.camera_position = [(0, -220, 0), (0, 0, 0), (0, 0, 1)]
+    return plotter
+
+
+@pytest.fixture
+def yellow_lines(lines):
+    mapper, actor = lines.actor(colouring=Colouring("solid", color=(1.0, 1.0, 0.0)))
+    return mapper, actor
+
+
+@pytest.mark.parametrize("peeling", [True, False])
+def test_a_translucent_mesh_in_front_tints_fiblets(make_plotter, yellow_lines, tools, peeling):
+    mapper, actor = yellow_lines
+    plotter = scene_with(make_plotter, actor)
+    plotter.renderer.ResetCameraClippingRange()
+    alone = tools.covered(tools.picture(plotter, mapper))
+    if peeling:
+        plotter.enable_depth_peeling()
+    plotter.add_mesh(
+        pv.Box((-60, 60, -60, -58, -60, 60)),
+        color="blue",
+        opacity=0.5,
+        lighting=False,
+        reset_camera=False,
+    )
+    image = tools.picture(plotter, mapper)
+    behind = image[alone]
+    # Two faces of blue at one half over yellow: a quarter of the yellow is left.
+    assert np.allclose(behind.mean(axis=0), (64, 64, 191), atol=4)
+
+
+def test_a_translucent_mesh_behind_does_not(make_plotter, yellow_lines, tools):
+    mapper, actor = yellow_lines
+    plotter = scene_with(make_plotter, actor)
+    plotter.enable_depth_peeling()
+    alone = tools.covered(tools.picture(plotter, mapper))
+    plotter.add_mesh(
+        pv.Box((-60, 60, 80, 82, -60, 60)),
+        color="blue",
+        opacity=0.5,
+        lighting=False,
+        reset_camera=False,
+    )
+    image = tools.picture(plotter, mapper)
+    assert np.array_equal(np.unique(image[alone], axis=0), [[255, 255, 0]])
+
+
+@pytest.mark.parametrize("peeling", [True, False])
+def test_translucent_fiblets_over_an_opaque_mesh(make_plotter, yellow_lines, tools, peeling):
+    mapper, actor = yellow_lines
+    plotter = scene_with(make_plotter, actor)
+    alone = tools.covered(tools.picture(plotter, mapper))
+    if peeling:
+        plotter.enable_depth_peeling()
+    actor.GetProperty().SetOpacity(0.5)
+    plotter.add_mesh(pv.Box((-90, 90, 80, 82, -90, 90)), color="blue", lighting=False, reset_camera=False)
+    image = tools.picture(plotter, mapper)
+    assert np.allclose(image[alone].mean(axis=0), (127, 127, 127), atol=3)
+    # And a translucent mesh sees the nearest layer of fiblets only where it is in front of it.
+    plotter.add_mesh(pv.Box((-60, 60, -60, -58, -60, 60)), color="red", lighting=False, reset_camera=False)
+    image = tools.picture(plotter, mapper)
+    inner = alone & tools.covered(image)
+    assert (image[inner] == (255, 0, 0)).all(axis=-1).mean() > 0.9
+
+
+def test_peeling_orders_fiblets_between_two_translucent_walls(make_plotter, yellow_lines, tools):
+    mapper, actor = yellow_lines
+    actor.GetProperty().SetOpacity(0.5)
+    plotter = scene_with(make_plotter, actor)
+    alone = tools.covered(tools.picture(plotter, mapper))
+    plotter.enable_depth_peeling(number_of_peels=8)
+    for y, colour in ((-80, "red"), (80, "blue")):
+        plane = pv.Plane(center=(0, y, 0), direction=(0, 1, 0), i_size=300, j_size=300)
+        plotter.add_mesh(plane, color=colour, opacity=0.5, lighting=False, reset_camera=False)
+    plotter.renderer.ResetCameraClippingRange()
+    image = tools.picture(plotter, mapper)
+    # Front to back: half red, a quarter yellow, an eighth blue, an eighth black background.
+    assert np.allclose(np.median(image[alone], axis=0), (191, 64, 32), atol=4)
+
+
+def test_ambient_occlusion_darkens_fiblets_close_to_a_mesh(make_plotter, lines, tools):
+    mapper, actor = lines.actor(colouring=Colouring("solid", color=(1.0, 1.0, 1.0)))
+    actor.GetProperty().SetLighting(True)
+    actor.GetProperty().SetAmbient(1.0)
+    actor.GetProperty().SetDiffuse(0.0)
+    plotter = scene_with(make_plotter, actor)
+    floor = pv.Plane(center=(0, 0, 0), direction=(0, 1, 0), i_size=300, j_size=300)
+    plotter.add_mesh(floor, color="blue", lighting=False, reset_camera=False)
+    plain = tools.picture(plotter, mapper)
+    plotter.enable_ssao(radius=8, bias=0.5, kernel_size=64)
+    shaded = tools.picture(plotter, mapper)
+    white = (plain == 255).all(axis=-1)
+    assert white.sum() > 300
+    values = shaded[white].astype(float)
+    # Fiblets are still there and white or grey, and some are darker than without.
+    assert values.mean() > 100
+    assert np.abs(values[:, 0] - values[:, 1]).mean() < 30
+    assert (values.mean(axis=1) < 245).mean() > 0.05
+    # Occlusion of the floor follows the fiblets in front of it: it needs their positions.
+    near = tools.grown(white) & ~white
+    far = ~tools.grown(tools.grown(tools.grown(tools.grown(white))))
+    assert shaded[near][:, 2].mean() < shaded[far][:, 2].mean() + 1
+
+
+def test_positions_of_the_occlusion_pass_are_those_of_polylines(make_plotter, plain, tools):
+    """A mesh and fiblets in one plane are equally far: no occlusion between them, hence no dark rim."""
+    mapper, actor = plain.actor(colouring=Colouring("solid", color=(1.0, 1.0, 1.0)))
+    plotter = scene_with(make_plotter, actor)
+    plotter.enable_ssao(radius=8, bias=0.5, kernel_size=64)
+    with_fiblets = tools.picture(plotter, mapper)
+    reference = make_plotter()
+    reference.add_mesh(plain.polydata(), color=(1.0, 1.0, 1.0), lighting=False, reset_camera=False)
+    reference.camera_position = [(0, -220, 0), (0, 0, 0), (0, 0, 1)]
+    reference.enable_ssao(radius=8, bias=0.5, kernel_size=64)
+    theirs = tools.picture(reference)
+    assert tools.agreement(tools.covered(with_fiblets), tools.covered(theirs)) > 0.98
+
+
+def test_eye_dome_lighting_outlines_fiblets(make_plotter, compare, tools):
+    def scene(plotter, actor, mapper):
+        plotter.reset_camera()
+        plotter.enable_eye_dome_lighting()
+
+    ours, theirs = compare(scene)
+    assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.98
+    both = tools.covered(ours) & tools.covered(theirs)
+    # The pass reads nothing but depth; where depths agree, so does its shading.
+    assert np.median(np.abs(ours[both].astype(int) - theirs[both])) <= 8
+    assert (ours[both][:, 0] < 250).any()
+
+
+@pytest.mark.parametrize("technique", ["fxaa", "ssaa", "msaa"])
+def test_anti_aliasing(compare, tools, technique):
+    def scene(plotter, actor, mapper):
+        plotter.reset_camera()
+        if technique == "fxaa":
+            # PyVista warns that it is not good without a window, and takes another.
+            plotter.renderer.SetUseFXAA(True)
+        else:
+            plotter.enable_anti_aliasing(technique)
+
+    ours, theirs = compare(scene)
+    visible = [image.max(axis=-1) > 40 for image in (ours, theirs)]
+    assert tools.agreement(*visible) >= 0.97
+    if technique != "msaa":
+        partial = (ours[..., 0] > 30) & (ours[..., 0] < 225)
+        assert partial.sum() > 100, "edges should be blended"
+
+
+@pytest.mark.parametrize("kind_of_stereo", ["anaglyph", "red_blue", "crystal_eyes"])
+def test_stereo_draws_both_eyes(compare, tools, kind_of_stereo):
+    def scene(plotter, actor, mapper):
+        plotter.reset_camera()
+        plotter.render_window.StereoRenderOn()
+        {
+            "anaglyph": plotter.render_window.SetStereoTypeToAnaglyph,
+            "red_blue": plotter.render_window.SetStereoTypeToRedBlue,
+            "crystal_eyes": plotter.render_window.SetStereoTypeToSplitViewportHorizontal,
+        }[kind_of_stereo]()
+
+    ours, theirs = compare(scene)
+    assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
+    for channel in range(3):
+        one, other = ours[..., channel] > 0, theirs[..., channel] > 0
+        if other.any():
+            assert tools.agreement(one, other) >= 0.98
