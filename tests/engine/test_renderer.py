@@ -57,7 +57,7 @@ def gl_lines(gl, lines, matrix, size, *, points=False):
     array = gl.vertex_array(program, [(buffer, "3f", "p")])
     colour, depth = gl.renderbuffer(size), gl.depth_texture(size)
     target = gl.framebuffer([colour], depth)
-    before = gl.fbo
+    before = gl.detect_framebuffer()
     target.use()
     gl.enable_only(moderngl.DEPTH_TEST)
     target.clear(depth=1.0)
