@@ -6,10 +6,12 @@ that an array is a slice of the file. ``numpy.load`` reads the same file, and zi
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
 import struct
+import tokenize
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -120,7 +122,10 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
             arrays = {
                 info.filename: _map(path, stream, info, size) for info in archive.infolist() if info.filename != HEADER
             }
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, struct.error) as error:
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, RuntimeError, struct.error, OSError) as error:
+        # Offsets of a damaged directory make seeking fail with EINVAL; a missing file is its own error.
+        if isinstance(error, OSError) and error.errno != errno.EINVAL:
+            raise
         raise FormatError(path, None, f"no readable zip ({error})", "a whole .fiblets file: copy or make it again") from error
     if not isinstance(header, dict):
         raise FormatError(path, 0, "a header.json that is not an object", "a .fiblets file")
@@ -142,7 +147,7 @@ def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.
         if version != (1, 0):
             raise ValueError(f"npy version {version}")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
-    except ValueError as error:
+    except (ValueError, SyntaxError, TypeError, tokenize.TokenError) as error:
         raise FormatError(path, start, f"member {info.filename} without an .npy header ({error})", "one") from error
     at = stream.tell()
     n = 1

@@ -91,9 +91,18 @@ def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None 
     kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
     if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise ValueError(f"dtype is {kind}; float32 or float64 is needed")
+    chosen = None if ids is None else select_streamlines(fiblets.n_streamlines, ids)
+    try:
+        return _decompress(fiblets, chosen, kind)
+    except (IndexError, ValueError):
+        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        raise
+
+
+def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: np.dtype[Any]) -> Streamlines:
     counts, starts = fiblets.fiblet_counts(), fiblets.fiblet_points()
     meta: dict[str, Any] = {"affine": fiblets.affine, "space": dict(fiblets.space), "dropped": dict(fiblets.dropped)}
-    if ids is None:
+    if chosen is None:
         points = np.empty((fiblets.n_points, 3), kind)
         decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), starts, points)
         return Streamlines(
@@ -105,7 +114,6 @@ def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None 
             per_group={k: dict(v) for k, v in fiblets.per_group.items()},
             **meta,
         )
-    chosen = select_streamlines(fiblets.n_streamlines, ids)
     offsets = fiblets.offsets()
     lengths = offsets[chosen + 1] - offsets[chosen]
     fresh = np.concatenate([[0], np.cumsum(lengths)])
@@ -155,6 +163,14 @@ def iter_chunks(
         With the values of its streamlines; put together they are what :meth:`.FibletSet.decompress` returns.
     """
     kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
+    try:
+        yield from _iterate(fiblets, max_points, kind)
+    except (IndexError, ValueError):
+        fiblets.verify()
+        raise
+
+
+def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:
     n, a, first_id, first_point = fiblets.n_fiblets, 0, 0, 0
     while a < n or first_id < fiblets.n_streamlines:
         b = _next_begin(fiblets, a, max(max_points // MAX_POINTS, 1)) if a < n else n

@@ -18,7 +18,8 @@ DEFAULT_PROMISE_STEPS = 0.1
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 200_000  # segment lengths kept from each chunk; a median needs no more
-_ANCHOR_SHARE = 0.1  # of the promise that 16-bit anchors may use before finer ones are taken
+LARGEST = 1e35  # mm
+_ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
 Vector = npt.NDArray[np.float64]
 
@@ -53,7 +54,8 @@ class Survey:
         Raises
         ------
         ValueError
-            If a coordinate is not finite: such points have no place in bounds, and leaving them out would be silent.
+            If a coordinate is not finite (such points have no place in bounds, and leaving them out would be silent) or
+            too large for the GPU's float32.
         """
         points = streamlines.points
         self.n_points += len(points)
@@ -75,6 +77,11 @@ class Survey:
             bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise ValueError(
                 f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair that point"
+            )
+        if max(float(np.abs(lower).max()), float(np.abs(upper).max())) > LARGEST:
+            raise ValueError(
+                f"a coordinate of {max(-lower.min(), upper.max()):g} mm is beyond {LARGEST:g} mm, where float32 ends: "
+                "check the units"
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
@@ -160,8 +167,8 @@ class Parameters:
         finest = max(finest, np.finfo(np.float64).tiny * 2.0**60)
         if max_error is None:
             promise = max(DEFAULT_PROMISE_STEPS * step, finest)
-            if step == 0.0:
-                promise = max(finest, _anchor_error(extent, 16) * 2.0)
+            if step == 0.0:  # no segment has a length: as fine as 16-bit anchors are
+                promise = max(finest, _anchor_error(extent, 16) / _ANCHOR_SHARE) if found.n_points else 1e-6
         elif max_error < finest:
             raise ValueError(
                 f"max_error is {max_error} mm; over bounds of {extent.max():g} mm at {np.abs(lower).max():g} mm from the "
@@ -197,6 +204,8 @@ def _step_range(moving: Vector, step: float) -> tuple[float, float]:
     if not moving.size:
         return step, step
     near = moving[np.abs(moving - step) <= STEP_BAND * step]
+    if not near.size:
+        return step, step
     mean = float(near.mean())
     if float(near.std()) <= CONSTANT_STEP * step:
         return mean, mean

@@ -1,0 +1,238 @@
+"""Compiled kernels against the literal reference, bit for bit; promises and figures on real and made-up lines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import pvfiblets as pf
+from pvfiblets.codec import reference
+from pvfiblets.codec.fibletset import FibletSet
+from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
+from pvfiblets.streamlines import Streamlines
+
+from .samples import extremes, noisy, smooth, wandering
+
+
+def reference_slot(points: np.ndarray, fiblets: FibletSet) -> list[reference.DirectionPiece | reference.LatticePiece]:
+    """What the encoder must write for one cut of at most 60 points (mm from the origin), by the reference alone."""
+    p = fiblets.parameters
+    scale = fiblets.anchor_scale
+    top = 2.0**p.anchor_bits - 1
+    grid = np.divide(points, scale, out=np.zeros_like(points), where=scale > 0)
+    anchors = scale * np.clip(np.rint(grid), 0, top)
+    if len(points) > 1:
+        best = None
+        step, length = reference.choose_step(points, p.step_lo, p.step_hi)
+        smallest = reference.choose_cap(points)
+        for cap in range(smallest, min(smallest + 3, 16)):
+            piece = reference.encode_direction(points, anchors[0], step, length, cap)
+            if piece.error <= p.promise and (best is None or piece.error < best.error):
+                best = piece
+            if best is not None and best.error <= 0.5 * p.promise:
+                break
+        if best is not None:
+            return [best]
+    pieces, a = [], 0
+    for count in reference.plan_lattice(points, anchors, p.lattice):
+        pieces.append(reference.encode_lattice(points[a : a + count], anchors[a], p.lattice))
+        a += count
+    return pieces
+
+
+def assert_matches_reference(streamlines: Streamlines, fiblets: FibletSet, most: int = 150) -> None:
+    starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
+    code_at = unpack("code", fiblets.decoding) + fiblets._base(1)
+    where = {int(s): f for f, s in enumerate(starts)}
+    cuts = [
+        (a, min(a + MAX_POINTS, int(b)))
+        for s, b in zip(streamlines.offsets[:-1], streamlines.offsets[1:], strict=True)
+        for a in range(int(s), int(b), MAX_POINTS)
+    ]
+    chosen = np.random.default_rng(0).permutation(len(cuts))[:most]
+    for a, b in (cuts[c] for c in chosen):
+        true = streamlines.points[a:b].astype(np.float64) - fiblets.origin
+        for piece in reference_slot(true, fiblets):
+            f = where[a]
+            assert counts[f] == len(piece.points)
+            words = {name: int(unpack(name, fiblets.decoding)[f]) for name in ("shape", "step", "cap", "kind")}
+            kind = getattr(piece, "kind", DIRECTION)
+            assert words == {"shape": piece.shape, "step": piece.step, "cap": piece.cap, "kind": kind}
+            codes = fiblets.codes[code_at[f] : code_at[f] + len(piece.codes)]
+            np.testing.assert_array_equal(codes, piece.codes)
+            a += len(piece.points)
+
+
+SAMPLES = {"smooth": smooth, "noisy": noisy, "wandering": wandering}
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_kernels_write_the_references_codes(name: str) -> None:
+    streamlines = SAMPLES[name]()
+    assert_matches_reference(streamlines, pf.compress(streamlines))
+
+
+@pytest.mark.parametrize("name", ["dipy_tracks300.trk", "nv_stroke.trk.gz", "trxpy_small.trx", "gen_fibercup_det_0.25mm.tck"])
+def test_kernels_write_the_references_codes_on_real_files(shared_data: Path, name: str) -> None:
+    streamlines = pf.read(shared_data / name)
+    assert_matches_reference(streamlines, pf.compress(streamlines))
+
+
+def decode_by_reference(fiblets: FibletSet) -> np.ndarray:
+    """All points, decoded by the reference from the records."""
+    out = np.empty((fiblets.n_points, 3))
+    p = fiblets.parameters
+    for f in range(fiblets.n_fiblets):
+        a, d = fiblets.anchors[f], fiblets.decoding[f]
+        grid = np.array([unpack(f"anchor_{axis}", a) for axis in "xyz"], float)
+        if fiblets.anchors_low is not None:
+            grid = grid * 65536 + fiblets.anchors_low[f]
+        n = int(unpack("last", d)) + 1
+        at = int(unpack("code", d) + fiblets._base(1)[f])
+        anchor, shape, step = fiblets.anchor_scale * grid, int(d[0]), int(unpack("step", d))
+        cap, kind = int(unpack("cap", d)), int(unpack("kind", d))
+        first = int(fiblets.fiblet_points()[f])
+        codes = np.array(fiblets.codes[at:])
+        if kind == DIRECTION:
+            length = p.step_lo + step * (p.step_hi - p.step_lo) / 1023 if p.step_hi > p.step_lo else p.step_lo
+            out[first : first + n] = reference.decode_direction(anchor, shape, length, cap, codes, n)
+        else:
+            out[first : first + n] = reference.decode_lattice(anchor, kind, shape, step, p.lattice * 0.5**cap, codes, n)
+    return out + fiblets.origin
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_kernels_decode_what_the_reference_decodes(name: str) -> None:
+    fiblets = pf.compress(SAMPLES[name](10, 100))
+    expected = decode_by_reference(fiblets)
+    np.testing.assert_array_equal(fiblets.decompress(dtype=np.float64).points, expected)
+    np.testing.assert_array_equal(fiblets.decompress(dtype=np.float32).points, expected.astype(np.float32))
+
+
+@pytest.mark.parametrize("effort", ["fast", "high"])
+@pytest.mark.parametrize("name", extremes())
+def test_extreme_lines_keep_the_promise(name: str, effort: str) -> None:
+    streamlines = extremes()[name]
+    fiblets = pf.compress(streamlines, effort=effort)
+    fiblets.verify()
+    decoded = fiblets.decompress()
+    np.testing.assert_array_equal(decoded.offsets, streamlines.offsets)
+    assert np.isfinite(decoded.points).all()
+    if streamlines.n_points:
+        distance = np.linalg.norm(decoded.points.astype(float) - streamlines.points.astype(float), axis=1)
+        assert distance.max() <= fiblets.promise
+    error = pf.measure_error(streamlines, fiblets)
+    assert error.max_mm <= fiblets.promise
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
+    seed = data.draw(st.integers(0, 2**32 - 1))
+    rng = np.random.default_rng(seed)
+    counts = data.draw(st.lists(st.integers(0, 150), min_size=1, max_size=5))
+    scale = 10.0 ** data.draw(st.floats(-6, 6))
+    spread = data.draw(st.floats(0, 2))
+    steps = np.exp(spread * rng.normal(size=(sum(counts), 1)))
+    points = scale * np.cumsum(steps * rng.normal(size=(sum(counts), 3)), axis=0)
+    points += scale * data.draw(st.sampled_from([0.0, 1e3, -1e5]))
+    streamlines = Streamlines(points, np.concatenate([[0], np.cumsum(counts)]))
+    promise = data.draw(st.one_of(st.none(), st.floats(1e-3, 10).map(lambda v: v * scale)))
+    fiblets = pf.compress(streamlines, max_error=promise)
+    if promise is not None:
+        assert fiblets.promise == promise
+    fiblets.verify()
+    decoded = fiblets.decompress(dtype=np.float64)
+    np.testing.assert_array_equal(decoded.offsets, streamlines.offsets)
+    if len(points):
+        assert np.linalg.norm(decoded.points - points, axis=1).max() <= fiblets.promise
+
+
+def test_figures_on_smooth_and_noisy_constant_steps() -> None:
+    """The issue's figures in steps (the paper: max 0.17, mean 0.05), at the bytes of a full fiblet."""
+    for lines, effort, largest, mean in (
+        (smooth(200, 240), "fast", 0.07, 0.012),
+        (noisy(200, 240), "fast", 0.07, 0.02),
+        (smooth(60, 240), "high", 0.07, 0.009),
+        (noisy(60, 240), "high", 0.07, 0.015),
+    ):
+        fiblets = pf.compress(lines, effort=effort)
+        error = pf.measure_error(lines, fiblets)
+        assert (unpack("kind", fiblets.decoding) == DIRECTION).all()
+        assert error.max_steps <= largest
+        assert error.mean_steps <= mean
+        assert (fiblets.nbytes - fiblets.pages.nbytes) / fiblets.n_points <= 1.34
+
+
+def test_figures_on_real_tracking(shared_data: Path) -> None:
+    lines = pf.read(shared_data / "wholebrain_eudx_0.5mm_fifth.tck")
+    fiblets = pf.compress(lines)
+    error = pf.measure_error(lines, fiblets)
+    assert error.max_steps <= 0.07
+    assert error.mean_steps <= 0.012
+
+
+def test_high_effort_is_better_than_fast() -> None:
+    lines = noisy(40, 240)
+    fast, high = (pf.measure_error(lines, pf.compress(lines, effort=e)) for e in ("fast", "high"))
+    assert high.mean_mm < 0.9 * fast.mean_mm
+
+
+def test_variable_steps_stay_below_their_bytes() -> None:
+    lines = wandering(100, 60)
+    fiblets = pf.compress(lines)
+    assert (fiblets.nbytes - fiblets.pages.nbytes) / fiblets.n_points <= 2.7
+
+
+@pytest.mark.parametrize("make", [smooth, wandering])
+def test_six_point_streamlines_stay_below_half_of_float32(make) -> None:
+    lines = make(200, 6)
+    fiblets = pf.compress(lines)
+    assert fiblets.nbytes - fiblets.pages.nbytes < 0.5 * lines.n_points * 12
+
+
+def test_bounding_spheres_hold_all_that_a_fiblet_draws() -> None:
+    lines = Streamlines.concatenate([smooth(10, 130), wandering(10, 130)])
+    fiblets = pf.compress(lines)
+    points = fiblets.decompress(dtype=np.float64).points
+    starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
+    ends = unpack("end", fiblets.anchors)
+    for f in range(fiblets.n_fiblets):
+        mine = points[starts[f] : starts[f] + counts[f]]
+        centre = mine[0]
+        if not ends[f]:
+            following = points[starts[f + 1]]
+            centre = (mine[0] + following) / 2
+            mine = np.concatenate([mine, following[None]])
+        radius = fiblets.reach[f] * fiblets.reach_scale
+        assert np.linalg.norm(mine - centre, axis=1).max() <= radius * (1 + 1e-9) + 1e-9
+
+
+def test_many_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More than one page of fiblets, in several chunks that begin inside pages."""
+    n = 40_000
+    rng = np.random.default_rng(5)
+    points = np.cumsum(rng.normal(size=(n, 2, 3)), axis=1) + rng.uniform(-50, 50, (n, 1, 3))
+    lines = Streamlines(points.reshape(-1, 3), np.arange(0, 2 * n + 1, 2))
+    whole = pf.compress(lines)
+    monkeypatch.setattr(pf.codec.compress.split_chunks, "__defaults__", (12_345,))
+    pieces = pf.compress(lines)
+    assert whole.pages.shape == (4, 3)
+    for name in ("anchors", "decoding", "reach", "codes", "pages"):
+        np.testing.assert_array_equal(getattr(whole, name), getattr(pieces, name))
+    whole.verify()
+    some = rng.permutation(n)[:100]
+    chosen = whole.decompress(some)
+    assert np.linalg.norm(chosen.points - lines[some].points, axis=1).max() <= whole.promise
+
+
+def test_steps_of_one_fiblet_are_its_own() -> None:
+    """A file whose streamlines differ in step by a few percent still takes one byte a point."""
+    lines = Streamlines.concatenate([smooth(20, 120, step) for step in (0.49, 0.5, 0.515)])
+    fiblets = pf.compress(lines)
+    assert (unpack("kind", fiblets.decoding) == DIRECTION).all()
+    assert pf.measure_error(lines, fiblets).max_mm <= fiblets.promise

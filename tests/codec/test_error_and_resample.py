@@ -1,0 +1,127 @@
+"""Measured errors against a plain computation; resampling against closed forms; bad arguments."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pvfiblets as pf
+from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.codec.resample import resample
+from pvfiblets.streamlines import Streamlines
+
+from .samples import smooth, wandering
+
+
+def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = Streamlines.concatenate([wandering(30, 50), Streamlines(np.empty((0, 3)), [0, 0]), smooth(30, 100)])
+    fiblets = pf.compress(lines, max_error=0.03)
+    error = pf.measure_error(lines, fiblets)
+    distance = np.linalg.norm(lines.points - fiblets.decompress().points.astype(float), axis=1)
+    assert error.max_mm == pytest.approx(distance.max(), rel=1e-12)
+    assert error.mean_mm == pytest.approx(distance.mean(), rel=1e-12)
+    assert error.p999_mm == pytest.approx(np.percentile(distance, 99.9, method="inverted_cdf"), abs=1e-4 * fiblets.promise)
+    assert error.max_steps == pytest.approx(error.max_mm / fiblets.step)
+    assert np.isnan(error.streamline_max_mm[30])
+    per = [distance[a:b] for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)]
+    np.testing.assert_allclose(error.streamline_max_mm, [d.max() if len(d) else np.nan for d in per])
+    np.testing.assert_allclose(error.streamline_mean_mm, [d.mean() if len(d) else np.nan for d in per])
+    chunks = list(fiblets.iter_chunks(100))
+    monkeypatch.setattr(type(fiblets), "iter_chunks", lambda self: iter(chunks))
+    again = pf.measure_error(lines, fiblets)
+    assert (again.max_mm, again.p999_mm) == (error.max_mm, error.p999_mm)
+    assert again.mean_mm == pytest.approx(error.mean_mm, rel=1e-12)
+
+
+def test_errors_against_other_lines_are_refused() -> None:
+    fiblets = pf.compress(smooth(5, 50))
+    with pytest.raises(ValueError, match="5 streamlines of 250 points, the original 4 of 200"):
+        pf.measure_error(smooth(4, 50), fiblets)
+    other = smooth(5, 50)
+    moved = Streamlines(other.points, [0, 50, 101, 150, 200, 250])
+    with pytest.raises(ValueError, match="streamline 1 has another number of points"):
+        pf.measure_error(moved, fiblets)
+
+
+def test_resampled_points_lie_a_step_apart_on_the_line() -> None:
+    angle = np.linspace(0, np.pi, 2001)
+    circle = 10 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    lines = Streamlines.from_list([circle, circle[:1], np.empty((0, 3))])
+    fresh = resample(lines, 0.5)
+    first = fresh[0]
+    np.testing.assert_allclose(first[[0, -1]], circle[[0, -1]])
+    arc = 10 * np.unwrap(np.arctan2(first[:, 1], first[:, 0]))
+    np.testing.assert_allclose(np.diff(arc)[:-1], 0.5, rtol=1e-5)
+    assert 0 < np.diff(arc)[-1] <= 0.5 + 1e-5
+    assert [len(f) for f in fresh] == [len(first), 1, 0]
+
+
+def test_resampling_carries_values_along() -> None:
+    lines = Streamlines.from_list([np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]])])
+    lines = Streamlines(lines.points, lines.offsets, per_point={"v": np.array([0.0, 1.0, 4.0])}, per_streamline={"w": [7]})
+    fresh = resample(lines, 0.5)
+    np.testing.assert_allclose(fresh.per_point["v"], fresh.points[:, 0])
+    assert fresh.n_points == 9
+    assert fresh.per_streamline["w"].tolist() == [7]
+
+
+def test_a_zero_length_streamline_resamples_to_its_ends() -> None:
+    fresh = resample(Streamlines.from_list([np.zeros((5, 3))]), 1.0)
+    assert fresh.points.tolist() == [[0, 0, 0], [0, 0, 0]]
+
+
+def test_compress_resamples_only_when_asked() -> None:
+    lines = smooth(5, 50)
+    assert pf.compress(lines).n_points == lines.n_points
+    coarse = pf.compress(lines, step=2.0)
+    assert coarse.n_points == resample(lines, 2.0).n_points
+    assert coarse.step == pytest.approx(2.0, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"step": -1.0}, r"step is -1.0; 'auto' or a positive length"),
+        ({"step": float("nan")}, r"step is nan"),
+        ({"max_error": 0.0}, r"max_error is 0.0; a positive length"),
+        ({"max_error": float("inf")}, r"max_error is inf"),
+        ({"max_error": 1e-12}, r"the finest promise is"),
+        ({"effort": "slow"}, r"effort is 'slow'; 'fast' or 'high'"),
+        ({"per_point": ["fa"]}, r"no per-point array 'fa'; the streamlines have: none"),
+        ({"per_point": "fa"}, r"a list of names is needed: \['fa'\]"),
+        ({"per_point_bits": 12}, r"per_point_bits is 12; 8 or 16"),
+    ],
+)
+def test_bad_arguments_say_what_is_needed(arguments: dict, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        pf.compress(smooth(2, 20), **arguments)
+
+
+def test_bad_points_are_named() -> None:
+    points = np.array(smooth(2, 20).points)
+    points[7, 1] = np.nan
+    with pytest.raises(ValueError, match="point 7 is .*nan.*remove or repair"):
+        pf.compress(Streamlines(points, [0, 20, 40]))
+    points[7, 1] = 1e300
+    with pytest.raises(ValueError, match=r"1e\+300 mm is beyond"):
+        pf.compress(Streamlines(points, [0, 20, 40]))
+    with pytest.raises(TypeError, match=r"takes pvfiblets.Streamlines, got list"):
+        pf.compress([points])
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+def test_quantised_values(bits: int) -> None:
+    rng = np.random.default_rng(0)
+    values = rng.normal(size=1000)
+    values[[3, 500]] = np.nan, np.inf
+    finite = np.isfinite(values)
+    coded = quantise_values(values, values[finite].min(), values[finite].max(), bits)
+    decoded = coded.values()
+    assert np.isnan(decoded[~finite]).all()
+    worst = np.abs(decoded[finite] - values[finite]).max()
+    assert coded.max_error == pytest.approx(worst, rel=1e-6)
+    assert worst <= np.ptp(values[finite]) / (2**bits - 2) / 2 * (1 + 1e-3) + 1e-6
+    constant = quantise_values(np.full(5, 3.25), 3.25, 3.25, bits)
+    assert constant.values().tolist() == [3.25] * 5
+    nothing = quantise_values(np.full(5, np.nan), 0.0, 0.0, bits)
+    assert np.isnan(nothing.values()).all()
