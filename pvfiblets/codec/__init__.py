@@ -1,0 +1,1 @@
+"""The codec: streamlines to fiblets and back. NumPy and compiled kernels; no OpenGL, no VTK."""

@@ -1,7 +1,8 @@
 """A stored zip of ``.npy`` arrays that can be mapped into memory: the container of ``.fiblets`` files.
 
-Members are stored, not deflated, and start at multiples of 64 bytes (padding sits in each local header's extra field), so
-that an array is a slice of the file. ``numpy.load`` reads the same file, and zip's own CRC-32 guards every member.
+Members are stored, not deflated, and start at multiples of 64 bytes (padding sits in each local header's extra
+field), so that an array is a slice of the file. ``numpy.load`` reads the same file, and zip's own CRC-32 guards every
+member.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def write_archive(path: str | os.PathLike[str], header: Mapping[str, Any], membe
             _write(archive, HEADER, [json.dumps(header, indent=1, allow_nan=False).encode()])
             for name, member in members.items():
                 _write(archive, name, _with_npy_header(member))
-        os.replace(partial, target)
+        partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
 
@@ -111,7 +112,7 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
         If it is no zip, is cut short, has no header, or a member is deflated or not an array.
     """
     try:
-        with zipfile.ZipFile(path) as archive, open(path, "rb") as stream:
+        with zipfile.ZipFile(path) as archive, Path(path).open("rb") as stream:
             if HEADER not in archive.namelist():
                 raise FormatError(path, 0, "a zip without a member header.json", "a .fiblets file")
             try:
@@ -122,11 +123,20 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
             arrays = {
                 info.filename: _map(path, stream, info, size) for info in archive.infolist() if info.filename != HEADER
             }
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, RuntimeError, struct.error, OSError) as error:
+    except (
+        zipfile.BadZipFile,
+        zipfile.LargeZipFile,
+        NotImplementedError,
+        RuntimeError,
+        struct.error,
+        OSError,
+    ) as error:
         # Offsets of a damaged directory make seeking fail with EINVAL; a missing file is its own error.
         if isinstance(error, OSError) and error.errno != errno.EINVAL:
             raise
-        raise FormatError(path, None, f"no readable zip ({error})", "a whole .fiblets file: copy or make it again") from error
+        raise FormatError(
+            path, None, f"no readable zip ({error})", "a whole .fiblets file: copy or make it again"
+        ) from error
     if not isinstance(header, dict):
         raise FormatError(path, 0, "a header.json that is not an object", "a .fiblets file")
     return header, arrays
@@ -155,7 +165,10 @@ def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.
         n *= int(length)
     if dtype.hasobject or fortran or at + n * dtype.itemsize > min(start + info.file_size, size):
         raise FormatError(
-            path, at, f"member {info.filename} of shape {shape}, {dtype}, in {info.file_size} bytes", "a plain array that fits"
+            path,
+            at,
+            f"member {info.filename} of shape {shape}, {dtype}, in {info.file_size} bytes",
+            "a plain array that fits",
         )
     if n == 0:
         return np.empty(shape, dtype)

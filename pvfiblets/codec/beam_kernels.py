@@ -2,8 +2,8 @@
 
 Greedy closed loop takes the code nearest to the next point; where that leaves the frame pointing badly, the point after
 pays for it. Here several partial codings are kept at once. Each is extended by the nearest code and by that code's
-nearest neighbours, and those with the least sum of squared errors go on. Several cap angles are tried, and the result is
-the one with the least sum of squares among those within the promise.
+nearest neighbours, and those with the least sum of squared errors go on. Several cap angles are tried, and the result
+is the one with the least sum of squares among those within the promise.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ BRANCH = 5  # continuations tried from each: the nearest code and four of its ne
 _jit = numba.njit(cache=True, error_model="numpy")
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def neighbours(directions: Any) -> Any:
     """The ``BRANCH - 1`` codes nearest to each code: ``(caps, 256, BRANCH - 1)`` uint8."""
     caps = len(directions)
@@ -55,9 +55,11 @@ def neighbours(directions: Any) -> Any:
     return found
 
 
-@_jit  # type: ignore[untyped-decorator]
-def _beam(true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, near: Any, scratch: Any, codes: Any) -> float:
-    """Code ``true[:n]`` from the anchor ``scratch[0][0, :3]``; returns the sum of squared errors, inf above the promise."""
+@_jit
+def _beam(
+    true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, near: Any, scratch: Any, codes: Any
+) -> float:
+    """Code ``true[:n]`` from the anchor ``scratch[0]``; returns the sum of squared errors, inf above the promise."""
     anchor, states, fresh, parents, chosen = scratch
     quats, dirs, ratios, starts, listed = tables
     table, reach, start, ratio = quats[cap], dirs[cap], starts[cap], ratios[cap]
@@ -130,7 +132,7 @@ def _beam(true: Any, n: int, step: float, cap: int, give_up: float, tables: Any,
     return float(states[0, 7])
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, decoded: Any) -> float:
     """Decode from the anchor in ``decoded[0]``; returns the largest squared error."""
     px, py, pz = decoded[0, 0], decoded[0, 1], decoded[0, 2]
@@ -153,7 +155,7 @@ def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, de
     return worst
 
 
-@numba.njit(cache=True, error_model="numpy", parallel=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy", parallel=True)
 def encode_directions(
     points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
 ) -> None:

@@ -70,9 +70,13 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
         point, rank = int(points[-1] + counts[-1]), int(ranks[-1])
     ids = fiblets.rank_to_id
     if ids is not None and len(ids) and (ids[0] < 0 or ids[-1] >= fiblets.n_streamlines or (np.diff(ids) <= 0).any()):
-        raise FormatError(path, None, "a rank_to_id that does not rise", f"streamlines 0..{fiblets.n_streamlines - 1} in order")
+        raise FormatError(
+            path, None, "a rank_to_id that does not rise", f"streamlines 0..{fiblets.n_streamlines - 1} in order"
+        )
     for name, members in fiblets.groups.items():
         if len(members) and not 0 <= int(np.min(members)) <= int(np.max(members)) < fiblets.n_streamlines:
             raise FormatError(path, None, f"group {name!r} with foreign streamlines", f"0..{fiblets.n_streamlines - 1}")
     if point != fiblets.n_points or rank + 1 != fiblets.n_ranks:
-        raise FormatError(path, None, f"records of {point} points, {rank + 1} streamlines", f"{fiblets.n_points}, {fiblets.n_ranks}")
+        raise FormatError(
+            path, None, f"records of {point} points, {rank + 1} streamlines", f"{fiblets.n_points}, {fiblets.n_ranks}"
+        )

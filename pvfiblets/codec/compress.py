@@ -32,8 +32,8 @@ def compress(
     """Compress streamlines into fiblets.
 
     Streamlines of (nearly) constant step take one byte a point and 22 bytes per 60 points, at a mean error of about a
-    hundredth of a step; any other line is kept point for point on a lattice, at about two bytes a point. Which of the two
-    is decided for every 60 points, so that the promise always holds.
+    hundredth of a step; any other line is kept point for point on a lattice, at about two bytes a point. Which of the
+    two is decided for every 60 points, so that the promise always holds.
 
     Parameters
     ----------
@@ -47,7 +47,8 @@ def compress(
     effort : {'fast', 'high'}
         'high' looks ahead with a beam while coding: a tenth of the speed for a lower mean error at the same bytes.
     per_point : sequence of str
-        Names of per-point arrays to keep, quantised over their range. None by default: what is not asked for costs nothing.
+        Names of per-point arrays to keep, quantised over their range. None by default: what is not asked for costs
+        nothing.
     per_point_bits : {8, 16}
         Bits for each of those values.
     progress : bool
@@ -61,8 +62,8 @@ def compress(
     Raises
     ------
     ValueError
-        For points that are not finite, a step or promise that is not a positive number, an unknown effort, or a per-point
-        name that the streamlines do not have (the error lists those they have).
+        For points that are not finite, a step or promise that is not a positive number, an unknown effort, or a
+        per-point name that the streamlines do not have (the error lists those they have).
 
     Notes
     -----

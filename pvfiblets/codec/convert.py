@@ -151,9 +151,7 @@ def measure_file_error(
     return _compare(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
 
 
-def _compare(
-    originals: Iterable[Streamlines], total: int, target: str | PathLike[str], progress: bool
-) -> CodingError:
+def _compare(originals: Iterable[Streamlines], total: int, target: str | PathLike[str], progress: bool) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = open_fiblets(target)
     tally = ErrorTally(coded.promise, coded.step)
@@ -172,8 +170,8 @@ def _compare(
             if not np.array_equal(a.offsets, b.offsets):
                 differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
                 raise ValueError(
-                    f"streamline {seen + differs} has {a.counts[differs]} points in the original and {b.counts[differs]} in "
-                    "the fiblets: errors can be measured only against what was compressed"
+                    f"streamline {seen + differs} has {a.counts[differs]} points in the original, {b.counts[differs]} "
+                    "in the fiblets: errors can be measured only against what was compressed"
                 )
             tally.add(a, b.points)
             rest = _plain(rest, n, len(rest))

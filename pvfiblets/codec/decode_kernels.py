@@ -17,8 +17,10 @@ _jit = numba.njit(cache=True, error_model="numpy")
 _parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_jit  # type: ignore[untyped-decorator]
-def _decode_direction(a: Any, shape: int, step: float, table: Any, codes: Any, at: int, n: int, origin: Any, p: Any) -> None:
+@_jit
+def _decode_direction(
+    a: Any, shape: int, step: float, table: Any, codes: Any, at: int, n: int, origin: Any, p: Any
+) -> None:
     dx, dy, dz, w, x, y, z = first_frame(shape)
     ax = a[0] + step * dx
     ay = a[1] + step * dy
@@ -39,21 +41,23 @@ def _decode_direction(a: Any, shape: int, step: float, table: Any, codes: Any, a
         p[i, 0], p[i, 1], p[i, 2] = ax + origin[0], ay + origin[1], az + origin[2]
 
 
-@_jit  # type: ignore[untyped-decorator]
-def _take(codes: Any, at: int, width: int) -> int:
-    value = 0
+@_jit
+def _take(codes: Any, at: int, width: int) -> Any:
+    value = np.int64(0)
     for byte in range(width):
         value |= np.int64(codes[at + byte]) << (8 * byte)
     return value
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _signed(value: int, bits: int) -> int:
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
-@_jit  # type: ignore[untyped-decorator]
-def _decode_lattice(a: Any, kind: int, shape: int, step: int, h: float, codes: Any, at: int, n: int, origin: Any, p: Any) -> None:
+@_jit
+def _decode_lattice(
+    a: Any, kind: int, shape: int, step: int, h: float, codes: Any, at: int, n: int, origin: Any, p: Any
+) -> None:
     if kind == WIDE:
         l0 = _signed(_take(codes, at, 4), 32)
         l1 = _signed(_take(codes, at + 4, 4), 32)
@@ -80,9 +84,18 @@ def _decode_lattice(a: Any, kind: int, shape: int, step: int, h: float, codes: A
         p[i, 2] = a[2] + h * k2 + origin[2]
 
 
-@_parallel  # type: ignore[untyped-decorator]
+@_parallel
 def decode(
-    fiblets: Any, destination: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, out: Any
+    fiblets: Any,
+    destination: Any,
+    arrays: Any,
+    low: Any,
+    fine: Any,
+    origin: Any,
+    scale: Any,
+    steps: Any,
+    tables: Any,
+    out: Any,
 ) -> int:
     """Decode fiblets into ``out``; returns how many were damaged and left out.
 

@@ -83,7 +83,9 @@ def decode_fiblets(
         points,
     )
     if damaged:
-        raise FormatError("the set of fiblets", None, f"{damaged} records that point beyond its arrays", "an undamaged file")
+        raise FormatError(
+            "the set of fiblets", None, f"{damaged} records that point beyond its arrays", "an undamaged file"
+        )
 
 
 def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None = None) -> Streamlines:
@@ -100,7 +102,7 @@ def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None 
 
 
 def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: np.dtype[Any]) -> Streamlines:
-    counts, starts = fiblets.fiblet_counts(), fiblets.fiblet_points()
+    starts = fiblets.fiblet_points()
     meta: dict[str, Any] = {"affine": fiblets.affine, "space": dict(fiblets.space), "dropped": dict(fiblets.dropped)}
     if chosen is None:
         points = np.empty((fiblets.n_points, 3), kind)

@@ -116,7 +116,17 @@ class Encoder:
         code_start, radii = _spread(total, fiblet_at, code_at), _spread(total, fiblet_at, radius)
         if wanted.size:
             at = np.stack([fiblet_at[wanted], code_at[wanted]], axis=1)
-            filled = (packed, rows["shape"], rows["step"], rows["cap"], rows["kind"], counts, code_start, point_start, radii)
+            filled = (
+                packed,
+                rows["shape"],
+                rows["step"],
+                rows["cap"],
+                rows["kind"],
+                counts,
+                code_start,
+                point_start,
+                radii,
+            )
             lattice_kernels.encode_lattices(
                 points, origin, slots, wanted, scale, self.top, p.lattice, cuts, end, at, filled
             )
@@ -198,7 +208,7 @@ class Encoder:
 def _cut(
     offsets: npt.NDArray[np.int64],
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.uint8]]:
-    """Slots of at most 60 points: ``(m, 2)`` first point and count, rank of each, and whether it ends its streamline."""
+    """Slots of at most 60 points: ``(m, 2)`` first point and count, rank, and whether each ends its streamline."""
     lengths = np.diff(offsets)
     filled = np.flatnonzero(lengths > 0)
     per = -(-lengths[filled] // MAX_POINTS)
@@ -216,7 +226,7 @@ def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> 
     return spread
 
 
-@numba.njit(cache=True, parallel=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, parallel=True)
 def _gather(codes: Any, slots: Any, which: Any, code_at: Any, packed: Any) -> None:
     for w in numba.prange(len(which)):
         slot = which[w]

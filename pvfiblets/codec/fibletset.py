@@ -188,9 +188,9 @@ class FibletSet:
         return self.pages[:-1, column].repeat(PAGE)[: self.n_fiblets]
 
     def offsets(self) -> npt.NDArray[np.int64]:
-        """``(n_streamlines + 1,)`` int64: where each streamline's points start, as in :class:`~pvfiblets.Streamlines`."""
-        lengths = np.zeros(self.n_streamlines, np.int64)
-        np.add.at(lengths, self.fiblet_streamlines(), self.fiblet_counts())
+        """``(n_streamlines + 1,)`` int64: where each streamline's points start; the last is ``n_points``."""
+        counts = np.bincount(self.fiblet_streamlines(), self.fiblet_counts(), minlength=self.n_streamlines)
+        lengths = counts.astype(np.int64)  # float64 sums of whole numbers are exact below 2 ** 53
         return np.concatenate([[0], np.cumsum(lengths)])
 
     def first_fiblets(self) -> npt.NDArray[np.int64]:
@@ -205,8 +205,8 @@ class FibletSet:
         Parameters
         ----------
         ids : array_like, optional
-            Streamlines to decode: indices (any order, repeats allowed; negative ones count from the end), a boolean mask
-            ``(n_streamlines,)``, or a slice. All by default.
+            Streamlines to decode: indices (any order, repeats allowed; negative ones count from the end), a boolean
+            mask ``(n_streamlines,)``, or a slice. All by default.
         dtype : {float32, float64}, optional
             Type of the points; by default float32 where its rounding is far below the promise.
 
@@ -263,7 +263,9 @@ class FibletSet:
         return open_fiblets(path)
 
     def verify(self) -> None:
-        """Check that all records agree with each other; :func:`pvfiblets.codec.storage.verify_file` checks a file's bytes.
+        """Check that all records agree with each other.
+
+        The bytes of a file are checked by :func:`pvfiblets.codec.storage.verify_file`.
 
         Raises
         ------

@@ -23,12 +23,12 @@ _jit = numba.njit(cache=True, error_model="numpy", inline="never")
 _parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_parallel  # type: ignore[untyped-decorator]
+@_parallel
 def scan(points: Any, offsets: Any, found: Any) -> None:
     """Bounds and longest squared segment, by thousands of streamlines.
 
-    ``found`` is ``(ceil(n_streamlines / 1024), 7)`` float64: least x, y, z; greatest x, y, z; longest segment squared. A
-    coordinate that is not finite makes the row's bounds infinite.
+    ``found`` is ``(ceil(n_streamlines / 1024), 7)`` float64: least x, y, z; greatest x, y, z; longest segment
+    squared. A coordinate that is not finite makes the row's bounds infinite.
     """
     n = len(offsets) - 1
     for row in numba.prange(len(found)):
@@ -52,7 +52,7 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
                 found[row, 6] = max(found[row, 6], squares)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def quantise(value: float, scale: float, top: float) -> float:
     """Anchor coordinate as a whole number (float64 holds all 32 bits)."""
     if scale <= 0.0:
@@ -60,7 +60,7 @@ def quantise(value: float, scale: float, top: float) -> float:
     return min(max(float(np.rint(value / scale)), 0.0), top)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def pack_direction(x: float, y: float, z: float) -> int:
     """See :func:`.reference.pack_direction`."""
     if x == 0.0 and y == 0.0 and z == 0.0:
@@ -77,7 +77,7 @@ def pack_direction(x: float, y: float, z: float) -> int:
     return (iu & 0xFFFF) | ((iv & 0xFFFF) << 16)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def first_frame(word: int) -> Any:
     """First direction and frame ``(dx, dy, dz, w, x, y, z)``; see :func:`.reference.first_frame`."""
     iu = word & 0xFFFF
@@ -108,7 +108,7 @@ def first_frame(word: int) -> Any:
     return dx, dy, dz, -qz, qy, 0.0, qw
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: Any, table: Any) -> int:
     """Code whose direction is nearest to (l0, l1, l2); see :mod:`.nearest`."""
     n = math.sqrt(l0 * l0 + l1 * l1 + l2 * l2)
@@ -141,7 +141,7 @@ def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: 
     return best
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, codes: Any, decoded: Any) -> float:
     """Code ``true[:n]`` from the anchor in ``decoded[0]``; returns the largest squared error, inf above ``give_up``."""
     quats, dirs, ratios, starts, listed = tables
@@ -185,7 +185,7 @@ def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: An
     return worst if worst <= give_up else math.inf
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
     """See :func:`.reference.choose_cap`."""
     least = 1.0
@@ -203,7 +203,7 @@ def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
     return len(ratios) - 1
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
     """See :func:`.reference.choose_step`."""
     if hi <= lo:
@@ -212,11 +212,10 @@ def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
     for i in range(1, n):
         dx, dy, dz = true[i, 0] - true[i - 1, 0], true[i, 1] - true[i - 1, 1], true[i, 2] - true[i - 1, 2]
         arc += math.sqrt(dx * dx + dy * dy + dz * dz)
-    index = int(np.rint(min(max((arc / (n - 1) - lo) / (hi - lo) * STEP_LEVELS, 0.0), float(STEP_LEVELS))))
-    return index
+    return int(np.rint(min(max((arc / (n - 1) - lo) / (hi - lo) * STEP_LEVELS, 0.0), float(STEP_LEVELS))))
 
 
-@_parallel  # type: ignore[untyped-decorator]
+@_parallel
 def encode_directions(
     points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
 ) -> None:
@@ -236,9 +235,9 @@ def encode_directions(
     tables : tuple
         Quaternions and directions as float64, ratios, candidate rows.
     out : tuple
-        ``ok (m,) uint8``, ``shape (m,) uint32``, ``step (m,) uint16``, ``cap (m,) uint8``, ``radius (m,) float64`` (of the
-        sphere that design states), ``end (m,) uint8`` (whether the slot ends its streamline; read), ``codes (n,) uint8``
-        (a slot's codes stand where its points stand).
+        ``ok (m,) uint8``, ``shape (m,) uint32``, ``step (m,) uint16``, ``cap (m,) uint8``, ``radius (m,) float64``
+        (of the sphere that design states), ``end (m,) uint8`` (whether the slot ends its streamline; read), ``codes
+        (n,) uint8`` (a slot's codes stand where its points stand).
     """
     ok, shape, step_index, cap_index, radius, end, codes = out
     lo, hi = steps
@@ -292,7 +291,7 @@ def encode_directions(
                 radius[slot] = _radius(points, origin, scale, top, decoded[mine], first, n, end[slot])
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _radius(points: Any, origin: Any, scale: Any, top: float, decoded: Any, first: int, n: int, end: int) -> float:
     """Radius of the sphere around the middle of this anchor and the next that holds all that the fiblet draws."""
     cx, cy, cz = decoded[0, 0], decoded[0, 1], decoded[0, 2]

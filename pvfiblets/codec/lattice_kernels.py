@@ -23,9 +23,9 @@ _jit = numba.njit(cache=True, error_model="numpy")
 _parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _box(true: Any, a: int, b: int, anchor: Any, h: float, lo: Any, n: Any) -> int:
-    """Box of the lattice steps of ``true[a:b]``: fills ``lo`` and ``n``; bytes per code + 8 * kind, or 0 if none holds."""
+    """Box of the lattice steps of ``true[a:b]``, into ``lo`` and ``n``; bytes per code + 8 * kind, or 0 if none."""
     for axis in range(3):
         lo[axis] = 0
         n[axis] = 1
@@ -63,20 +63,20 @@ def _box(true: Any, a: int, b: int, anchor: Any, h: float, lo: Any, n: Any) -> i
     return width + 8 * (width if narrow else WIDE)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _size(found: int, count: int) -> int:
     if found == 0:
         return NONE
     return RECORD_BYTES + (WIDE_HEADER if found >> 3 == WIDE else 0) + (count - 1) * (found & 7)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _anchor(true: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
     for axis in range(3):
         anchor[axis] = scale[axis] * quantise(true[i, axis], scale[axis], top)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) -> Any:
     """Cheapest split by repeated halving: sizes of the pieces into ``cuts``; their number and their bytes of codes."""
     low = np.zeros(_NODES, np.int64)
@@ -132,14 +132,23 @@ def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) ->
     return pieces, total
 
 
-@_parallel  # type: ignore[untyped-decorator]
+@_parallel
 def plan_lattices(
-    points: Any, origin: Any, slots: Any, wanted: Any, scale: Any, top: float, h: float, pieces: Any, size: Any, cuts: Any
+    points: Any,
+    origin: Any,
+    slots: Any,
+    wanted: Any,
+    scale: Any,
+    top: float,
+    h: float,
+    pieces: Any,
+    size: Any,
+    cuts: Any,
 ) -> None:
     """Plan the slots named in ``wanted``.
 
-    Fills ``pieces (k,)`` and ``size (k,)`` (bytes of codes) and, where a slot's points stand in ``cuts (n_points,)``, the
-    numbers of points of its pieces. See :func:`.reference.plan_lattice`.
+    Fills ``pieces (k,)`` and ``size (k,)`` (bytes of codes) and, where a slot's points stand in ``cuts (n_points,)``,
+    the numbers of points of its pieces. See :func:`.reference.plan_lattice`.
     """
     for w in numba.prange(len(wanted)):
         first, n = slots[wanted[w], 0], slots[wanted[w], 1]
@@ -151,13 +160,13 @@ def plan_lattices(
         pieces[w], size[w] = _plan(true, n, scale, top, h, mine)
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _put(codes: Any, at: int, value: int, width: int) -> None:
     for byte in range(width):
         codes[at + byte] = (value >> (8 * byte)) & 0xFF
 
 
-@_jit  # type: ignore[untyped-decorator]
+@_jit
 def _encode(true: Any, a: int, b: int, scale: Any, top: float, h: float, codes: Any, at: int, decoded: Any) -> Any:
     """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written."""
     anchor, lo, n = np.empty(3), np.empty(3, np.int64), np.empty(3, np.int64)
@@ -199,9 +208,19 @@ def _encode(true: Any, a: int, b: int, scale: Any, top: float, h: float, codes: 
     return kind, shape, step, halvings, at - start
 
 
-@_parallel  # type: ignore[untyped-decorator]
+@_parallel
 def encode_lattices(
-    points: Any, origin: Any, slots: Any, wanted: Any, scale: Any, top: float, h: float, cuts: Any, end: Any, at: Any, out: Any
+    points: Any,
+    origin: Any,
+    slots: Any,
+    wanted: Any,
+    scale: Any,
+    top: float,
+    h: float,
+    cuts: Any,
+    end: Any,
+    at: Any,
+    out: Any,
 ) -> None:
     """Code the slots named in ``wanted`` as planned.
 

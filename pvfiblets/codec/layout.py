@@ -180,12 +180,11 @@ def glsl_source() -> str:
         f"const float FIBLET_STEP_LEVELS = {float(STEP_LEVELS)};",
         f"const uint FIBLET_WIDE_HEADER = {WIDE_HEADER}u;",
     ]
-    lines += [
-        f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()
-    ]
+    lines += [f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()]
     for f in FIELDS.values():
         vector = "uvec2" if f.array == "anchors" else "uvec3"
         lines.append(
-            f"uint fiblet_{f.name}({vector} words) {{ return bitfieldExtract(words.{'xyz'[f.word]}, {f.shift}, {f.width}); }}"
+            f"uint fiblet_{f.name}({vector} words) "
+            f"{{ return bitfieldExtract(words.{'xyz'[f.word]}, {f.shift}, {f.width}); }}"
         )
     return "\n".join(lines) + "\n"

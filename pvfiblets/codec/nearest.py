@@ -1,9 +1,9 @@
 """Exact nearest code without trying all 256: candidates by cell of the disc.
 
 The disc of :mod:`~pvfiblets.codec.tables` is cut into square cells. For each cap angle and cell the codes that can be
-nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the nearest one plus the
-cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so that the answer is the
-same as that of a search through the whole table. Directions beyond the cells are searched in full.
+nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the nearest one plus
+the cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so that the answer
+is the same as that of a search through the whole table. Directions beyond the cells are searched in full.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Candidates(NamedTuple):
     codes: npt.NDArray[np.uint8]
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _direction(u: float, v: float, ratio: float) -> Any:
     """Direction at a point of the disc; beyond the antipode there is none, and the antipode stands in."""
     rho2 = u * u + v * v
@@ -42,7 +42,7 @@ def _direction(u: float, v: float, ratio: float) -> Any:
     return x, lateral * u, lateral * v
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
     cell = 2.0 * EXTENT / CELLS
     distance = np.empty(CODES)

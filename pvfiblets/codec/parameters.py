@@ -76,7 +76,7 @@ class Survey:
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
             bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise ValueError(
-                f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair that point"
+                f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair it"
             )
         if max(float(np.abs(lower).max()), float(np.abs(upper).max())) > LARGEST:
             raise ValueError(
@@ -171,8 +171,8 @@ class Parameters:
                 promise = max(finest, _anchor_error(extent, 16) / _ANCHOR_SHARE) if found.n_points else 1e-6
         elif max_error < finest:
             raise ValueError(
-                f"max_error is {max_error} mm; over bounds of {extent.max():g} mm at {np.abs(lower).max():g} mm from the "
-                f"origin the finest promise is {finest:.3g} mm: ask for that, or bring the data nearer the origin"
+                f"max_error is {max_error} mm; over bounds of {extent.max():g} mm at {np.abs(lower).max():g} mm from "
+                f"the origin the finest promise is {finest:.3g} mm: ask for that, or bring the data nearer the origin"
             )
         else:
             promise = float(max_error)

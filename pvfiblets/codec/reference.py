@@ -6,11 +6,11 @@ millimetres relative to the set's origin throughout.
 Decoding (paper: Schertzer et al. 2022, section 3.3.1 and appendix B): ``P_0`` is the anchor, ``P_1 = P_0 + step d_1``;
 each code turns the frame, ``q <- q T[cap][code]``, and ``P <- P + step (q X)``.
 
-Encoding is closed loop: every code aims from the *decoded* previous point, in the decoded frame, at the true next point,
-so that errors do not add up; the code taken is the nearest of all 256, not a rounded u and v (appendix A).
+Encoding is closed loop: every code aims from the *decoded* previous point, in the decoded frame, at the true next
+point, so that errors do not add up; the code taken is the nearest of all 256, not a rounded u and v (appendix A).
 
-Fiblets whose steps vary, or bend too sharply, are coded as steps between the points of an integer lattice of edge ``h``:
-rounding to it errs by at most ``h sqrt(3) / 2`` whatever the steps, and adding integers does not drift.
+Fiblets whose steps vary, or bend too sharply, are coded as steps between the points of an integer lattice of edge
+``h``: rounding to it errs by at most ``h sqrt(3) / 2`` whatever the steps, and adding integers does not drift.
 """
 
 from __future__ import annotations
@@ -208,7 +208,9 @@ def encode_direction(points: Array, anchor: Array, step: int, length: float, cap
     return DirectionPiece(shape, step, cap, codes, decoded, error)
 
 
-def decode_direction(anchor: Array, shape: int, length: float, cap: int, codes: npt.NDArray[np.uint8], count: int) -> Array:
+def decode_direction(
+    anchor: Array, shape: int, length: float, cap: int, codes: npt.NDArray[np.uint8], count: int
+) -> Array:
     """Points of a DIRECTION fiblet, ``(count, 3)`` float64 (paper, section 3.3.1)."""
     points = np.empty((count, 3))
     points[0] = anchor

@@ -21,13 +21,14 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     streamlines : Streamlines
         Any steps.
     step : float
-        Distance between new points along each streamline, mm. Both ends stay where they are, so the last step is shorter
-        unless the length is a whole number of steps.
+        Distance between new points along each streamline, mm. Both ends stay where they are, so the last step is
+        shorter unless the length is a whole number of steps.
 
     Returns
     -------
     Streamlines
-        Same number of streamlines; per-point values interpolated linearly (a NaN at either end gives NaN), the rest kept.
+        Same number of streamlines; per-point values interpolated linearly (a NaN at either end gives NaN), the rest
+        kept.
 
     Raises
     ------
@@ -54,7 +55,9 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     def mix(values: Any) -> Any:
         a, b = values[low].astype(np.float64), values[high].astype(np.float64)
         w = weight.reshape(-1, *([1] * (values.ndim - 1)))
-        return np.where(w == 0.0, a, a * (1.0 - w) + b * w).astype(values.dtype if values.dtype.kind == "f" else np.float32)
+        return np.where(w == 0.0, a, a * (1.0 - w) + b * w).astype(
+            values.dtype if values.dtype.kind == "f" else np.float32
+        )
 
     return Streamlines(
         mix(points),
@@ -69,7 +72,7 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     )
 
 
-@numba.njit(cache=True, parallel=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, parallel=True)
 def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
     for s in numba.prange(len(offsets) - 1):
         sum_ = 0.0
@@ -81,7 +84,7 @@ def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
             arc[i] = sum_
 
 
-@numba.njit(cache=True, parallel=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, parallel=True)
 def _locate(arc: Any, offsets: Any, fresh: Any, step: float, low: Any, weight: Any) -> None:
     """Segment that each new point lies in, and how far along it."""
     for s in numba.prange(len(offsets) - 1):

@@ -1,8 +1,8 @@
 """``.fiblets`` files: a FibletSet on disk, and the functions that the formats room calls for that suffix.
 
 The file is a stored zip (:mod:`.archive`): ``header.json``, then ``anchors.npy``, ``decoding.npy``, ``reach.npy``,
-``codes.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json`` names the members
-of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the file's size.
+``codes.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json`` names the
+members of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the file's size.
 """
 
 from __future__ import annotations
@@ -124,25 +124,33 @@ def open_fiblets(path: str | PathLike[str]) -> FibletSet:
     if not isinstance(version, int) or version < 1:
         raise FormatError(path, 0, f"version {version!r} in header.json", f"a version of 1 to {VERSION}")
     if version > VERSION:
-        raise FormatError(path, 0, f"version {version} in header.json", f"at most {VERSION}: update pvfiblets to read this file")
+        raise FormatError(
+            path, 0, f"version {version} in header.json", f"at most {VERSION}: update pvfiblets to read this file"
+        )
     try:
         fiblets = _assemble(header, arrays)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise FormatError(path, 0, f"a header.json that does not fit its members ({error!r})", "a whole .fiblets file") from error
+        raise FormatError(
+            path, 0, f"a header.json that does not fit its members ({error!r})", "a whole .fiblets file"
+        ) from error
     _check_shapes(path, fiblets, header)
     return fiblets
 
 
 def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
     values = header["parameters"]
-    parameters = Parameters(
-        **{f.name: tuple(values[f.name]) if isinstance(values[f.name], list) else values[f.name] for f in fields(Parameters)}
-    )
+    chosen: dict[str, Any] = {
+        f.name: tuple(values[f.name]) if isinstance(values[f.name], list) else values[f.name]
+        for f in fields(Parameters)
+    }
+    parameters = Parameters(**chosen)
     numbers = [*parameters.origin, *parameters.anchor_scale, *header["bounds"]]
     numbers += [getattr(parameters, k) for k in ("step", "step_lo", "step_hi", "lattice", "reach_scale", "promise")]
     if len(numbers) != 18 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
         raise ValueError("parameters out of range")
     b = [float(v) for v in header["bounds"]]
+    plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in _CORE}
+    plain |= {name: arrays.get(f"{name}.npy") for name in _OPTIONAL}
     return FibletSet(
         parameters=parameters,
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
@@ -157,8 +165,7 @@ def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> Fi
         affine=np.array(header["affine"], float).reshape(4, 4),
         space=dict(header["space"]),
         dropped={k: int(v) for k, v in header["dropped"].items()},
-        **{name: arrays[f"{name}.npy"] for name in _CORE},
-        **{name: arrays.get(f"{name}.npy") for name in _OPTIONAL},
+        **plain,
     )
 
 
@@ -191,12 +198,16 @@ def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any
         expect(ranks == f.n_streamlines, f"{f.n_streamlines} streamlines", f"the {ranks} of the page table")
     else:
         expect(f.rank_to_id.shape == (ranks,), f"rank_to_id {f.rank_to_id.shape}", f"({ranks},)")
-    expect((f.anchors_low is not None) == (f.parameters.anchor_bits == 32), "anchors_low", "it with 32-bit anchors only")
+    expect(
+        (f.anchors_low is not None) == (f.parameters.anchor_bits == 32), "anchors_low", "it with 32-bit anchors only"
+    )
     for name, points in f.per_point.items():
         fits = points.codes.shape == (f.n_points,) and points.codes.dtype in (np.dtype(np.uint8), np.dtype("<u2"))
         expect(fits, f"per-point {name} {points.codes.dtype}{points.codes.shape}", f"({f.n_points},)")
     for name, rows in f.per_streamline.items():
-        expect(rows.ndim > 0 and len(rows) == f.n_streamlines, f"per-streamline {name} {rows.shape}", f"{f.n_streamlines}")
+        expect(
+            rows.ndim > 0 and len(rows) == f.n_streamlines, f"per-streamline {name} {rows.shape}", f"{f.n_streamlines}"
+        )
 
 
 def verify_file(path: str | PathLike[str]) -> None:
@@ -212,7 +223,9 @@ def verify_file(path: str | PathLike[str]) -> None:
     fiblets = open_fiblets(path)
     damaged = check_members(path)
     if damaged:
-        raise FormatError(path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again")
+        raise FormatError(
+            path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again"
+        )
     check_records(fiblets, path)
 
 

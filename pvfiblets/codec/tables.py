@@ -6,7 +6,8 @@ disc by the equal-area map ``rho = sqrt((1 - V.x) / Ratio)``.
 
 What differs from the paper, and why:
 
-- **Points of the disc.** The paper spreads 16 x 16 codes evenly (a half-octahedron's square). Turns are not even: within
+- **Points of the disc.** The paper spreads 16 x 16 codes evenly (a half-octahedron's square). Turns are not even:
+within
   a fiblet they crowd around straight on, and the even grid of 16 has no code there at all. Here code ``i`` lies on a
   Fibonacci spiral at ``rho = (i / 256) ** (7 / 8)``: code 0 is exactly straight on and codes thin out towards the rim.
   On real tracking this lowers the mean error by a quarter to a half at equal bytes.
@@ -15,8 +16,8 @@ What differs from the paper, and why:
   smallest rotation that turns X to its direction, and frames are products of those: no special direction, no square
   root while decoding, and a frame follows the streamline without twist.
 
-1 - cos alpha is computed as 2 sin^2(alpha / 2), which keeps its digits when alpha is small. Tables are rounded to float32
-so that the GPU and the CPU read the very same numbers.
+1 - cos alpha is computed as 2 sin^2(alpha / 2), which keeps its digits when alpha is small. Tables are rounded to
+float32 so that the GPU and the CPU read the very same numbers.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def cap_ratios() -> npt.NDArray[np.float64]:
     numpy.ndarray
         ``(16,)`` float64, increasing.
     """
-    half = np.float32(np.sin(np.radians(CAP_DEGREES) / 2)).astype(np.float64)
+    half = np.sin(np.radians(np.array(CAP_DEGREES)) / 2).astype(np.float32).astype(np.float64)
     return _frozen(2.0 * half * half)
 
 
@@ -77,8 +78,8 @@ def quaternions() -> npt.NDArray[np.float32]:
     Returns
     -------
     numpy.ndarray
-        ``(16, 256, 4)`` float32 unit quaternions ``(w, x, y, z)`` by cap index and code; each turns X = (1, 0, 0) by the
-        smallest rotation to the code's direction.
+        ``(16, 256, 4)`` float32 unit quaternions ``(w, x, y, z)`` by cap index and code; each turns X = (1, 0, 0) by
+        the smallest rotation to the code's direction.
     """
     points = disc()
     table = np.empty((CAPS, CODES, 4), np.float32)

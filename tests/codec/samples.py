@@ -47,7 +47,9 @@ def noisy(n: int = 40, points: int = 150, step: float = 0.2, degrees: float = 5.
 def wandering(n: int = 60, points: int = 40, seed: int = 2) -> Streamlines:
     """Random walks: every step another length and direction."""
     rng = np.random.default_rng(seed)
-    return Streamlines.from_list([np.cumsum(rng.normal(size=(points, 3)), axis=0) + rng.uniform(-50, 50, 3) for _ in range(n)])
+    return Streamlines.from_list(
+        [np.cumsum(rng.normal(size=(points, 3)), axis=0) + rng.uniform(-50, 50, 3) for _ in range(n)]
+    )
 
 
 def extremes() -> dict[str, Streamlines]:
@@ -74,7 +76,9 @@ def extremes() -> dict[str, Streamlines]:
         "float32 a million mm away": Streamlines((points - 1e6).astype(np.float32), base.offsets),
         "a millionth of a mm": Streamlines(points * 1e-6, base.offsets),
         "a million mm in size": Streamlines(points * 1e6, base.offsets),
-        "steps from 1e-6 to 1e6": one([np.cumsum(10.0 ** rng.uniform(-6, 6, (400, 1)) * rng.normal(size=(400, 3)), axis=0)]),
+        "steps from 1e-6 to 1e6": one(
+            [np.cumsum(10.0 ** rng.uniform(-6, 6, (400, 1)) * rng.normal(size=(400, 3)), axis=0)]
+        ),
         "one long step": one([np.concatenate([np.zeros((1, 3)), points[:80] + 1e5])]),
         "denormal coordinates": one([rng.normal(size=(70, 3)) * 1e-310]),
         "huge coordinates": one([rng.normal(size=(70, 3)) * 1e30]),

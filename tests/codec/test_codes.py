@@ -76,7 +76,9 @@ def test_kernels_write_the_references_codes(name: str) -> None:
     assert_matches_reference(streamlines, pf.compress(streamlines))
 
 
-@pytest.mark.parametrize("name", ["dipy_tracks300.trk", "nv_stroke.trk.gz", "trxpy_small.trx", "gen_fibercup_det_0.25mm.tck"])
+@pytest.mark.parametrize(
+    "name", ["dipy_tracks300.trk", "nv_stroke.trk.gz", "trxpy_small.trx", "gen_fibercup_det_0.25mm.tck"]
+)
 def test_kernels_write_the_references_codes_on_real_files(shared_data: Path, name: str) -> None:
     streamlines = pf.read(shared_data / name)
     assert_matches_reference(streamlines, pf.compress(streamlines))

@@ -20,7 +20,9 @@ def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch
     distance = np.linalg.norm(lines.points - fiblets.decompress().points.astype(float), axis=1)
     assert error.max_mm == pytest.approx(distance.max(), rel=1e-12)
     assert error.mean_mm == pytest.approx(distance.mean(), rel=1e-12)
-    assert error.p999_mm == pytest.approx(np.percentile(distance, 99.9, method="inverted_cdf"), abs=1e-4 * fiblets.promise)
+    assert error.p999_mm == pytest.approx(
+        np.percentile(distance, 99.9, method="inverted_cdf"), abs=1e-4 * fiblets.promise
+    )
     assert error.max_steps == pytest.approx(error.max_mm / fiblets.step)
     assert np.isnan(error.streamline_max_mm[30])
     per = [distance[a:b] for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)]
@@ -58,7 +60,9 @@ def test_resampled_points_lie_a_step_apart_on_the_line() -> None:
 
 def test_resampling_carries_values_along() -> None:
     lines = Streamlines.from_list([np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]])])
-    lines = Streamlines(lines.points, lines.offsets, per_point={"v": np.array([0.0, 1.0, 4.0])}, per_streamline={"w": [7]})
+    lines = Streamlines(
+        lines.points, lines.offsets, per_point={"v": np.array([0.0, 1.0, 4.0])}, per_streamline={"w": [7]}
+    )
     fresh = resample(lines, 0.5)
     np.testing.assert_allclose(fresh.per_point["v"], fresh.points[:, 0])
     assert fresh.n_points == 9
