@@ -170,7 +170,8 @@ def _numbers(path: str, matrices: dict[str, _Matrix], name: str, n: int) -> NDAr
     position, values = matrices[name]
     if len(values) != n:
         raise FormatError(path, position, f"{name} of {len(values)} numbers", f"{n} numbers")
-    return values.astype(np.float64)
+    with np.errstate(invalid="ignore"):  # NaN is judged by the caller
+        return values.astype(np.float64)
 
 
 def _clusters(path: str, matrices: dict[str, _Matrix], n: int) -> tuple[dict[str, Array], dict[str, dict[str, Array]]]:

@@ -29,6 +29,7 @@ import gzip
 import zlib
 from array import array
 from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike, fspath
 from typing import Any, NamedTuple, Protocol
 
@@ -52,7 +53,7 @@ HOLDS = ("per_point", "per_streamline")
 
 AFTER_LAST = "bytes after the last streamline"
 
-_READ_BYTES = 1 << 22
+_READ_BYTES = 1 << 20
 """Compressed files are inflated by this much at a time."""
 
 
@@ -228,33 +229,36 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
         return
 
 
-def _open(path: str | PathLike[str]) -> tuple[_Words, Header]:
+@contextmanager
+def _opened(path: str | PathLike[str]) -> Iterator[tuple[_Words, Header]]:
     name = fspath(path)
     if name.lower().endswith(".gz"):
-        stream = gzip.open(name, "rb")  # noqa: SIM115 - lives as long as the words
-        header = parse_header(name, inflate(name, stream, HEADER_SIZE))
-        return _InflatedWords(name, stream, header.order), header
+        with gzip.open(name, "rb") as stream:
+            header = parse_header(name, inflate(name, stream, HEADER_SIZE))
+            yield _InflatedWords(name, stream, header.order), header
+        return
     file = MappedFile(path)
     header = parse_header(name, file.bytes(0, min(file.size, HEADER_SIZE), "the header"))
-    return _MappedWords(file, header.order), header
+    yield _MappedWords(file, header.order), header
 
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a whole trk or trk.gz file (see :func:`pvfiblets.formats.read`)."""
-    words, header = _open(path)
-    # One window that holds every record: no file has more words than this.
-    return Streamlines.concatenate(list(_chunks(words, header, 1 << 40)))
+    with _opened(path) as (words, header):
+        # One window that holds every record: no file has more words than this.
+        return Streamlines.concatenate(list(_chunks(words, header, 1 << 40)))
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Stream a trk or trk.gz file (see :func:`pvfiblets.formats.iter_chunks`)."""
-    words, header = _open(path)
-    yield from _chunks(words, header, max_points)
+    with _opened(path) as (words, header):
+        yield from _chunks(words, header, max_points)
 
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Header facts (see :func:`pvfiblets.formats.info`); the header has no number of points."""
-    _, header = _open(path)
+    with _opened(path) as (_, header):
+        pass
     return {
         "streamlines": header.n_streamlines or None,
         "points": None,

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike
 from typing import Any
 
@@ -46,9 +47,9 @@ UNKNOWN = "entries of unknown meaning"
 class _Trx:
     """The entries of one trx file, checked against its header."""
 
-    def __init__(self, path: str | PathLike[str]) -> None:
-        self.zip = ZipArrays(path)
-        self.path = self.zip.path
+    def __init__(self, archive: ZipArrays) -> None:
+        self.zip = archive
+        self.path = archive.path
         header = self._header()
         self.n_streamlines = self._count(header, "NB_STREAMLINES")
         self.n_points = self._count(header, "NB_VERTICES")
@@ -219,6 +220,15 @@ class _Trx:
             dropped = {}
 
 
+@contextmanager
+def _opened(path: str | PathLike[str]) -> Iterator[_Trx]:
+    archive = ZipArrays(path)
+    try:
+        yield _Trx(archive)
+    finally:
+        archive.close()
+
+
 def _one_row(values: Array) -> Array:
     """Return a group's value without the axis of one row that the format stores."""
     return values[0] if values.ndim == 2 and len(values) == 1 else values
@@ -232,8 +242,8 @@ def _free(name: str, taken: dict[str, Any]) -> str:
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a whole trx file (see :func:`pvfiblets.formats.read`)."""
-    trx = _Trx(path)
-    return next(trx.chunks(max(1, trx.n_points)))
+    with _opened(path) as trx:
+        return next(trx.chunks(max(1, trx.n_points)))
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
@@ -241,22 +251,23 @@ def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamli
 
     In memory besides a piece: the offsets, the groups and the groups' data.
     """
-    yield from _Trx(path).chunks(max_points)
+    with _opened(path) as trx:
+        yield from trx.chunks(max_points)
 
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Header facts (see :func:`pvfiblets.formats.info`)."""
-    trx = _Trx(path)
-    return {
-        "streamlines": trx.n_streamlines,
-        "points": trx.n_points,
-        "dtype": trx.positions.dtype.name if trx.positions else None,
-        "per_point": list(trx.per_point),
-        "per_streamline": list(trx.per_streamline),
-        "groups": list(trx.groups),
-        "affine": trx.affine,
-        **trx.space,
-    }
+    with _opened(path) as trx:
+        return {
+            "streamlines": trx.n_streamlines,
+            "points": trx.n_points,
+            "dtype": trx.positions.dtype.name if trx.positions else None,
+            "per_point": list(trx.per_point),
+            "per_streamline": list(trx.per_streamline),
+            "groups": list(trx.groups),
+            "affine": trx.affine,
+            **trx.space,
+        }
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:

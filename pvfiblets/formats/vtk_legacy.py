@@ -9,7 +9,8 @@ The file must be read whole: the data of a streamline lie in several places of i
 
 Damage (a missing or unknown keyword, sizes that contradict each other or the file, point indices
 outside the points) is a FormatError at the keyword or the number. Cells that are not lines,
-points of no line, points with NaN or infinity and arrays of text are left out and counted.
+points of no line, points with NaN or infinity and arrays of text are left out and counted. A file
+cut off exactly between two sections is a valid file: nothing in it tells that more was meant.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.errors import FormatError
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
-from pvfiblets.formats.whole import TEXT_ARRAYS, facts, only_finite, pieces
+from pvfiblets.formats.whole import facts, only_finite, pieces
 from pvfiblets.streamlines import Streamlines, from_cells
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
@@ -41,16 +43,19 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  
     offsets, ids = parser.lines
     n = len(offsets) - 1
     first = parser.cells_before_lines
-    streamlines = from_cells(
-        points,
-        offsets,
-        ids,
-        parser.point_data,
-        {k: v[first : first + n] for k, v in parser.cell_data.items()},
-        other_cells=parser.n_cells - n,
-        field=parser.field,
-    )
-    return only_finite(streamlines, {TEXT_ARRAYS: parser.text_arrays})
+    try:
+        streamlines = from_cells(
+            points,
+            offsets,
+            ids,
+            parser.point_data,
+            {k: v[first : first + n] for k, v in parser.cell_data.items()},
+            other_cells=parser.n_cells - n,
+            field=parser.field,
+        )
+    except ValueError as error:  # groups in the field data that name no streamlines
+        raise FormatError(parser.path, None, str(error), "data that agree with each other") from error
+    return only_finite(streamlines, parser.notes)
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:

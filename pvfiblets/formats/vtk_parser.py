@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.formats.whole import TEXT_ARRAYS
 from pvfiblets.streamlines import offsets_from_counts
 
 Array = NDArray[Any]
@@ -40,6 +41,8 @@ _TYPES = {
 _CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS")
 """In the order in which cell data count the cells."""
 
+LAST_NUMBER = "last number, at the very end of the file, perhaps cut short (kept)"
+
 _LINE_LIMIT = 1 << 16
 _TEXT_BLOCK = 1 << 22
 
@@ -55,8 +58,8 @@ class LegacyParser:
     n_cells, cells_before_lines : int
         All cells of all kinds; vertices, which come before the lines.
     point_data, cell_data, field : dict of str to array
-    text_arrays : int
-        Arrays of strings, which were passed over.
+    notes : dict of str to int
+        What to report: arrays of strings passed over, a last number that may be cut short.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -69,7 +72,7 @@ class LegacyParser:
         self.point_data: dict[str, Array] = {}
         self.cell_data: dict[str, Array] = {}
         self.field: dict[str, Array] = {}
-        self.text_arrays = 0
+        self.notes: dict[str, int] = {TEXT_ARRAYS: 0}
         self._rows: int | None = None
         self._target: dict[str, Array] = self.field
 
@@ -259,7 +262,7 @@ class LegacyParser:
             rows = self._rows
         if kind.lower() == "string":
             self._skip_strings(rows * columns)
-            self.text_arrays += 1
+            self.notes[TEXT_ARRAYS] += 1
             return
         values = self._values(rows * columns, kind)
         if columns != 1:
@@ -333,12 +336,13 @@ class LegacyParser:
                     part = np.fromstring(text, exact, sep=" ")
                 except ValueError:
                     part = np.zeros(0, exact)
+                narrow = part.astype(dtype)
             if len(part) == 0 or len(part) > missing or len(part) != len(text.split()):
                 raise FormatError(
                     self.path, self._at - len(text), repr(text[:40].decode("latin-1")),
                     f"{missing} more numbers",
                 )  # fmt: skip
-            parts.append(part.astype(dtype))
+            parts.append(narrow)
             missing -= len(part)
         return np.concatenate(parts) if parts else np.zeros(0, dtype)
 
@@ -349,6 +353,8 @@ class LegacyParser:
         ends = np.flatnonzero(~blank[:-1] & blank[1:]) + 1
         if self._at + len(block) == self.file.size and len(blank) and not blank[-1]:
             ends = np.append(ends, len(block))
+            if len(ends) <= most:
+                self.notes[LAST_NUMBER] = 1
         if len(ends) == 0:
             raise FormatError(self.path, self._at, "the end of the numbers", f"{most} more numbers")
         text = block[: ends[min(most, len(ends)) - 1]]

@@ -74,6 +74,9 @@ class XmlFile:
         match = re.compile(rb"<AppendedData[^>]*>\s*_").search(self.file.buffer)
         self._appended_at = match.end() if match else None
         self._appended_raw = bool(match and b'"raw"' in match[0].replace(b"'", b'"'))
+        tail = self.file.bytes(max(0, self.file.size - 64), min(64, self.file.size), "the end")
+        if match is not None and not tail.rstrip().endswith(b"</VTKFile>"):
+            raise FormatError(self.path, self.file.size, repr(tail[-20:]), "</VTKFile>: the file is truncated")
         root = self._parse(self.file.size if match is None else match.start(), match is None)
         kind = root.attributes.get("type", "")
         poly_data = root.child("PolyData")

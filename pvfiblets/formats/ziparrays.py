@@ -62,10 +62,32 @@ class ZipArrays:
             raise FormatError(self.path, 0, "an empty file", "a zip archive")
         with self.damage(0, "the archive"):
             self.archive = ZipFile(self.path)
-            infos = [i for i in self.archive.infolist() if not i.is_dir()]
-        self._infos = {i.filename: i for i in infos}
         self.entries: list[ArrayEntry] = []
         self.odd_names = 0
+        try:
+            self._list()
+        except BaseException:
+            self.archive.close()
+            raise
+
+    def close(self) -> None:
+        """Close the archive; arrays that were read stay valid."""
+        for entry in self.entries:
+            entry.close()
+        self.archive.close()
+
+    def _list(self) -> None:
+        self._infos: dict[str, ZipInfo] = {}
+        for info in self.archive.infolist():
+            if info.filename in self._infos or not info.filename:
+                raise FormatError(
+                    self.path,
+                    info.header_offset,
+                    f"a second file of the name {info.filename!r}",
+                    "each name once, and none empty",
+                )
+            if not info.filename.endswith("/"):
+                self._infos[info.filename] = info
         for info in self._infos.values():
             if info.filename == "header.json":
                 continue
@@ -157,6 +179,12 @@ class ArrayEntry:
         self._stream: IO[bytes] | None = None
         self._next = 0
 
+    def close(self) -> None:
+        """Close the stream of a deflated array."""
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+
     def expect(self, rows: int, what: str, source: str) -> None:
         """Raise FormatError unless the array has as many rows as the header promises."""
         if self.rows != rows:
@@ -169,7 +197,7 @@ class ArrayEntry:
 
     def whole(self) -> Array:
         """Return the whole array in native order, one axis where it has one column."""
-        self._stream, self._next = None, 0
+        self.close()
         return self.flat(self.take(0, self.rows))
 
     def flat(self, rows: Array) -> Array:
@@ -185,6 +213,7 @@ class ArrayEntry:
         if self._info.compress_type == ZIP_STORED:
             return self._mapped(first, last)
         if self._stream is None or first < self._next:
+            self.close()
             self._stream, self._next = self._home.open(self._info), 0
         stride = self.columns * self.dtype.itemsize
         with self._home.damage(self.position, self._info.filename):

@@ -1,0 +1,134 @@
+"""Small tractograms, and files of every format made from them by independent writers."""
+
+from __future__ import annotations
+
+import gzip
+import struct
+from pathlib import Path
+
+import numpy as np
+
+from pvfiblets.streamlines import Streamlines
+
+AFFINE = np.array([[-2.0, 0, 0, 90], [0, 2.5, 0, -126], [0, 0, 3, -72], [0, 0, 0, 1]])
+
+
+def rich(seed: int = 0, counts=(5, 1, 12, 0, 2, 7)) -> Streamlines:
+    """Streamlines with all that a format might hold, one-point and zero-point ones among them."""
+    rng = np.random.default_rng(seed)
+    n, m = sum(counts), len(counts)
+    points = (rng.normal(size=(n, 3)) * 40).astype(np.float32)
+    if n > 3:
+        points[2] = points[1]  # a repeated point
+    return Streamlines(
+        points,
+        np.concatenate([[0], np.cumsum(counts)]),
+        per_point={
+            "fa": rng.random(n).astype(np.float32),
+            "rgb": rng.random((n, 3)).astype(np.float32),
+        },
+        per_streamline={
+            "weight": rng.random(m).astype(np.float32),
+            "pair": rng.integers(0, 99, (m, 2)).astype(np.float32),
+        },
+        groups={"left": np.array([0, 2]), "all of them": np.arange(m)},
+        per_group={"left": {"color": np.array([1, 2, 3], np.uint8)}},
+        affine=AFFINE,
+        space={
+            "dimensions": (91, 109, 91),
+            "voxel_sizes": (2.0, 2.5, 3.0),
+            "voxel_order": "LAS",
+        },
+    )
+
+
+def same(a: Streamlines, b: Streamlines, parts=("per_point", "per_streamline"), atol=0.0) -> None:
+    """Assert that two Streamlines hold the same."""
+    assert np.array_equal(a.offsets, b.offsets)
+    assert a.points.shape == b.points.shape
+    assert np.allclose(a.points, b.points, rtol=0, atol=atol)
+    for part in parts:
+        ours, theirs = getattr(a, part), getattr(b, part)
+        assert set(ours) == set(theirs), part
+        for name in ours:
+            if part == "per_group":
+                assert set(ours[name]) == set(theirs[name])
+                for key in ours[name]:
+                    assert np.array_equal(ours[name][key], theirs[name][key])
+            else:
+                assert np.array_equal(ours[name], theirs[name], equal_nan=True), name
+
+
+def tck_bytes(
+    rows: np.ndarray,
+    *,
+    datatype: str = "Float32LE",
+    header: str = "",
+    offset: int | None = None,
+    magic: str = "mrtrix tracks",
+) -> bytes:
+    """A tck file of the given rows, laid out by hand."""
+    kind = {"32LE": "<f4", "32BE": ">f4", "64LE": "<f8", "64BE": ">f8"}[datatype[-4:]]
+    at = 256 if offset is None else offset
+    text = f"{magic}\ndatatype: {datatype}\n{header}file: . {at}\nEND\n".encode()
+    return text.ljust(256, b"\n") + np.asarray(rows).astype(kind).tobytes()
+
+
+def tt_bytes(streamlines_voxels: list[np.ndarray], *, extra=(), affine=AFFINE, blocks=1) -> bytes:
+    """An inflated TinyTrack file: `streamlines_voxels` are integers in 1/32 voxel."""
+
+    def matrix(name: str, values: np.ndarray, columns: int | None = None) -> bytes:
+        tens = {"f4": 10, "i4": 20, "u2": 40, "u1": 50}[values.dtype.str[1:]]
+        rows = 1 if columns is None else len(values)
+        size = len(values) if columns is None else columns
+        raw = name.encode() + b"\0"
+        return struct.pack("<5i", tens, rows, size, 0, len(raw)) + raw + values.tobytes()
+
+    out = matrix("dimension", np.array([91, 109, 91], "<i4"))
+    out += matrix("voxel_size", np.array([2, 2.5, 3], "<f4"))
+    out += matrix("trans_to_mni", np.asarray(affine, "<f4").ravel())
+    for name, values in extra:
+        out += matrix(name, values)
+    for block in range(blocks):
+        track = b""
+        for points in streamlines_voxels[block::blocks]:
+            flat = np.asarray(points)
+            track += struct.pack("<I3i", flat.size, *flat[0].tolist())
+            track += np.diff(flat, axis=0).astype(np.int8).tobytes()
+        name = "track" if blocks == 1 else f"track{block}"
+        out += matrix(name, np.frombuffer(track, np.uint8))
+    return out
+
+
+def corpus(folder: Path) -> dict[str, Path]:
+    """One small healthy file of every format and variant."""
+    from pvfiblets import formats
+
+    s = rich()
+    files: dict[str, Path] = {}
+    for suffix in (".tck", ".trk", ".trx", ".vtk", ".vtp"):
+        path = folder / f"rich{suffix}"
+        formats.write(path, s)
+        files[suffix] = path
+    gz = folder / "rich.trk.gz"
+    gz.write_bytes(gzip.compress(files[".trk"].read_bytes(), mtime=0))
+    files[".trk.gz"] = gz
+    tracks = [np.cumsum(np.full((k, 3), 7), axis=0) + 900 for k in (4, 1, 9)]
+    tt = folder / "small.tt.gz"
+    extra = [("cluster", np.array([0, 1, 0], "<u2")), ("color", np.array([255, 65280], "<i4"))]
+    tt.write_bytes(gzip.compress(tt_bytes(tracks, extra=extra), mtime=0))
+    files[".tt.gz"] = tt
+    mesh = s.to_polydata()
+    for name, options in (("text.vtk", {"binary": False}), ("inline.vtp", {"binary": True})):
+        mesh.save(folder / name, **options)
+        files[name] = folder / name
+    mesh.save(folder / "text.vtp", binary=False)
+    files["text.vtp"] = folder / "text.vtp"
+    deflated = folder / "deflated.trx"
+    from zipfile import ZIP_DEFLATED, ZipFile
+
+    with ZipFile(files[".trx"]) as old, ZipFile(deflated, "w", ZIP_DEFLATED) as new:
+        for entry in old.infolist():
+            new.writestr(entry.filename, old.read(entry))
+    files["deflated.trx"] = deflated
+    return files
