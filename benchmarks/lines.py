@@ -1,0 +1,274 @@
+"""Frames per second, memory and load time of lines: VTK's poly-lines, VTK's tubes, and fiblets.
+
+The camera orbits by 1.14 degrees a frame around a whole-brain-like tractogram at 1920x1080. Every
+way of drawing runs in a process of its own, so that memory is its own too and none warms another
+one up. Reported is the median of the frames after the warm-up. Lines are one pixel wide, lit and
+coloured by orientation, without anti-aliasing::
+
+    python benchmarks/lines.py --segments 1e5 1e6 6e6 --output lines.json
+
+writes ``lines.json`` and ``lines.png``. A way is left out above the size given for it by
+``--limit``, where a frame would take minutes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+WAYS = ("polylines", "tubes", "fiblets")
+DEGREES_PER_FRAME = 1.14
+SIZE = (1920, 1080)
+STEP = 0.5
+
+
+def main() -> None:
+    """Run every way at every size, one process each."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--segments", type=float, nargs="+", default=[1e5, 3e5, 1e6, 3e6, 6e6, 1e7])
+    parser.add_argument("--ways", nargs="+", choices=WAYS, default=list(WAYS))
+    parser.add_argument("--frames", type=int, default=15, help="frames that count")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of drawing per run at most, once 3 frames count")
+    parser.add_argument("--limit", type=float, default=1e6, help="most segments for tubes")
+    parser.add_argument(
+        "--anti-aliasing", action="store_true", help="PyVista's default (4 samples) instead of the like-for-like none"
+    )
+    parser.add_argument("--output", type=Path, default=Path("lines.json"))
+    parser.add_argument("--run", nargs=2, metavar=("WAY", "FILE"), help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.run:
+        print(json.dumps(measure(*options.run, options.frames, options.seconds, options.anti_aliasing)))
+        return
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    results = []
+    with tempfile.TemporaryDirectory() as folder:
+        for segments in options.segments:
+            path, exact = make_file(Path(folder), int(segments))
+            for way in options.ways:
+                if way == "tubes" and segments > options.limit:
+                    continue
+                command = [sys.executable, __file__, "--run", way, str(path)]
+                command += ["--frames", str(options.frames), "--seconds", str(options.seconds)]
+                command += ["--anti-aliasing"] if options.anti_aliasing else []
+                done = subprocess.run(command, capture_output=True, text=True, check=False)
+                if done.returncode != 0:
+                    sys.exit(f"{way} at {exact} segments failed:\n{done.stderr}")
+                results.append({"way": way, "segments": exact, **json.loads(done.stdout.splitlines()[-1])})
+                print(row(results[-1]), flush=True)
+            path.unlink()
+    about = {"machine": machine(), "size": SIZE, "degrees_per_frame": DEGREES_PER_FRAME, "step_mm": STEP}
+    about["anti_aliasing"] = options.anti_aliasing
+    options.output.write_text(json.dumps({**about, "results": results}, indent=1))
+    plot(results, options.output.with_suffix(".png"))
+    print(f"wrote {options.output} and {options.output.with_suffix('.png')}")
+    for line in compare(results):
+        print(line)
+
+
+def make_file(folder: Path, segments: int) -> tuple[Path, int]:
+    """Write a tractogram with about this many segments; return its path and their exact number."""
+    from pvfiblets import formats
+    from pvfiblets.synthetic import brain_streamlines
+
+    sample = brain_streamlines(2000, STEP)
+    per_streamline = (sample.n_points - len(sample)) / len(sample)
+    brain = brain_streamlines(max(1, round(segments / per_streamline)), STEP)
+    path = folder / f"{segments}.tck"
+    formats.write(path, brain)
+    return path, brain.n_points - len(brain)
+
+
+def measure(way: str, path: str, frames: int, seconds: float, anti_aliasing: bool) -> dict:
+    """Load one file in one way, orbit, and return the numbers."""
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    import pyvista as pv
+
+    from pvfiblets import formats
+
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("black")
+    if not anti_aliasing:
+        plotter.disable_anti_aliasing()
+    begin = time.perf_counter()
+    compress_seconds = None
+    if way == "fiblets":
+        from pvfiblets.codec.compress import compress
+        from pvfiblets.synthetic import brain_streamlines
+
+        compress(brain_streamlines(10))  # the codec compiles itself when first used
+        begin = time.perf_counter()
+        streamlines = formats.read(path)
+        fiblets = compress(streamlines)
+        compress_seconds = time.perf_counter() - begin
+        n_points = streamlines.n_points
+        del streamlines
+        actor = plotter.add_fiblets(fiblets, render=False)
+        gpu = None
+    else:
+        lines = pv.wrap(formats.read(path).to_polydata())
+        n_points = lines.n_points
+        lines["orientation"] = orientation(lines)
+        if way == "tubes":
+            lines = lines.tube(radius=0.25 * STEP, n_sides=6)
+        actor = plotter.add_mesh(lines, scalars="orientation", rgb=True, render=False)
+        gpu = vertex_bytes(lines)
+    plotter.view_vector((-1, 0.8, 0.45), viewup=(0, 0, 1))
+    plotter.show(auto_close=False)
+    finish(plotter)
+    load = time.perf_counter() - begin
+    times = orbit(plotter, frames, seconds)
+    if gpu is None:
+        report = actor.explain()
+        fixed = ("gbuffer",)  # the picture's own, whatever is drawn
+        gpu = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in fixed)
+    picture = plotter.screenshot(None)
+    plotter.close()
+    median = float(np.median(times))
+    segments = n_points - int(count_lines(path))
+    return {
+        "points": n_points,
+        "ms_per_frame": 1e3 * median,
+        "ms_spread": [1e3 * float(np.percentile(times, q)) for q in (10, 90)],
+        "frames": len(times),
+        "segments_per_second": segments / median,
+        "gpu_bytes": gpu,
+        "gpu_bytes_per_point": gpu / n_points,
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        "load_seconds": load,
+        "read_and_compress_seconds": compress_seconds,
+        "pixels": int((picture.max(axis=2) > 0).sum()),
+    }
+
+
+def orbit(plotter, frames: int, seconds: float) -> list[float]:
+    """Turn the camera and return the seconds of each frame, the first two left out."""
+    times: list[float] = []
+    began = time.perf_counter()
+    for frame in range(frames + 2):
+        plotter.camera.azimuth += DEGREES_PER_FRAME
+        start = time.perf_counter()
+        plotter.renderer.ResetCameraClippingRange()
+        plotter.render()
+        finish(plotter)
+        if frame >= 2:
+            times.append(time.perf_counter() - start)
+        if len(times) >= 3 and time.perf_counter() - began > seconds:
+            break
+    return times
+
+
+def finish(plotter) -> None:
+    """Wait until the picture is really there: reading one pixel needs all of it."""
+    plotter.render_window.WaitForCompletion()
+    plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)
+
+
+def orientation(lines) -> np.ndarray:
+    """Return |tangent| as RGB per point, what fiblets are coloured by."""
+    tangent = np.abs(np.gradient(lines.points, axis=0))
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True) + 1e-12
+    return (255 * tangent).astype(np.uint8)
+
+
+def vertex_bytes(mesh) -> int:
+    """Return what VTK keeps on the GPU for a mesh: float32 points, RGBA bytes, normals, indices.
+
+    Poly-lines are drawn as index pairs, strips as index triples, 4 bytes each.
+    """
+    lines = mesh.n_cells and mesh.lines.size - mesh.n_lines  # points named by all lines
+    indices = 2 * max(lines - mesh.n_lines, 0)
+    strips = mesh.strips
+    if len(strips):
+        at, triangles = 0, 0
+        while at < len(strips):
+            triangles += strips[at] - 2
+            at += strips[at] + 1
+        indices += 3 * triangles
+    normals = 12 if mesh.point_data.active_normals is not None else 0
+    return int(mesh.n_points * (12 + 4 + normals) + 4 * indices)
+
+
+def count_lines(path: str) -> int:
+    """Return how many streamlines a file has."""
+    from pvfiblets import formats
+
+    return sum(len(chunk) for chunk in formats.iter_chunks(path))
+
+
+def machine() -> dict:
+    """Return what the numbers hold for."""
+    import platform
+
+    import moderngl
+    import vtk
+
+    try:
+        context = moderngl.create_standalone_context(backend="egl")
+    except Exception:  # noqa: BLE001 - no EGL on this system: its own default way
+        context = moderngl.create_standalone_context()
+    with context:
+        gl = {key: context.info[key] for key in ("GL_RENDERER", "GL_VERSION")}
+    context.release()
+    return {**gl, "cpus": os.cpu_count(), "system": platform.platform(), "vtk": vtk.vtkVersion().GetVTKVersion()}
+
+
+def row(result: dict) -> str:
+    """Return one line of the table."""
+    return (
+        f"{result['way']:<10} {result['segments']:>12,} segments {result['ms_per_frame']:>10.1f} ms/frame "
+        f"{result['segments_per_second'] / 1e6:>8.2f} M/s {result['gpu_bytes_per_point']:>7.2f} B/point on the GPU "
+        f"{result['peak_memory_bytes'] / 1e6:>7.0f} MB peak {result['load_seconds']:>6.1f} s to load"
+    )
+
+
+def compare(results: list[dict]) -> list[str]:
+    """Say how fiblets fare against VTK's poly-lines at each size."""
+    lines = []
+    for segments in sorted({result["segments"] for result in results}):
+        at = {result["way"]: result for result in results if result["segments"] == segments}
+        if {"fiblets", "polylines"} <= set(at):
+            ratio = at["fiblets"]["segments_per_second"] / at["polylines"]["segments_per_second"]
+            lines.append(f"{segments:>12,} segments: fiblets draw {ratio:.1f} times as fast as VTK's poly-lines")
+    return lines
+
+
+def plot(results: list[dict], path: Path) -> None:
+    """Draw speed, GPU memory, peak memory and load time over the number of segments."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    panels = (
+        ("ms_per_frame", "ms per frame", 1.0),
+        ("segments_per_second", "million segments per second", 1e6),
+        ("gpu_bytes_per_point", "GPU bytes per point", 1.0),
+        ("peak_memory_bytes", "peak memory [MB]", 1e6),
+        ("load_seconds", "load time [s]", 1.0),
+    )
+    figure, axes = plt.subplots(1, len(panels), figsize=(4 * len(panels), 3.6), layout="constrained")
+    for axis, (key, label, unit) in zip(axes, panels, strict=True):
+        for way in WAYS:
+            chosen = [result for result in results if result["way"] == way]
+            if chosen:
+                x, y = [r["segments"] for r in chosen], [r[key] / unit for r in chosen]
+                axis.loglog(x, y, "o-", label=way)
+        axis.set_xlabel("segments")
+        axis.set_ylabel(label)
+        axis.grid(True, which="both", alpha=0.2)
+    axes[0].legend()
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    main()

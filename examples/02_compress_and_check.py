@@ -1,0 +1,39 @@
+"""Compress a tractogram, look at what that costs, store it and open it again.
+
+Run it as ``python examples/02_compress_and_check.py [FOLDER]``.
+"""
+
+import sys
+from pathlib import Path
+
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+
+
+def main(folder: Path) -> None:
+    """Print size and error of three ways to compress."""
+    brain = brain_streamlines(5_000, fa=True)
+    raw = brain.points.nbytes
+    print(f"{len(brain):,} streamlines, {brain.n_points:,} points, {raw / 1e6:.1f} MB as float32")
+
+    for what, options in {
+        "as it comes": {},
+        "looking ahead": {"effort": "high"},
+        "within 5 micrometres": {"max_error": 0.005},
+        "with FA in each point": {"per_point": ["fa"]},
+    }.items():
+        fiblets = pvfiblets.compress(brain, **options)
+        error = pvfiblets.measure_error(brain, fiblets)
+        print(
+            f"{what:<22} {fiblets.nbytes / brain.n_points:5.2f} bytes per point, "
+            f"error mean {1e3 * error.mean_mm:5.2f} µm, greatest {1e3 * error.max_mm:6.2f} µm"
+        )
+
+    fiblets.save(folder / "brain.fiblets")
+    again = pvfiblets.FibletSet.open(folder / "brain.fiblets")  # mapped, not read: takes no time
+    first = again.decompress([0, 1, 2])
+    print(f"the first three are {', '.join(f'{length:.0f}' for length in first.lengths())} mm long")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

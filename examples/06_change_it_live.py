@@ -1,0 +1,45 @@
+"""An actor's properties change at any time, and the next render shows it.
+
+Run it as ``python examples/06_change_it_live.py [FOLDER]``.
+"""
+
+import sys
+from pathlib import Path
+
+import pyvista as pv
+
+from pvfiblets.synthetic import brain_streamlines
+
+
+def main(folder: Path) -> None:
+    """Write one picture after each change, and print what the last one costs."""
+    plotter = pv.Plotter(off_screen=True, window_size=(800, 600))
+    plotter.set_background("black")
+    actor = plotter.add_fiblets(brain_streamlines(5_000), name="brain", scalar_bar_args={"color": "white"})
+    plotter.view_vector((0, 0, 1), viewup=(0, 1, 0))
+    plotter.camera.zoom(1.4)
+    plotter.show(auto_close=False)
+    plotter.screenshot(folder / "live_1_orientation.png")
+
+    actor.scalars = "curvature"
+    actor.cmap = "inferno"
+    actor.clim = (0.0, 0.2)
+    plotter.render()
+    plotter.screenshot(folder / "live_2_curvature.png")
+
+    actor.color = "gold"
+    actor.line_width = 3
+    actor.opacity = 0.6
+    plotter.render()
+    plotter.screenshot(folder / "live_3_gold.png")
+
+    report = actor.explain()
+    print("active:", ", ".join(report["features"]))
+    for item in report["passes"]:
+        print(f"  {item['name']:<12} {item['ms']:8.2f} ms")
+    print(f"  {report['gpu_bytes'] / 1e6:.1f} MB on the GPU")
+    plotter.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

@@ -1,0 +1,38 @@
+"""Ask which streamline a pixel shows, and draw that one thick.
+
+Run it as ``python examples/07_pick_a_streamline.py [FOLDER]``.
+"""
+
+import sys
+from pathlib import Path
+
+import pyvista as pv
+
+from pvfiblets.synthetic import brain_streamlines
+
+
+def main(folder: Path) -> None:
+    """Pick in the middle of the picture."""
+    plotter = pv.Plotter(off_screen=True, window_size=(800, 600))
+    plotter.set_background("black")
+    actor = plotter.add_fiblets(brain_streamlines(3_000), color="gray")
+    plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
+    plotter.camera.zoom(1.4)
+    plotter.show(auto_close=False)
+
+    found = actor.pick_at(400, 300)
+    if found is None:
+        sys.exit("there is no streamline in the middle of the picture")
+    streamline, position = found
+    picked = actor.fiblets.decompress([streamline])
+    print(f"streamline {streamline} at its point {position:.1f}; it is {picked.lengths()[0]:.0f} mm long")
+
+    actor.opacity = 0.3
+    plotter.add_fiblets(picked, color="yellow", line_width=5)
+    plotter.render()
+    plotter.screenshot(folder / "picked.png")
+    plotter.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

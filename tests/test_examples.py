@@ -1,0 +1,38 @@
+"""Every example runs as its user runs it, and its pictures show something."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+
+
+def test_examples_are_numbered_without_a_gap():
+    numbers = [int(re.match(r"(\d\d)_", script.name)[1]) for script in SCRIPTS]
+    assert numbers == list(range(1, len(SCRIPTS) + 1))
+    assert SCRIPTS
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_example_runs_and_makes_what_it_names(script, tmp_path):
+    command = [sys.executable, "-W", "error", str(script), str(tmp_path)]
+    environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+    made = {path.name for path in tmp_path.iterdir()}
+    named = set(re.findall(r'folder / "([^"]+)"', script.read_text()))
+    assert named <= made
+    for picture in tmp_path.glob("*.png"):
+        pixels = np.asarray(Image.open(picture).convert("RGB"))
+        background = pixels[2, 2]
+        assert (pixels != background).any(axis=2).mean() > 0.02, f"{picture.name} is nearly empty"
+    assert made or done.stdout
