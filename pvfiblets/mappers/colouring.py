@@ -185,7 +185,7 @@ class Colouring:
         missing = np.isnan(numbers)
         if self.log_scale:
             positive = numbers > 0.0
-            numbers = np.log10(numbers, where=positive, out=np.full(numbers.shape, low))
+            numbers = np.log10(numbers, where=positive, out=np.full(numbers.shape, -np.inf))
         with np.errstate(over="ignore"):
             index = np.minimum(
                 np.clip(np.where(missing, low, numbers), low, high) * scale - low * scale,

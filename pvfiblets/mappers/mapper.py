@@ -9,11 +9,9 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
 from typing import Any, cast
 
 import numpy as np
-import numpy.typing as npt
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
@@ -22,13 +20,13 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
+from pvfiblets.mappers.clipping import Cut, cut
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.picking import Drawn, pick
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import Frame, frame_of, world_planes
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
-_ENGINE_CLIPS = "clip_planes" in {field.name for field in fields(View)}
 _MAX_PLANES = 6
 
 
@@ -43,7 +41,8 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
 
     Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
-    alone is not enough. One mapper serves one actor, in any number of renderers and windows.
+    alone is not enough. One mapper serves one actor, in any number of renderers of one window; another
+    window needs another mapper and actor, as with all of VTK's.
 
     Parameters
     ----------
@@ -166,7 +165,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader in use."""
         names = {"gbuffer", "normal"} | self._colouring.features
-        if self.GetNumberOfClippingPlanes() and not _ENGINE_CLIPS:
+        if self.GetNumberOfClippingPlanes():
             names.add("clip")
         return frozenset(names)
 
@@ -213,10 +212,15 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             )
         renderer = self._active.find(actor)
         context = context_of(renderer.GetRenderWindow())
+        if any(other is not context and other.shows(self) for other in contexts_with(self)):
+            raise RuntimeError(
+                "VTK can show an actor in one window only; for the second window make another "
+                "FibletMapper of the same fiblets, with an actor of its own"
+            )
         viewport = gl_viewport(context.window)
         frame = frame_of(renderer, actor, viewport)
-        planes = world_planes(self)
-        view = self._view(frame, planes)
+        clipped = cut(frame, world_planes(self)[:_MAX_PLANES])
+        view = View(viewport[2:], clipped.model_view_projection)
         style = self._style(renderer, viewport)
         slot = context.slot(self)
         with context.foreign():
@@ -228,17 +232,10 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
-        self._set_uniforms(program, frame, planes)
+        self._set_uniforms(program, frame, clipped)
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
-
-    def _view(self, frame: Frame, planes: npt.NDArray[np.float64]) -> View:
-        size = frame.viewport[2:]
-        if _ENGINE_CLIPS and len(planes):
-            clip_planes = tuple(map(tuple, frame.planes_in_clip(planes)))
-            return View(size, frame.model_view_projection, clip_planes=clip_planes)  # type: ignore[call-arg]
-        return View(size, frame.model_view_projection)
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style in pixels of the framebuffer, which supersampling makes larger than the window."""
@@ -272,7 +269,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             textures[name] = slot.list_texture(name, colouring, pixels, context.ctx)
         return textures
 
-    def _set_uniforms(self, program: Any, frame: Frame, planes: npt.NDArray[np.float64]) -> None:
+    def _set_uniforms(self, program: Any, frame: Frame, clipped: Cut) -> None:
         x, y, width, height = frame.viewport
         program.SetUniform2i("fibletOrigin", (x, y))
         program.SetUniform2i("fibletSize", (width, height))
@@ -285,10 +282,11 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         if colouring.mode == "point_value" and colouring.lut is not None:
             program.SetUniformi("fibletTableSize", len(colouring.lut))
             program.SetUniform3f("fibletTableRange", colouring.scaled_range())
-        if len(planes) and not _ENGINE_CLIPS:
+        if program.IsUniformUsed("fibletObliqueDepth"):
             rows = np.zeros((_MAX_PLANES, 4))
-            rows[: len(planes)] = frame.planes_in_view(planes[:_MAX_PLANES])
-            program.SetUniformi("fibletPlaneCount", min(len(planes), _MAX_PLANES))
+            rows[: len(clipped.planes)] = clipped.planes
+            program.SetUniform4f("fibletObliqueDepth", clipped.depth.tolist())
+            program.SetUniformi("fibletPlaneCount", len(clipped.planes))
             program.SetUniform4fv("fibletPlanes", _MAX_PLANES, rows.ravel().tolist())
 
     # Questions

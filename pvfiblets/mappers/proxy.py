@@ -9,12 +9,12 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 
 def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
-    """Return a triangle that has the given bounds and covers nothing.
+    """Return two triangles that have the given bounds and cover nothing.
 
-    ``reset_camera``, the clipping range and VTK's frustum culling take the bounds from it; the vertex
-    shader spreads its three vertices over the viewport. Its corners are the least corner of the bounds
-    and twice the greatest one: the triangle is a line without area, so that no picker that intersects
-    geometry finds a surface in mid-air.
+    ``reset_camera``, the clipping range and VTK's frustum culling take the bounds from them; the vertex
+    shader spreads the first over the viewport and leaves the second without area. One sits with all its
+    vertices in the least corner of the bounds, the other in the greatest, so that no picker that
+    intersects geometry finds a surface or an edge in mid-air.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
     Returns
     -------
     vtkPolyData
-        Three points and one triangle, or empty.
+        Six points and two triangles, or empty.
     """
     polydata = vtkPolyData()
     points = vtkPoints()
@@ -33,9 +33,10 @@ def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
     if bounds is None:
         return polydata
     least, greatest = tuple(bounds[0::2]), tuple(bounds[1::2])
-    for corner in (least, greatest, greatest):
-        points.InsertNextPoint(corner)
-    triangle = vtkCellArray()
-    triangle.InsertNextCell(3, (0, 1, 2))
-    polydata.SetPolys(triangle)
+    triangles = vtkCellArray()
+    for first, corner in ((0, least), (3, greatest)):
+        for _ in range(3):
+            points.InsertNextPoint(corner)
+        triangles.InsertNextCell(3, (first, first + 1, first + 2))
+    polydata.SetPolys(triangles)
     return polydata

@@ -221,7 +221,7 @@ class WindowContext:
         if not self.alive:
             self._forget()
             return
-        gone = {address: slot for address, slot in self.slots.items() if not self._holds(slot.mapper.Get())}
+        gone = {address: slot for address, slot in self.slots.items() if not self.shows(slot.mapper.Get())}
         for address in gone:
             del self.slots[address]
         if gone:
@@ -229,8 +229,10 @@ class WindowContext:
         if not self.slots:
             self._close()
 
-    def _holds(self, mapper: Any) -> bool:
-        """Whether the actor of a mapper is in this window."""
+    def shows(self, mapper: Any) -> bool:
+        """Whether this window lives and the actor of a mapper is in it."""
+        if not self.alive:
+            return False
         actor = None if mapper is None else mapper.actor
         if actor is None:
             return False

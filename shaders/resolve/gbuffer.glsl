@@ -17,6 +17,7 @@
 
 //@ vertex instead //VTK::PositionVC::Impl
   gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+  // Vertices 3 to 5 are the second triangle of the proxy, which is there for the bounds: no area.
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform usampler2D fibletDepthMap;
@@ -48,8 +49,9 @@ vec3 fibletDirection(uint word)
   float fibletDepth = float(fibletKey) / 4294967295.0;
   vec3 fibletTangent = fibletDirection(fibletIds.y);
   vec2 fibletNDC = 2.0 * (vec2(fibletPixel) + 0.5) / vec2(fibletSize) - 1.0;
-  vec4 vertexVC = fibletPixelToView
-    * vec4(fibletNDC, float(fibletEmpty - fibletKey) / 4294967295.0, 1.0);
+  float fibletFarness = float(fibletEmpty - fibletKey) / 4294967295.0;   // 1 - depth
+//pvfiblets::Depth::Impl
+  vec4 vertexVC = fibletPixelToView * vec4(fibletNDC, fibletFarness, 1.0);
   vertexVC /= vertexVC.w;
 
 //@ fragment before //VTK::Depth::Impl

@@ -28,7 +28,7 @@ def test_the_picture_is_that_of_polylines(compare, tools):
 
 
 def test_reset_camera_sees_the_true_bounds(make_plotter, lines):
-    mapper, actor = lines.actor()
+    _, actor = lines.actor()
     plotter = make_plotter()
     plotter.add_actor(actor)
     assert np.allclose(plotter.bounds, lines.fiblets.bounds)
