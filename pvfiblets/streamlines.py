@@ -384,10 +384,13 @@ class Streamlines:
         mesh.points = np.ascontiguousarray(self.points)
         cells = pyvista.CellArray.from_arrays(self.offsets, np.arange(self.n_points, dtype=np.int64), deep=True)
         mesh.SetLines(cells)
-        for name, values in self.per_point.items():
-            mesh.point_data[name] = np.ascontiguousarray(_vtk_values(values))
-        for name, values in self.per_streamline.items():
-            mesh.cell_data[name] = np.ascontiguousarray(_vtk_values(values))
+        for data, columns in (
+            (mesh.point_data, self.per_point),
+            (mesh.cell_data, self.per_streamline),
+        ):
+            for name, values in columns.items():
+                if values.size:  # PyVista has no arrays without rows
+                    data[name] = np.ascontiguousarray(_vtk_values(values))
         for name, array in self.field_data().items():
             mesh.field_data[name] = array
         return mesh

@@ -19,7 +19,7 @@ from pvfiblets.errors import FibletsError
 _MODULES: dict[str, str] = {
     ".tck": "pvfiblets.formats.tck",
     ".trk": "pvfiblets.formats.trk",
-    ".trk.gz": "pvfiblets.formats.trk",
+    ".trk.gz": "pvfiblets.formats.trk_gz",
     ".trx": "pvfiblets.formats.trx",
     ".vtk": "pvfiblets.formats.vtk_legacy",
     ".vtp": "pvfiblets.formats.vtp",

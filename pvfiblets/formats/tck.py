@@ -141,6 +141,8 @@ class Window(NamedTuple):
     ended: bool
     tail: int
     """Points after the last delimiter."""
+    first_end: int
+    """Rows up to and with the first delimiter; 0 where there is none."""
     dropped: int
 
 
@@ -183,6 +185,7 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
         take + 1 if ended else take,
         ended,
         take - tail_from,
+        int(delimiters[0]) + 1 if len(delimiters) else 0,
         len(bad),
     )
 
@@ -208,6 +211,10 @@ class Data:
             if not (window.used or window.ended or last):
                 size *= 2  # one streamline is longer than the window
                 continue
+            if size > max_rows and 0 < window.first_end < window.used:
+                # The streamline fits now, but others came along: they wait for their own window.
+                last = False
+                window = parse_rows(self.rows[position : position + window.first_end], kind, last)
             size = max_rows
             position += window.used
             found += len(window.counts)

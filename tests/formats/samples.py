@@ -22,7 +22,7 @@ def rich(seed: int = 0, counts=(5, 1, 12, 0, 2, 7)) -> Streamlines:
         points[2] = points[1]  # a repeated point
     return Streamlines(
         points,
-        np.concatenate([[0], np.cumsum(counts)]),
+        np.cumsum([0, *counts]),
         per_point={
             "fa": rng.random(n).astype(np.float32),
             "rgb": rng.random((n, 3)).astype(np.float32),
@@ -31,7 +31,7 @@ def rich(seed: int = 0, counts=(5, 1, 12, 0, 2, 7)) -> Streamlines:
             "weight": rng.random(m).astype(np.float32),
             "pair": rng.integers(0, 99, (m, 2)).astype(np.float32),
         },
-        groups={"left": np.array([0, 2]), "all of them": np.arange(m)},
+        groups={"left": np.arange(0, m, 2), "all of them": np.arange(m)},
         per_group={"left": {"color": np.array([1, 2, 3], np.uint8)}},
         affine=AFFINE,
         space={

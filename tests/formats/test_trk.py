@@ -1,0 +1,301 @@
+"""TrackVis tracks: places against nibabel, byte orders, compression, and bad input."""
+
+from __future__ import annotations
+
+import gzip
+import itertools
+import struct
+import warnings
+
+import nibabel
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from nibabel.streamlines.trk import TrkFile
+
+from pvfiblets import formats
+from pvfiblets.errors import FormatError
+from pvfiblets.formats import trk
+from pvfiblets.streamlines import Streamlines
+
+from .samples import rich, same
+
+COUNTS = (5, 1, 12, 3, 2, 7)
+
+
+def nibabel_load(path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # nibabel tells of defaults that it fills in
+        return nibabel.streamlines.load(path)
+
+
+def assert_agrees(path) -> Streamlines:
+    theirs, ours = nibabel_load(path), formats.read(path)
+    points = np.reshape(theirs.streamlines.get_data(), (-1, 3))
+    assert ours.counts.tolist() == [len(t) for t in theirs.streamlines]
+    assert np.allclose(ours.points, points, rtol=0, atol=2e-5 * max(1, np.abs(points).max(initial=0) / 100))
+    for part, columns in (
+        (ours.per_point, theirs.tractogram.data_per_point),
+        (ours.per_streamline, theirs.tractogram.data_per_streamline),
+    ):
+        assert list(part) == [name.rstrip() for name in columns]
+        for name, values in columns.items():
+            flat = values.get_data() if hasattr(values, "get_data") else np.asarray(values)
+            mine = part[name.rstrip()]
+            assert np.array_equal(mine.reshape(len(mine), -1), flat)
+    return ours
+
+
+@pytest.fixture
+def file(tmp_path):
+    """A trk file; without empty streamlines, which nibabel loses."""
+    path = tmp_path / "a.trk"
+    formats.write(path, rich(counts=COUNTS))
+    return path
+
+
+def refused(path, data: bytes) -> FormatError:
+    path.write_bytes(data)
+    with pytest.raises(FormatError) as caught:
+        formats.read(path)
+    with pytest.raises(FormatError):
+        list(formats.iter_chunks(path, 2))
+    return caught.value
+
+
+def test_real_files_land_where_nibabel_puts_them(shared_data):
+    paths = sorted([*shared_data.glob("*.trk"), *shared_data.glob("*.trk.gz")])
+    assert len(paths) >= 8
+    for path in paths:
+        assert_agrees(path)
+
+
+def test_files_packaged_with_nibabel(tmp_path):
+    folder = nibabel.streamlines.__path__[0] + "/../tests/data/"
+    from pathlib import Path
+
+    paths = sorted(Path(folder).glob("*.trk"))
+    if not paths:
+        pytest.skip("nibabel is installed without its test data: real data is not on this machine")
+    for path in paths:
+        assert_agrees(path)
+
+
+ORDERS = ["".join(order) for axes in itertools.permutations(("LR", "PA", "SI")) for order in itertools.product(*axes)]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_every_voxel_order_with_an_oblique_affine(order, tmp_path):
+    header = TrkFile.create_empty_header()
+    angle = 0.3
+    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    affine = np.eye(4)
+    affine[:3, :3] = turn @ np.diag([-1.5, 2, 3])
+    affine[:3, 3] = 12, -30, 7
+    header.update(voxel_order=order.encode(), voxel_to_rasmm=affine, voxel_sizes=(1.5, 2, 3), dimensions=(40, 50, 60))
+    streamlines = [np.float32([[1, 2, 3], [10, 20, 30]]), np.float32([[-4, 5.5, 0]])]
+    tractogram = nibabel.streamlines.Tractogram(streamlines, affine_to_rasmm=np.eye(4))
+    path = tmp_path / "a.trk"
+    TrkFile(tractogram, header).save(str(path))
+    ours = assert_agrees(path)
+    assert np.allclose(ours.points, np.concatenate(streamlines), atol=1e-4)
+    formats.write(tmp_path / "b.trk", ours)
+    again = assert_agrees(tmp_path / "b.trk")
+    assert np.allclose(again.points, ours.points, atol=1e-4)
+    assert again.space["voxel_order"] == order
+
+
+def test_written_files_are_read_by_nibabel(file):
+    ours = assert_agrees(file)
+    s = rich(counts=COUNTS)
+    same(ours, s, atol=1e-4)
+    assert np.allclose(ours.affine, s.affine)
+    header = nibabel_load(file).header
+    assert header["nb_streamlines"] == len(s)
+    assert header["voxel_order"] == b"LAS"
+    assert formats.write(file, s) == ["groups", "per_group"]
+
+
+def big_endian(data: bytes) -> bytes:
+    """The same file as a big-endian machine writes it."""
+    kind = np.frombuffer(data[:1000], TrkFile._default_structarr("little").dtype)
+    header = kind.astype(kind.dtype.newbyteorder(">")).tobytes()
+    return header + np.frombuffer(data[1000:], "<u4").astype(">u4").tobytes()
+
+
+def test_big_endian(file):
+    s = formats.read(file)
+    file.write_bytes(big_endian(file.read_bytes()))
+    assert_agrees(file)
+    same(formats.read(file), s)
+    same(Streamlines.concatenate(formats.iter_chunks(file, 3)), s)
+
+
+def test_gzip_streams_in_pieces(file, tmp_path):
+    packed = tmp_path / "a.trk.gz"
+    packed.write_bytes(gzip.compress(file.read_bytes()))
+    s = formats.read(file)
+    same(formats.read(packed), s)
+    for max_points in (1, 5, 100):
+        pieces = list(formats.iter_chunks(packed, max_points))
+        assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
+        same(Streamlines.concatenate(pieces), s)
+    with pytest.raises(formats.UnknownFormatError, match=r"\.trk\.gz has no write"):
+        formats.write(tmp_path / "b.trk.gz", s)
+
+
+@given(st.lists(st.integers(0, 5), max_size=8), st.integers(1, 9))
+def test_round_trip_and_pieces(tmp_path_factory, counts, max_points):
+    path = tmp_path_factory.mktemp("trk") / "a.trk"
+    s = rich(1, counts)
+    formats.write(path, s)
+    back = formats.read(path)
+    same(back, s, atol=1e-4)
+    assert back.dropped == {}
+    pieces = list(formats.iter_chunks(path, max_points))
+    assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
+    same(Streamlines.concatenate(pieces), back)
+
+
+def patched(data: bytes, position: int, form: str, *values) -> bytes:
+    raw = bytearray(data)
+    struct.pack_into(form, raw, position, *values)
+    return bytes(raw)
+
+
+@pytest.mark.parametrize(
+    ("position", "form", "values", "at", "words"),
+    [
+        (0, "5s", [b"TRASH"], 0, "TRACK"),
+        (996, "<i", [999], 996, "1000"),
+        (992, "<i", [7], 992, "version 7"),
+        (988, "<i", [-1], 988, "-1"),
+        (36, "<h", [-1], 36, "scalars -1"),
+        (238, "<h", [-2], 238, "properties -2"),
+        (12, "<f", [0.0], 12, "voxel size"),
+        (12, "<f", [np.nan], 12, "voxel size"),
+        (440, "<f", [np.inf], 440, "invertible"),
+        (440, "<f", [0.0], 440, "invertible"),
+        (948, "4s", [b"XYZ"], 948, "XYZ"),
+        (948, "4s", [b"LLS"], 948, "LLS"),
+        (38, "20s", [b"fa\x0099"], 38, "99 columns"),
+        (1000, "<i", [-5], 1000, "-5 points"),
+        (1000, "<i", [2**31 - 1], 0, "truncated"),
+    ],
+)
+def test_damaged_fields(file, position, form, values, at, words):
+    error = refused(file, patched(file.read_bytes(), position, form, *values))
+    assert at in (0, error.position)
+    assert words in f"{error.found} {error.expected}"
+
+
+@pytest.mark.parametrize("lost", [1, 4, 30])
+def test_truncated_in_the_data(file, lost):
+    data = file.read_bytes()
+    for count in (None, 0):
+        bad = data[:-lost] if count is None else patched(data[:-lost], 988, "<i", count)
+        error = refused(file, bad)
+        assert error.position >= len(data) - 60
+
+
+def test_truncated_in_the_header(file):
+    assert refused(file, file.read_bytes()[:700]).position == 700
+    assert refused(file, b"").position == 0
+
+
+def test_count_larger_than_the_data(file):
+    error = refused(file, patched(file.read_bytes(), 988, "<i", 7))
+    assert "after 6 streamlines" in error.found
+    assert "7 streamlines" in error.expected
+
+
+def test_count_smaller_than_the_data_is_reported(file, tmp_path):
+    s = formats.read(file)
+    data = patched(file.read_bytes(), 988, "<i", 4)
+    file.write_bytes(data)
+    # Two streamlines of 2 and 7 points: a count, 7 numbers each with scalars, 3 properties.
+    part = {trk.AFTER_LAST: 4 * ((1 + 2 * 7 + 3) + (1 + 7 * 7 + 3))}
+    short = formats.read(file)
+    same(short, s[:4])
+    assert short.dropped == part
+    packed = tmp_path / "b.trk.gz"
+    packed.write_bytes(gzip.compress(data))
+    assert formats.read(packed).dropped == part
+    assert Streamlines.concatenate(formats.iter_chunks(packed, 4)).dropped == part
+
+
+def test_count_zero_reads_to_the_end(file):
+    s = formats.read(file)
+    file.write_bytes(patched(file.read_bytes(), 988, "<i", 0))
+    same(formats.read(file), s)
+
+
+def test_nonfinite_points_are_dropped_with_their_scalars(file):
+    s = formats.read(file)
+    # First streamline: 5 points of 7 numbers after its count.
+    file.write_bytes(patched(file.read_bytes(), 1000 + 4 + 2 * 28, "<f", np.nan))
+    bad = formats.read(file)
+    assert bad.dropped == {"non-finite points": 1}
+    assert bad.counts.tolist() == [4, *s.counts[1:]]
+    assert np.array_equal(bad.per_point["fa"], np.delete(s.per_point["fa"], 2))
+
+
+def test_nan_among_scalars_is_data(file):
+    file.write_bytes(patched(file.read_bytes(), 1000 + 4 + 12, "<f", np.nan))
+    s = formats.read(file)
+    assert s.dropped == {}
+    assert np.isnan(s.per_point["fa"][0])
+
+
+def test_version_1_and_missing_affine_mean_identity(file):
+    for data in (
+        patched(file.read_bytes(), 992, "<i", 1),
+        patched(file.read_bytes(), 440, "<16f", *[0.0] * 16),
+    ):
+        file.write_bytes(data)
+        s = assert_agrees(file)
+        assert np.array_equal(s.affine, np.eye(4))
+        assert s.space["affine_recorded"] is False
+
+
+def test_damaged_gzip(file, tmp_path):
+    packed = gzip.compress(file.read_bytes())
+    path = tmp_path / "b.trk.gz"
+    for bad in (packed[:-9], packed[:200], b"no gzip at all", packed[:60] + b"\xff\xff" + packed[62:]):
+        path.write_bytes(bad)
+        with pytest.raises(FormatError):
+            formats.read(path)
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "values", "words"),
+    [
+        ("per_point", "a name of more than twenty letters", np.zeros(27), "too long"),
+        ("per_point", "long", np.full(27, 2**24 + 1), "float32"),
+        ("per_streamline", "text", np.array(["a"] * 6), "numbers only"),
+    ],
+)
+def test_what_trk_cannot_hold(part, name, values, words, tmp_path):
+    s = rich()
+    getattr(s, part)[name] = values
+    with pytest.raises(ValueError, match=words):
+        formats.write(tmp_path / "a.trk", s)
+    assert not list(tmp_path.iterdir())
+
+
+def test_more_than_ten_arrays(tmp_path):
+    s = rich()
+    s.per_point = {f"v{i}": np.zeros(27) for i in range(11)}
+    with pytest.raises(ValueError, match="at most 10"):
+        formats.write(tmp_path / "a.trk", s)
+
+
+def test_far_from_the_origin_keeps_float32_precision(tmp_path):
+    s = rich()
+    s.affine = s.affine.copy()
+    s.affine[:3, 3] += 2**20
+    s = Streamlines(s.points.astype(np.float64) + 2**20, s.offsets, affine=s.affine, space=s.space)
+    formats.write(tmp_path / "a.trk", s)
+    # The file counts from the image's corner, so only the result's float32 is coarse: 2^20 / 2^24.
+    assert np.abs(formats.read(tmp_path / "a.trk").points - s.points).max() <= 0.0626
