@@ -7,7 +7,7 @@ import math
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def convert(
     *,
     step: float | None,
     max_error: float | None,
-    effort: str,
+    effort: Literal["fast", "high"],
     per_point: list[str],
     per_point_bits: int,
     quiet: bool,

@@ -26,9 +26,11 @@ CHUNK = 8192  # streamlines made at a time; each chunk has its own random stream
 _CENTRE = np.array([0.0, -18.0, 8.0])
 _HALF_AXES = np.array([68.0, 86.0, 62.0])
 
+_Points = list[tuple[float, float, float]]
+
 # Per bundle: share of all streamlines; six control points (mm, right side); how far one unit of
 # the sheet coordinate in [-1, 1] moves each of them; spread (mm) per point; which ends are cortex.
-_BUNDLES: dict[str, tuple[float, list, list, list, tuple[bool, bool]]] = {
+_BUNDLES: dict[str, tuple[float, _Points, _Points, list[float], tuple[bool, bool]]] = {
     "callosum": (
         0.20,
         [(-45, -18, 62), (-34, -18, 38), (-14, -16, 20),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pyvista as pv
@@ -30,16 +30,19 @@ class PlottedMapper(FibletMapper):
     @property
     def lookup_table(self) -> pv.LookupTable:
         """The table that colours both the picture and the scalar bar."""
-        return self.actor.lookup_table
+        return self._shown_by().lookup_table
 
     @property
     def scalar_range(self) -> tuple[float, float]:
         """Values of the first and last colour; bars that several actors share set it."""
-        return self.actor.clim
+        return self._shown_by().clim
 
     @scalar_range.setter
     def scalar_range(self, clim: tuple[float, float]) -> None:
-        self.actor.clim = clim
+        self._shown_by().clim = clim
+
+    def _shown_by(self) -> FibletActor:
+        return cast("FibletActor", self.actor)
 
 
 class FibletActor(pv.Actor):
@@ -199,7 +202,8 @@ class FibletActor(pv.Actor):
     @property
     def clim(self) -> tuple[float, float]:
         """Values of the first and the last colour; ``None`` sets the range of the data."""
-        return tuple(self._table.scalar_range)
+        low, high = self._table.scalar_range
+        return low, high
 
     @clim.setter
     def clim(self, clim: Any) -> None:

@@ -12,7 +12,7 @@ import functools
 import weakref
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.streamlines import Streamlines
 
-    Source = str | PathLike | FibletSet | Streamlines | pv.PolyData | list
+    Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
 
 
 @dataclass

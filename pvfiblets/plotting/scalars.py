@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.mappers.colouring import Mode
+
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
@@ -42,7 +44,7 @@ class Scalars:
     """
 
     name: str
-    kind: str
+    kind: Mode
     values: np.ndarray | None = None
     range: tuple[float, float] = (0.0, 1.0)
     positive: float = 1e-6
