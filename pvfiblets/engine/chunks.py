@@ -4,8 +4,8 @@ A chunk holds whole pages, so that the page-relative indices of the records stay
 follows its last one, so that no shader looks into another chunk. What culling reads (anchors, reach) stays in buffers
 apart from what decoding reads (words, codes).
 
-Budget, bytes per fiblet: anchors 8, reach 2, words 12, codes 58 when full, and two bits by which the passes tell each
-other what to draw: 80.25, or 1.34 per point.
+Budget, bytes per fiblet: anchors 8, reach 2, words 12, codes 58 when full, and six bits by which the passes tell each
+other what to draw: 80.75, or 1.35 per point.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class ChunkPlan:
     def nbytes(self) -> int:
         """Bytes of GPU memory that :func:`upload_chunk` takes, but for the options."""
         n = self.fiblets[1] - self.fiblets[0]
-        return n * 22 + (n + 31) // 32 * 8 + self.codes[1] - self.codes[0] + 64
+        return n * 22 + self.codes[1] - self.codes[0] + 64
 
 
 @dataclass
@@ -207,15 +207,12 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletData, plan: ChunkPlan) ->
     chunk = Chunk(plan, kinds)
     pages = np.zeros((plan.pages[1] - plan.pages[0], 4), np.uint32)
     pages[:, :3] = np.asarray(fiblets.pages[plan.pages[0] : plan.pages[1]]) - [0, plan.codes[0], plan.points[0]]
-    words = (n + 31) // 32
     arrays: dict[str, Callable[[], npt.NDArray[Any]]] = {
         "anchors": lambda: _with_next(fiblets.anchors, first, last),
         "reach": lambda: np.asarray(fiblets.reach[first:last]),
         "decoding": lambda: decoding,
         "codes": lambda: np.concatenate([fiblets.codes[plan.codes[0] : plan.codes[1]], np.zeros(4, np.uint8)]),
         "pages": lambda: pages,
-        "shown": lambda: np.zeros(words, np.uint32),
-        "candidates": lambda: np.zeros(words, np.uint32),
     }
     first_rank = 0
     if (low := fiblets.anchors_low) is not None:

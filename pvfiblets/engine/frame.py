@@ -59,7 +59,7 @@ def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> np
     return np.rint(np.clip(steps, 0, top)).astype(np.int64)
 
 
-def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> bytes:
+def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:
     """Pack the ``Frame`` uniform block (std140).
 
     Parameters
@@ -72,8 +72,11 @@ def frame_block(view: View, line_width: float, origin: Array, scale: Array, top:
 
     Returns
     -------
-    bytes
+    block : bytes
         208 bytes.
+    margin : float
+        How far inside the view volume all anchors lie (mm); negative if some do not. A set whose spheres all have a
+        smaller radius needs no clipping.
     """
     matrix = view.model_view_projection
     reference = reference_anchor(matrix, origin, scale, top)
@@ -107,5 +110,9 @@ def frame_block(view: View, line_width: float, origin: Array, scale: Array, top:
     block["planes"] = planes
     block["reference"][:3] = reference
     block["viewport"] = *size, half, 0.0
-    block["guard"][:2] = guard
-    return block.tobytes()
+    slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]).max())
+    block["guard"][:3] = *guard, 2.0 * slack
+    # Distances to the planes are least at a corner of the anchors' box.
+    corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
+    least = float((corners @ planes[:, :3].T + planes[:, 3]).min())
+    return block.tobytes(), least - 4.0 * slack

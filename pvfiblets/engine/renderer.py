@@ -70,6 +70,7 @@ class FibletRenderer:
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
+        self._largest_reach = 0.0
         self._features: list[str] = []
         self._values: ValueSources | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
@@ -78,7 +79,7 @@ class FibletRenderer:
         try:
             self._upload(min(limit, max_buffer_bytes or limit), max_total_bytes, progress)
             groups = min(groups, max_groups or groups)
-            self._pipeline = ComputePipeline(ctx, self._programs, groups)
+            self._pipeline = ComputePipeline(ctx, self._programs, fiblets.n_fiblets, groups)
             self._values = ValueSources(ctx, self._programs, fiblets, self._chunks, groups)
         except BaseException:
             self.release()
@@ -103,6 +104,9 @@ class FibletRenderer:
         with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
             for plan in plans:
                 self._chunks.append(upload_chunk(self._ctx, fiblets, plan))
+                first, last = plan.fiblets
+                reach = float(np.max(fiblets.reach[first:last], initial=0)) * fiblets.reach_scale
+                self._largest_reach = max(self._largest_reach, reach)
                 bar.update(plan.nbytes)
 
     def render(self, view: View, style: Style | None = None) -> GBuffer:
@@ -136,9 +140,7 @@ class FibletRenderer:
         self._bind_shared()
         features = self._decoding_features()
         source = values.activate(style.values, features)
-        features += ["WIDE_LINES"] if style.line_width > 1.0 else []
-        self._features = features + ([source] if source else [])
-        block = frame_block(
+        block, margin = frame_block(
             view,
             style.line_width,
             np.asarray(self._fiblets.origin, np.float64),
@@ -146,6 +148,9 @@ class FibletRenderer:
             self._top,
         )
         self._buffers["frame"].write(block)
+        features += ["WIDE_LINES"] if style.line_width > 1.0 else []
+        features += ["CLIPPING"] if margin < self._largest_reach else []
+        self._features = features + ([source] if source else [])
         self._passes.begin()
         pipeline.draw(self._chunks, self._target, self._features, self._passes)
         self._generation += 1
@@ -208,6 +213,8 @@ class FibletRenderer:
         for chunk in self._chunks:
             for name, buffer in chunk.buffers.items():
                 buffers[name] = buffers.get(name, 0) + buffer.size
+        if self._pipeline is not None:
+            buffers |= {name: buffer.size for name, buffer in self._pipeline.buffers.items()}
         if self._target is not None:
             buffers["gbuffer"] = self._target.nbytes
         return {

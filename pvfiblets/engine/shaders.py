@@ -35,6 +35,7 @@ FEATURES: dict[str, str] = {
     "WIDE_LATTICE": "lattice fiblets with their box in the code stream",
     "RANK_TO_ID": "streamlines without points among the others",
     "WIDE_LINES": "lines wider than one pixel",
+    "CLIPPING": "fiblets that cross the edges of the view volume",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",
@@ -148,6 +149,7 @@ class Programs:
         self._ctx = ctx
         self._constants = dict(constants)
         self._programs: dict[str, moderngl.ComputeShader] = {}
+        self._requests: dict[tuple[str, frozenset[str]], moderngl.ComputeShader] = {}
 
     def compute(self, name: str, features: Iterable[str] = ()) -> moderngl.ComputeShader:
         """Return the program of a stage with some features on.
@@ -159,12 +161,16 @@ class Programs:
         EngineError
             If the source does not compile; the message holds all of it.
         """
-        source = assemble(name, features, self._constants)
+        request = name, frozenset(features)
+        if request in self._requests:
+            return self._requests[request]
+        source = assemble(name, request[1], self._constants)
         if source not in self._programs:
             try:
                 self._programs[source] = self._ctx.compute_shader(source)
             except moderngl.Error as error:
                 raise EngineError(f"{name} does not compile: {error}\n{_numbered(source)}") from error
+        self._requests[request] = self._programs[source]
         return self._programs[source]
 
     def release(self) -> None:
@@ -172,6 +178,7 @@ class Programs:
         for program in self._programs.values():
             program.release()
         self._programs.clear()
+        self._requests.clear()
 
 
 def _numbered(source: str) -> str:

@@ -1,30 +1,25 @@
-// Second drawing pass: who owns each pixel. Candidates are decoded and drawn again; where a sample's depth is the one
-// that the first pass kept, its streamline, tangent and place are written.
-//
-// Ties (equal depth keys in one pixel) go to the fiblet with the smallest index, so that a picture does not depend on
-// the order in which a driver runs groups: every tied fiblet takes the minimum with `owner_image` and writes if it leads.
-// Two of them may still write in the wrong order; then the one that no longer leads sees it and raises `unsettled`.
-// Only in that case does this program, run once more with `settling`, do anything: owners are final by then, and each
-// writes its pixels alone.
+// Last drawing pass: what each pixel shows. Only fiblets that own a pixel are drawn, and each writes its own pixels: no
+// two invocations write the same one.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 7) readonly buffer Candidates { uint candidates[]; };
-layout(std430, binding = 6) buffer Status { uint unsettled; };
+layout(std430, binding = 6) readonly buffer Plan { uvec4 plan[]; };
+layout(std430, binding = 12) readonly buffer Seen { uint seen[]; };
 #if FEATURE_RANK_TO_ID
 layout(std430, binding = 9) readonly buffer RankToId { uint rank_to_id[]; };
 #endif
 layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
-layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
+layout(r32ui, binding = 1) readonly uniform uimage2D owner_image;
 layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
 layout(rg32f, binding = 3) writeonly uniform image2D position_image;
 
-uniform bool settling;
-
-uint bits_of(uint word) { return candidates[word]; }
+uint bits_of(uint word) {
+    uint crossing = plan[word].y | plan[word].w;
+    return seen[word] & (FEATURE_CLIPPING == 1 ? crossing : ~crossing);
+}
 
 #include "compute/bits.glsl"
 #include "compute/place.glsl"
@@ -32,8 +27,8 @@ uint bits_of(uint word) { return candidates[word]; }
 
 uint owner;
 uint streamline;
-float first_point;   // index within the streamline of the fiblet's anchor
-vec3 tangent;
+float first_point;  // index within the streamline of the fiblet's anchor
+uint tangent;
 
 // Octahedral map about +x, two snorm16, as the codec packs a first direction.
 uint packed_direction(vec3 d) {
@@ -47,31 +42,25 @@ uint packed_direction(vec3 d) {
 // A segment of no length keeps the tangent of the one before it.
 void start_segment(uint segment, vec3 delta) {
     float size = max(abs(delta.x), max(abs(delta.y), abs(delta.z)));
-    if (size > 0.0) tangent = normalize(delta / size);
+    if (size > 0.0) tangent = packed_direction(delta / size);
     start_values(segment, delta);
 }
 
 void plot(ivec2 pixel, float z, float s, uint segment) {
-    if (depth_key(z) != imageLoad(depth_image, pixel).x) return;
-    bool leads = settling ? imageLoad(owner_image, pixel).x == owner : imageAtomicMin(owner_image, pixel, owner) >= owner;
-    if (!leads) return;
+    if (imageLoad(owner_image, pixel).x != owner || depth_key(z) != imageLoad(depth_image, pixel).x) return;
     float t = along(s);
-    imageStore(ids_image, pixel, uvec4(streamline, packed_direction(tangent), 0u, 0u));
+    imageStore(ids_image, pixel, uvec4(streamline, tangent, 0u, 0u));
     imageStore(position_image, pixel, vec4(first_point + float(segment) + t, value_at(segment, t), 0.0, 0.0));
-    if (settling) return;
-    memoryBarrierImage();
-    if (imageLoad(owner_image, pixel).x != owner) unsettled = 1u;
 }
 
 void main() {
-    if (settling && unsettled == 0u) return;
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
         owner = chunk.y + f;
         streamline = streamline_of(f);
         first_point = float(points_before(f));
-        tangent = vec3(1.0, 0.0, 0.0);
+        tangent = 0u;  // +x, where a streamline has no length
         begin_values(f);
         draw_fiblet(f);
     }

@@ -2,11 +2,15 @@
 // outside one plane of the view volume cannot show. The paper dilates the volume by the sphere and tests a point; the
 // signed distance to the planes of the model-view-projection does the same for perspective and for parallel views.
 //
-// Invariant: never culls a fiblet of which one pixel would be drawn. The sphere (`reach`, rounded up by the encoder)
-// holds all points and the joining segment; the planes stand half a line's width and the rounding of this very
-// computation further out (pvfiblets/engine/frame.py must agree).
+// Invariants
+//   - Never culls a fiblet of which one pixel would be drawn. The sphere (`reach`, rounded up by the encoder) holds all
+//     points and the joining segment; the planes stand half a line's width and the rounding of this very computation
+//     further out (pvfiblets/engine/frame.py must agree).
+//   - A fiblet that is not called crossing lies inside all planes, by `guard.z` and its sphere: its segments need no
+//     clipping, and the programs that draw it hold none.
 //
-// One invocation per 32 fiblets: it writes their word of `shown` and clears their word of `candidates`.
+// One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
+// picture (drawn first, so that most others lose at their first look at the depth image), and which need clipping.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
@@ -14,23 +18,29 @@ layout(local_size_x = {{ group_size }}) in;
 #include "decode/record.glsl"
 
 layout(std430, binding = 5) readonly buffer Reach { uint reaches[]; };  // two uint16 a word
-layout(std430, binding = 6) writeonly buffer Shown { uint shown[]; };
+layout(std430, binding = 6) writeonly buffer Plan { uvec4 plan[]; };    // seen, seen crossing, other, other crossing
 layout(std430, binding = 7) writeonly buffer Candidates { uint candidates[]; };
-
-bool may_show(uint f) {
-    vec3 centre = anchor_local(f);
-    if (fiblet_end(anchors[f]) == 0u) centre = 0.5 * (centre + anchor_local(f + 1u));
-    float radius = float(bitfieldExtract(reaches[f >> 1], int(f & 1u) * 16, 16)) * anchor_scale.w;
-    for (int i = 0; i < 6; ++i) if (dot(planes[i].xyz, centre) + planes[i].w < -radius) return false;
-    return true;
-}
+layout(std430, binding = 12) buffer Seen { uint seen[]; };
 
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
     if (first >= chunk.x) return;
-    uint bits = 0u, count = min(32u, chunk.x - first);
-    for (uint i = 0u; i < count; ++i) if (may_show(first + i)) bits |= 1u << i;
-    shown[word] = bits;
+    uint shown = 0u, crossing = 0u, count = min(32u, chunk.x - first);
+    for (uint i = 0u; i < count; ++i) {
+        uint f = first + i;
+        vec3 centre = anchor_local(f);
+        if (fiblet_end(anchors[f]) == 0u) centre = 0.5 * (centre + anchor_local(f + 1u));
+        float radius = float(bitfieldExtract(reaches[f >> 1], int(f & 1u) * 16, 16)) * anchor_scale.w;
+        float least = dot(planes[0].xyz, centre) + planes[0].w;
+        for (int side = 1; side < 6; ++side) least = min(least, dot(planes[side].xyz, centre) + planes[side].w);
+        if (least >= -radius) shown |= 1u << i;
+        if (least < radius + guard.z) crossing |= 1u << i;
+    }
+    word += chunk.y >> 5u;
+    uint before = seen[word];
+    plan[word] = uvec4(shown & before & ~crossing, shown & before & crossing, shown & ~before & ~crossing,
+                       shown & ~before & crossing);
     candidates[word] = 0u;
+    seen[word] = 0u;
 }

@@ -2,18 +2,20 @@
 //
 // One invocation decodes a fiblet in registers and draws its short segments straight into the depth image with
 // imageAtomicMin. Losers are turned away by a plain load: what the image holds only ever falls, so a stale value can
-// cost an atomic but never a pixel. A fiblet that won or tied a pixel becomes a candidate for the second pass.
+// cost an atomic but never a pixel. A fiblet that won or tied a pixel becomes a candidate for owning it.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Shown { uint shown[]; };
+layout(std430, binding = 6) readonly buffer Plan { uvec4 plan[]; };
 layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
 layout(r32ui, binding = 0) coherent uniform uimage2D depth_image;
 
-uint bits_of(uint word) { return shown[word]; }
+uniform uint part;  // of the plan
+
+uint bits_of(uint word) { return plan[word][part]; }
 
 #include "compute/bits.glsl"
 
@@ -33,6 +35,6 @@ void main() {
         if (f == NO_FIBLET) break;
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(candidates[f >> 5], 1u << (f & 31u));
+        if (won) atomicOr(candidates[(chunk.y + f) >> 5], 1u << (f & 31u));
     }
 }

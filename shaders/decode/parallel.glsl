@@ -73,7 +73,7 @@ void decode_together(uint f) {
         prefix_point[i] = vec3(0.0);
 #if FEATURE_DIRECTION
         if (held && moves) {
-            uint code = i >= 2u ? codes_at(byte + i - 2u) & 255u : 0u;
+            uint code = i >= 2u ? code_at(byte + i - 2u) : 0u;
             vec4 r = i == 1u ? first_frame(fiblet_shape(words)) : table[(fiblet_cap(words) << 8u) + code];
             prefix_frame[i] = r;
             prefix_point[i] = step_length(words) * rotated_x(r);

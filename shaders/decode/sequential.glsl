@@ -20,7 +20,6 @@ struct Walk {
     uint last;     // index of the last point
     uint kind;
     uint byte;     // where the next code stands
-    uint quad;     // four direction codes, or what is left of them
     uint table;    // first row of the cap angle's rotations
     float step;    // mm; of the lattice: its edge
     uint width;    // bytes per lattice code
@@ -44,7 +43,6 @@ void walk_begin(uint f) {
     walk.kind = fiblet_kind(words);
     walk.byte = first_code(f, words);
 #if FEATURE_DIRECTION
-    walk.quad = 0u;
     walk.table = fiblet_cap(words) << 8u;
     walk.step = step_length(words);
     walk_frame = first_frame(fiblet_shape(words));
@@ -85,12 +83,7 @@ void walk_next(uint i) {
 #endif
 #if FEATURE_DIRECTION
     if (i > 1u) {
-        if ((i & 3u) == 2u) {
-            walk.quad = codes_at(walk.byte);
-            walk.byte += 4u;
-        }
-        walk_frame = turned(walk_frame, table[walk.table + (walk.quad & 255u)]);
-        walk.quad >>= 8u;
+        walk_frame = turned(walk_frame, table[walk.table + code_at(walk.byte + i - 2u)]);
     }
     walk_delta = walk.step * rotated_x(walk_frame);
     walk_point += walk_delta;

@@ -18,6 +18,8 @@ uvec3 decoding_words(uint f) { return uvec3(decoding[3u * f], decoding[3u * f + 
 // First byte of a fiblet's codes, counted from the chunk's first.
 uint first_code(uint f, uvec3 words) { return pages[f >> FIBLET_PAGE_BITS].y + fiblet_code(words); }
 
+uint code_at(uint byte) { return bitfieldExtract(codes[byte >> 2], int(byte & 3u) * 8, 8); }
+
 // Four bytes from any byte position, least significant first.
 uint codes_at(uint byte) {
     uint word = byte >> 2, shift = (byte & 3u) * 8u;

@@ -12,7 +12,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 planes[6];        // left, right, bottom, top, near, far; the first four moved out by half a line's width
     uvec4 reference;       // xyz: anchor integers
     vec4 viewport;         // width, height, half line width (pixels), unused
-    vec4 guard;            // xy: clip |x| <= guard.x w and |y| <= guard.y w, so that a wide line's edge is not cut
+    vec4 guard;            // xy: clip |x| <= guard.x w and |y| <= guard.y w, so that a wide line's edge is not cut;
+                           // z: mm inside the planes at which nothing can round outside any more
 };
 
 layout(std140, binding = 1) uniform Coding {

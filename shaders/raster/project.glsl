@@ -5,7 +5,7 @@
 //   s            window: x, y in pixels with the lower left corner at (0, 0); z is the depth in 0..1; w is clip w
 //   volume       |x| <= guard.x w, |y| <= guard.y w, |z| <= w: the caller's view volume, widened by half a line's width
 //
-// A point in the volume has w > 0, or it is the centre of projection itself, which window() keeps finite.
+// A point in the volume has w > 0, or it is the centre of projection itself, which to_window() keeps finite.
 
 #include "frame/blocks.glsl"
 
@@ -14,9 +14,7 @@ vec4 to_clip(vec3 p) {
     return c;
 }
 
-bool in_volume(vec4 c) {
-    return abs(c.x) <= guard.x * c.w && abs(c.y) <= guard.y * c.w && abs(c.z) <= c.w && c.w > 0.0;
-}
+bool in_volume(vec4 c) { return all(lessThanEqual(abs(c.xyz), vec3(guard.xy, 1.0) * c.w)); }
 
 vec4 to_window(vec4 c) {
     precise float r = 1.0 / max(c.w, 1e-30);

@@ -19,6 +19,8 @@
 // Wide lines. All pixels whose centre is at most half the width from the segment: a capsule, whose round ends join
 // segments without notches.
 //
+// Fiblets that the cull pass found to lie inside all planes are drawn by a program without FEATURE_CLIPPING.
+//
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective.
 
 #include "decode/sequential.glsl"
@@ -62,14 +64,15 @@ void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
 }
 #else
 void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
-    vec2 top = viewport.xy - 0.01;  // a point on the right or upper edge belongs to the last pixel
+    // A point on the right or upper edge belongs to the last pixel; the margin outweighs the rounding of from + s run.
+    vec2 top = viewport.xy - 0.01;
     precise vec2 from = clamp(a.xy, vec2(0.0), top), run = clamp(b.xy, vec2(0.0), top) - from;
     ivec2 cells = abs(ivec2(from + run) - ivec2(from));
     int n = max(cells.x, cells.y), count = cap ? n + 1 : n;
     float inverse = 1.0 / float(max(n, 1));
     for (int i = 0; i < count; ++i) {
         precise float s = float(i) * inverse;
-        precise vec2 at = clamp(from + s * run, vec2(0.0), top);
+        precise vec2 at = from + s * run;
         precise float z = a.z + (b.z - a.z) * s;
         plot(ivec2(at), z, s, segment);
     }
@@ -80,32 +83,43 @@ void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
 void draw_fiblet(uint f) {
     walk_begin(f);
     bool end = fiblet_end(anchors[f]) != 0u;
-    uint segments = walk.last + (end ? 0u : 1u);
+    precise vec3 next = anchor_local(end ? f : f + 1u);
     precise vec4 c0 = to_clip(walk_point);
     precise vec4 s0 = to_window(c0);
+    uint count = walk.last + (end && walk.last > 0u ? 0u : 1u);  // a single point is a segment of no length
+#if FEATURE_CLIPPING
     bool inside0 = in_volume(c0);
-    uint count = max(segments, 1u);  // a single point is a segment of no length
+#endif
     for (uint i = 1u; i <= count; ++i) {
         precise vec3 from = walk_point;
-        if (i <= walk.last) walk_next(i);
-        else if (!end) { walk_point = anchor_local(f + 1u); walk_delta = walk_point - from; }
+        if (i <= walk.last) {
+            walk_next(i);
+        } else {
+            walk_point = next;
+            walk_delta = next - from;
+        }
         precise vec4 c1 = to_clip(walk_point);
         precise vec4 s1 = to_window(c1);
-        bool inside1 = in_volume(c1), cap = end && i == count;
+        bool cap = end && i == count;
         start_segment(i - 1u, walk_delta);
-        if (inside0 && inside1) {
-            clipped = vec4(c0.w, c1.w, 0.0, 1.0);
-            draw_window(s0, s1, i - 1u, cap);
-        } else {
-            float t0, t1;
-            if (clip_segment(c0, c1, t0, t1)) {
-                precise vec4 e0 = t0 > 0.0 ? c0 + t0 * (c1 - c0) : c0, e1 = t1 < 1.0 ? c0 + t1 * (c1 - c0) : c1;
-                clipped = vec4(e0.w, e1.w, t0, t1);
-                draw_window(to_window(e0), to_window(e1), i - 1u, cap || t1 < 1.0);
-            }
+#if FEATURE_CLIPPING
+        bool inside1 = in_volume(c1);
+        float t0 = 0.0, t1 = 1.0;
+        precise vec4 e0 = s0, e1 = s1;
+        bool any = true;
+        if (!(inside0 && inside1)) {
+            any = clip_segment(c0, c1, t0, t1);
+            if (t0 > 0.0) e0 = to_window(c0 + t0 * (c1 - c0));
+            if (t1 < 1.0) e1 = to_window(c0 + t1 * (c1 - c0));
         }
-        c0 = c1;
-        s0 = s1;
+        clipped = vec4(e0.w, e1.w, t0, t1);
+        if (any) draw_window(e0, e1, i - 1u, cap || t1 < 1.0);
         inside0 = inside1;
+        c0 = c1;
+#else
+        clipped = vec4(s0.w, s1.w, 0.0, 1.0);
+        draw_window(s0, s1, i - 1u, cap);
+#endif
+        s0 = s1;
     }
 }

@@ -364,8 +364,8 @@ def test_culling_never_shows(gl, fabricate, random_lines, camera):
         style = Style(line_width=1.0 if i % 2 else 9.0)
         renderer = FibletRenderer(gl, fiblets)
         a = read(renderer.render(View(SIZE, matrix), style))
-        shown = np.frombuffer(renderer._chunks[0].buffers["shown"].read(), np.uint8)
-        shares.append(np.unpackbits(shown).sum() / fiblets.n_fiblets)
+        plan = np.frombuffer(renderer._pipeline.buffers["plan"].read(), np.uint8)
+        shares.append(np.unpackbits(plan).sum() / fiblets.n_fiblets)
         renderer.release()
         b = draw(gl, unculled, matrix, style=style)
         assert (a[0] == b[0]).all()
@@ -393,14 +393,14 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     renderer = FibletRenderer(gl, fabricate(random_lines(20), kind=2))
     renderer.render(View(SIZE, camera(SIZE)))
     plain = renderer.explain()
-    assert plain["features"] == ["LATTICE"]
-    assert [p["name"] for p in plain["passes"]] == ["clear", "cull", "depth", "attributes", "settle"]
+    assert plain["features"] == ["LATTICE", "CLIPPING"]  # some lines leave the screen
+    assert [p["name"] for p in plain["passes"]] == ["clear", "cull", "depth", "own", "mark", "attributes"]
     assert all(p["ms"] >= 0 for p in plain["passes"])
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}
     renderer.render(View(SIZE, camera(SIZE)), Style(2.0, "curvature"))
     rich = renderer.explain()
-    assert rich["features"] == ["LATTICE", "WIDE_LINES", "VALUES_CURVATURE"]
+    assert rich["features"] == ["LATTICE", "WIDE_LINES", "CLIPPING", "VALUES_CURVATURE"]
     assert "starts" in {b["name"] for b in rich["buffers"]}
     renderer.render(View(SIZE, camera(SIZE)))
     assert renderer.explain()["features"] == plain["features"]

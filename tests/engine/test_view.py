@@ -58,7 +58,7 @@ def test_planes_are_signed_distances(camera):
     size = (200, 100)
     matrix = camera(size, eye=(0, 0, 0), target=(0, 1, 0), near=1.0, far=100.0, angle=60.0)
     origin, scale = np.array([-50.0, -50.0, -50.0]), np.full(3, 100 / 65535)
-    block = np.frombuffer(frame_block(View(size, matrix), 1.0, origin, scale, 65535), "<f4")
+    block = np.frombuffer(frame_block(View(size, matrix), 1.0, origin, scale, 65535)[0], "<f4")
     planes, reference = block[16:40].reshape(6, 4), block[40:43].view("<u4")
     point = np.array([3.0, 40.0, -7.0])
     local = point - origin - scale * reference

@@ -1,25 +1,30 @@
 """The compute pipeline (OpenGL 4.3): decode in registers, rasterise into images with atomics.
 
-=============  =========================================================================================
+=============  =================================================================================================
 pass           what it does
-=============  =========================================================================================
+=============  =================================================================================================
 clear          empties depth and owners
-cull           one bit per fiblet: can it show? (frustum)
-depth          draws the shown fiblets' depth with imageAtomicMin; marks those that came nearest somewhere
-attributes     draws those again and writes streamline, tangent and place where their depth was kept
-settle         the same once more, and only if two fiblets tied in a pixel and wrote in the wrong order
-=============  =========================================================================================
+cull           plans the drawing: which fiblets can show, which were seen last time, which need clipping
+depth          draws depth with imageAtomicMin, first those seen last time; marks those that came nearest somewhere
+own            draws these candidates again: where depth was kept, the pixel's owner is the least fiblet index
+mark           one bit per fiblet: does it own a pixel?
+attributes     draws the owners again and writes streamline, tangent and place of their pixels
+=============  =================================================================================================
+
+Last time's fiblets only decide the order: the picture is the same whatever was seen before. Fiblets inside all planes
+of the view volume are drawn by programs without clipping; the others, if there are any, by programs with it.
 
 The sources are in ``shaders/compute``; what a program includes is decided by features.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import moderngl
+import numpy as np
 
-from ..chunks import Chunk
+from ..chunks import Chunk, storage_buffer
 from ..gbuffer import GBuffer
 from ..passes import Passes, dispatch
 from ..shaders import Programs
@@ -30,17 +35,26 @@ GROUP_SIZE = 64
 GROUP_WORDS = 8
 CONSTANTS = {"group_size": GROUP_SIZE, "group_words": GROUP_WORDS}
 
-_BINDINGS = {
-    "cull": {"anchors": 0, "pages": 4, "reach": 5, "shown": 6, "candidates": 7, "anchors_low": 8},
-    "depth": {
-        "anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "shown": 6, "candidates": 7, "anchors_low": 8,
-    },
-    "attributes": {
-        "anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "candidates": 7, "anchors_low": 8, "rank_to_id": 9,
-        "values": 10, "starts": 11,
-    },
-}  # fmt: skip
-_AFTER_WRITES = moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT
+BINDINGS = {
+    "anchors": 0,
+    "decoding": 1,
+    "codes": 2,
+    "pages": 4,
+    "reach": 5,
+    "anchors_low": 8,
+    "rank_to_id": 9,
+    "values": 10,
+    "starts": 11,
+}
+"""Storage bindings of a chunk's buffers; 3 is the direction table, 6, 7 and 12 are the pipeline's own."""
+
+_DECODING = frozenset({"anchors", "decoding", "codes", "pages", "anchors_low"})
+_READS = {
+    "cull": frozenset({"anchors", "pages", "reach", "anchors_low"}),
+    "depth": _DECODING,
+    "own": _DECODING,
+    "attributes": _DECODING | {"rank_to_id", "values", "starts"},
+}
 
 
 class ComputePipeline:
@@ -50,62 +64,85 @@ class ComputePipeline:
     ----------
     ctx : moderngl.Context
     programs : Programs
+    n_fiblets : int
+        In all chunks.
     max_groups : int
         Work groups per axis of a dispatch.
+
+    Attributes
+    ----------
+    buffers : dict of str to moderngl.Buffer
+        ``plan`` (four bits per fiblet), ``candidates`` and ``seen`` (one each).
     """
 
-    def __init__(self, ctx: moderngl.Context, programs: Programs, max_groups: int) -> None:
+    def __init__(self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, max_groups: int) -> None:
         self._ctx = ctx
         self._programs = programs
         self._max_groups = max_groups
-        self._status = ctx.buffer(reserve=16)
+        words = -(-n_fiblets // 32)
+        self.buffers: dict[str, moderngl.Buffer] = {}
+        for name, width in (("plan", 4), ("candidates", 1), ("seen", 1)):
+            self.buffers[name] = storage_buffer(ctx, np.zeros(words * width, np.uint32), name)
 
-    def draw(self, chunks: Sequence[Chunk], target: GBuffer, features: Iterable[str], passes: Passes) -> None:
+    def draw(self, chunks: Sequence[Chunk], target: GBuffer, features: Sequence[str], passes: Passes) -> None:
         """Draw all chunks; the ``Frame`` and ``Coding`` blocks and the direction table are bound already.
 
         Parameters
         ----------
         chunks : sequence of Chunk
         target : GBuffer
-        features : iterable of str
+        features : sequence of str
             Keys of :data:`pvfiblets.engine.shaders.FEATURES`.
         passes : Passes
             Takes the times.
         """
-        features = list(features)
-        clear, cull, depth, attributes = (
-            self._programs.compute(f"compute/{name}.comp", features)
-            for name in ("clear", "cull", "depth", "attributes")
-        )
-        target.depth.bind_to_image(0, read=True, write=True)
-        target.owner.bind_to_image(1, read=True, write=True)
-        target.ids.bind_to_image(2, read=False, write=True)
-        target.position.bind_to_image(3, read=False, write=True)
-        self._status.write(bytes(16))
+        for index, texture in enumerate((target.depth, target.owner, target.ids, target.position)):
+            texture.bind_to_image(index, read=True, write=True)
+        for name, binding in (("plan", 6), ("candidates", 7), ("seen", 12)):
+            self.buffers[name].bind_to_storage_buffer(binding)
+        plain = [feature for feature in features if feature != "CLIPPING"]
+        variants = [plain, features] if "CLIPPING" in features else [plain]
+        rows = target.size[1]
+
         with passes.timed("clear"):
-            dispatch(clear, target.size[1], self._max_groups)
+            dispatch(self._program("clear", plain), rows, self._max_groups)
         with passes.timed("cull"):
-            self._run(cull, "cull", chunks, 32 * GROUP_SIZE)
-        self._ctx.memory_barrier(_AFTER_WRITES)
+            self._run("cull", plain, chunks, 32 * GROUP_SIZE)
+        self._barrier()
         with passes.timed("depth"):
-            self._run(depth, "depth", chunks, 32 * GROUP_WORDS)
-        self._ctx.memory_barrier(_AFTER_WRITES)
-        self._status.bind_to_storage_buffer(6)
-        for name, settling in (("attributes", False), ("settle", True)):
-            attributes["settling"] = settling
-            with passes.timed(name):
-                self._run(attributes, "attributes", chunks, 32 * GROUP_WORDS)
-            self._ctx.memory_barrier(_AFTER_WRITES)
+            for first in (0, 2):
+                for crossing, variant in enumerate(variants):
+                    self._program("depth", variant)["part"] = first + crossing
+                    self._run("depth", variant, chunks, 32 * GROUP_WORDS)
+                self._barrier()
+        with passes.timed("own"):
+            for variant in variants:
+                self._run("own", variant, chunks, 32 * GROUP_WORDS)
+        self._barrier()
+        with passes.timed("mark"):
+            dispatch(self._program("mark", plain), rows, self._max_groups)
+        self._barrier()
+        with passes.timed("attributes"):
+            for variant in variants:
+                self._run("attributes", variant, chunks, 32 * GROUP_WORDS)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
-    def _run(self, program: moderngl.ComputeShader, stage: str, chunks: Sequence[Chunk], per_group: int) -> None:
+    def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
+        return self._programs.compute(f"compute/{stage}.comp", features)
+
+    def _barrier(self) -> None:
+        self._ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT)
+
+    def _run(self, stage: str, features: Sequence[str], chunks: Sequence[Chunk], per_group: int) -> None:
+        program = self._program(stage, features)
         for chunk in chunks:
             chunk.buffers["chunk"].bind_to_uniform_block(2)
-            for name, binding in _BINDINGS[stage].items():
-                if name in chunk.buffers:
-                    chunk.buffers[name].bind_to_storage_buffer(binding)
+            for name in _READS[stage] & chunk.buffers.keys():
+                chunk.buffers[name].bind_to_storage_buffer(BINDINGS[name])
             dispatch(program, -(-chunk.n_fiblets // per_group), self._max_groups)
 
     def release(self) -> None:
-        """Give the pipeline's own buffer back; twice is harmless."""
-        self._status.release()
+        """Give the pipeline's own buffers back; twice is harmless."""
+        for buffer in self.buffers.values():
+            buffer.release()
+        self.buffers.clear()

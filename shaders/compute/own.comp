@@ -1,0 +1,39 @@
+// Second drawing pass: which fiblet owns each pixel. Candidates are decoded and drawn again; where a sample's depth is
+// the one that the first pass kept, its fiblet takes the pixel.
+//
+// Ties (equal depth keys in one pixel) go to the fiblet with the smallest index: a picture does not depend on the order
+// in which a driver runs groups. Every tied fiblet is a candidate, because it came nearest or tied when it was drawn.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "raster/segments.glsl"
+
+layout(std430, binding = 6) readonly buffer Plan { uvec4 plan[]; };
+layout(std430, binding = 7) readonly buffer Candidates { uint candidates[]; };
+layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
+layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
+
+uint bits_of(uint word) {
+    uint crossing = plan[word].y | plan[word].w;
+    return candidates[word] & (FEATURE_CLIPPING == 1 ? crossing : ~crossing);
+}
+
+#include "compute/bits.glsl"
+
+uint owner;
+
+void start_segment(uint segment, vec3 delta) {}
+
+void plot(ivec2 pixel, float z, float s, uint segment) {
+    if (depth_key(z) == imageLoad(depth_image, pixel).x) imageAtomicMin(owner_image, pixel, owner);
+}
+
+void main() {
+    for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
+        uint f = nth_fiblet(k);
+        if (f == NO_FIBLET) break;
+        owner = chunk.y + f;
+        draw_fiblet(f);
+    }
+}
