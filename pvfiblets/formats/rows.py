@@ -7,6 +7,7 @@ interpreter's lock), so a pass costs about what reading the memory costs.
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -36,6 +37,64 @@ def nonfinite(values: Array) -> Ints:
 
     parts = _each_block(part, len(values), values.itemsize)
     return np.concatenate(parts) if parts else np.zeros(0, np.int64)
+
+
+def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints]:
+    """Copy the rows that are finite throughout, in one pass over the memory.
+
+    Parameters
+    ----------
+    rows : (n, k) array of float
+        Any byte order and alignment; each row contiguous.
+    dtype : dtype
+        Of the copy: float of the same size as the rows', native.
+
+    Returns
+    -------
+    (m, k) array
+        The finite rows.
+    (n - m,) int64
+        Numbers of the others, ascending.
+    """
+    n, k = rows.shape
+    kind = np.dtype(dtype)
+    out = np.empty((n, k), kind)
+    # A row seen as one opaque value lets NumPy's mask copy whole runs of rows by memcpy.
+    row = np.dtype((np.void, k * kind.itemsize))
+    target = out.view(row)[:, 0] if n else out
+    step = max(1, BLOCK_BYTES // (k * kind.itemsize))
+    n_blocks = -(-n // step)
+    # Where a block's rows go depends on how many the blocks before it leave out: each block
+    # tells the next. Blocks are begun in order, so the one waited for is always under way.
+    left_out_before = [0] * (n_blocks + 1)
+    known = [threading.Event() for _ in range(n_blocks + 1)]
+    known[0].set()
+
+    def part(first: int, last: int) -> Ints:
+        i = first // step
+        try:
+            block = np.ascontiguousarray(rows[first:last], kind)
+            flat = np.flatnonzero(~np.isfinite(block.reshape(-1))) // k
+            bad = flat[np.diff(flat, prepend=-1) > 0]
+            known[i].wait()
+            left_out_before[i + 1] = left_out_before[i] + len(bad)
+        finally:
+            known[i + 1].set()
+        at = first - left_out_before[i]
+        source = block.view(row)[:, 0]
+        if len(bad):
+            keep = np.ones(last - first, bool)
+            keep[bad] = False
+            source = source[keep]
+        target[at : at + len(source)] = source
+        numbers: Ints = bad + first
+        return numbers
+
+    parts = _each_block(part, n, k * kind.itemsize)
+    bad = np.concatenate(parts) if parts else np.zeros(0, np.int64)
+    kept = out[: n - len(bad)]
+    # A file of little but delimiters should not keep the space that they took.
+    return (kept.copy() if len(bad) > n // 8 else kept), bad
 
 
 def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
@@ -85,11 +144,17 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
 def transformed(points: Array, affine: NDArray[np.float64]) -> NDArray[np.float32]:
     """(n, 3) float32 points moved by a (4, 4) affine, computed in float64."""
     out = np.empty((len(points), 3), np.float32)
-    linear, shift = affine[:3, :3].T.copy(), affine[:3, 3]
+    linear, shift = affine[:3, :3], affine[:3, 3]
 
     def part(first: int, last: int) -> None:
+        block = points[first:last].astype(np.float64)
         with np.errstate(over="ignore", invalid="ignore"):
-            out[first:last] = points[first:last].astype(np.float64) @ linear + shift
+            for j in range(3):
+                # Not by matrix product: its library would start threads inside these threads.
+                column = np.full(last - first, shift[j])
+                for i in np.flatnonzero(linear[j]):
+                    column += linear[j, i] * block[:, i]
+                out[first:last, j] = column
 
     _each_block(part, len(points), 24)
     return out

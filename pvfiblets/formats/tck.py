@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, replacing
-from pvfiblets.formats.rows import NONFINITE, nonfinite, without_rows
+from pvfiblets.formats.rows import NONFINITE, finite_rows
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 
 Array = NDArray[Any]
@@ -158,19 +158,16 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
     last : bool
         Whether the data end with these rows: then what follows the last delimiter is taken too.
     """
-    k = rows.shape[1]
-    flat = nonfinite(rows.reshape(-1)) // k
-    special, sizes = np.unique(flat, return_counts=True) if k > 1 else (flat, np.ones(len(flat)))
-    # Only the first value needs a look where all k are non-finite and of one kind.
+    finite, special = finite_rows(rows, dtype)
     values = rows[special]
-    is_nan = np.isnan(values).all(axis=1)
-    is_end = np.isinf(values).all(axis=1)
+    is_nan: Array = np.asarray(np.isnan(values).all(axis=1))
+    is_end: Array = np.asarray(np.isinf(values).all(axis=1))
     ended = bool(is_end.any())
     n = len(rows)
     if ended:
         at = int(np.argmax(is_end))
         n = int(special[at])
-        special, is_nan, sizes = special[:at], is_nan[:at], sizes[:at]
+        special, is_nan = special[:at], is_nan[:at]
     delimiters = special[is_nan]
     tail_from = int(delimiters[-1]) + 1 if len(delimiters) else 0
     take = n if ended or last else tail_from
@@ -180,7 +177,7 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
     # The points before edge i: its row number, less the delimiters and the bad rows before it.
     ends = edges - np.arange(len(edges)) - np.searchsorted(bad, edges)
     return Window(
-        without_rows(rows[:take], special, dtype),
+        finite[: take - len(special)],
         np.diff(ends, prepend=0),
         take + 1 if ended else take,
         ended,

@@ -246,7 +246,8 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  
     """Read a whole trk or trk.gz file (see :func:`pvfiblets.formats.read`)."""
     with _opened(path) as (words, header):
         # One window that holds every record: no file has more words than this.
-        return Streamlines.concatenate(list(_chunks(words, header, 1 << 40)))
+        parts = list(_chunks(words, header, 1 << 40))
+    return parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:

@@ -202,6 +202,7 @@ class ArrayEntry:
 
     def flat(self, rows: Array) -> Array:
         """Copy rows to native order; one axis where there is one column."""
+        native: Array
         if rows.dtype == bool:
             native = rows.view(np.uint8) != 0  # a byte that is neither 0 nor 1 is true
         else:
