@@ -149,9 +149,12 @@ class WindowContext:
             self._witness.SetContext(window)
             self._witness.Allocate2D(1, 1, 4, VTK_UNSIGNED_CHAR)
             self._witness.Deactivate()  # or it would keep a texture unit
+        # Held here and thus by the module: were they the window's alone, the garbage collector could
+        # empty them before the window's last event calls them.
+        self._callbacks = (lambda *_: self._sweep(), lambda *_: self._unregister())
         self._observers = [
-            window.AddObserver("EndEvent", lambda *_: self._sweep()),
-            window.AddObserver("DeleteEvent", lambda *_: self._unregister()),
+            window.AddObserver(event, callback)
+            for event, callback in zip(("EndEvent", "DeleteEvent"), self._callbacks, strict=True)
         ]
         self._address = window.GetAddressAsString("")
 

@@ -51,7 +51,7 @@ def test_planes_cut_fiblets_as_they_cut_polylines(compare, make_fibres, tools, c
         return
     assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
     # No holes where what is in front was cut away. Ends at a plane are a pixel longer or shorter.
-    assert tools.covered(ours).sum() == pytest.approx(tools.covered(theirs).sum(), rel=0.06)
+    assert tools.covered(ours).sum() == pytest.approx(tools.covered(theirs).sum(), rel=0.1)
 
 
 def test_depth_behind_a_cut_is_that_of_polylines(compare, lines, tools):

@@ -125,7 +125,7 @@ def test_the_default_lights_of_a_plotter(rod):
 
 def test_a_line_straight_at_the_viewer_has_no_nan(make_plotter, make_fibres, tools):
     along = np.linspace(-10, 10, 41)[:, None] * np.array((0.0, 1.0, 0.0))
-    fibres = make_fibres(type(tools.helices(1, 2)).from_list([along, along + (5, 0, 0)]))
+    fibres = make_fibres(type(tools.helices(1, 2)).from_list([along, along + np.array((5, 0, 0))]))
     mapper, actor = fibres.actor(lighting=True, colouring=Colouring("solid"))
     plotter = make_plotter(lighting="none")
     plotter.add_light(headlight())

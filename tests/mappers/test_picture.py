@@ -76,13 +76,10 @@ def test_an_actor_is_placed_as_vtk_places_it(compare, tools, placement):
     assert tools.agreement(yellow(ours), yellow(theirs)) >= 0.99
 
 
-@pytest.mark.parametrize("offset", [0.0, 1e6])
-@pytest.mark.parametrize("scale", [1.0, 1e-4])
+@pytest.mark.parametrize(("offset", "scale"), [(0.0, 1.0), (0.0, 1e-4), (1e6, 1.0)])
 def test_far_and_tiny_data(make_plotter, make_fibres, tools, offset, scale):
     base = tools.helices()
     streamlines = type(base)(base.points.astype(np.float64) * scale + offset, base.offsets)
-    if offset and scale < 1.0:
-        pytest.skip("1e-10 of the coordinates: below what float64 points can say")
     fibres = make_fibres(streamlines)
     mapper, actor = fibres.actor()
     ours = make_plotter()
@@ -125,10 +122,8 @@ def test_the_camera_inside_the_data(compare, tools):
     assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
 
 
-def test_a_wider_line_covers_more(make_plotter, lines, tools):
-    mapper, actor = lines.actor()
-    if lines.kind == "lines":
-        pytest.skip("the stand-in draws one width")
+def test_a_wider_line_covers_more(make_plotter, tools):
+    mapper, actor = tools.fibres("engine", tools.helices()).actor()
     plotter = make_plotter()
     plotter.add_actor(actor)
     thin = tools.covered(tools.picture(plotter, mapper)).sum()
@@ -141,3 +136,67 @@ def test_line_width_below_one_is_refused(plain):
     mapper, _ = plain.actor()
     with pytest.raises(ValueError, match="line_width"):
         mapper.line_width = 0.0
+
+
+def test_an_actor_inside_an_assembly(make_plotter, lines, tools):
+    from vtkmodules.vtkRenderingCore import vtkAssembly
+
+    images = []
+    for ours in (True, False):
+        plotter = make_plotter()
+        if ours:
+            mapper, actor = lines.actor()
+        else:
+            actor = pv.Actor(mapper=pv.DataSetMapper(lines.polydata()))
+            actor.prop.lighting = False
+        assembly = vtkAssembly()
+        assembly.AddPart(actor)
+        assembly.SetOrientation(0, 0, 40)
+        assembly.SetScale(1, 0.5, 1)
+        plotter.add_actor(assembly)
+        plotter.camera_position = "xz"
+        plotter.reset_camera()
+        images.append(tools.covered(tools.picture(plotter)))
+    tools.check(mapper)
+    assert tools.agreement(*images) >= 0.99
+
+
+OLD_OPENGL = """
+import pyvista as pv
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkActor
+from pvfiblets.codec.compress import compress
+from pvfiblets.engine import EngineError
+from pvfiblets.mappers import FibletMapper
+from pvfiblets.streamlines import Streamlines
+
+line = np.c_[np.linspace(0, 10, 50), np.zeros((50, 2))]
+mapper, actor = FibletMapper(compress(Streamlines.from_list([line]))), vtkActor()
+mapper.attach(actor)
+plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
+plotter.add_actor(actor)
+plotter.show(auto_close=False)
+try:
+    mapper.raise_pending()
+except EngineError as error:
+    print("refused:", error)
+plotter.close()
+"""
+
+
+def test_below_opengl_43_the_error_says_so():
+    import os
+    import subprocess
+    import sys
+
+    done = subprocess.run(
+        [sys.executable, "-c", OLD_OPENGL],
+        env=os.environ | {"MESA_GL_VERSION_OVERRIDE": "4.1"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "refused:" in done.stdout
+    assert "4.3" in done.stdout

@@ -1,0 +1,124 @@
+"""Matrices of a frame against VTK's own transformations, and what float32 leaves of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkRenderer, vtkRenderWindow
+
+from pvfiblets.mappers.clipping import cut
+from pvfiblets.mappers.scene import frame_of, renderers_of
+
+
+@pytest.fixture
+def view():
+    """Return a function that makes renderer, actor and frame of a camera."""
+    kept = []
+
+    def make(*, offset=0.0, near=10.0, far=1000.0, parallel=False):
+        window, renderer, actor = vtkRenderWindow(), vtkRenderer(), vtkActor()
+        window.SetSize(400, 300)
+        window.AddRenderer(renderer)
+        renderer.AddActor(actor)
+        actor.SetPosition(offset, -offset, offset)
+        actor.SetScale(1.0, 2.0, -0.5)
+        actor.SetOrientation(10, 20, 30)
+        camera = renderer.GetActiveCamera()
+        camera.SetPosition(offset + 30, -offset - 200, offset + 50)
+        camera.SetFocalPoint(offset, -offset, offset)
+        camera.SetParallelProjection(parallel)
+        camera.SetParallelScale(100)
+        camera.SetClippingRange(near, far)
+        kept.append((window, renderer, actor))
+        return renderer, actor, frame_of(renderer, actor, (0, 0, 400, 300))
+
+    return make
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_model_view_projection_is_vtks(view, parallel, offset):
+    renderer, actor, frame = view(offset=offset, parallel=parallel)
+    point = np.array([3.0, -4.0, 5.0, 1.0])
+    world = np.array(actor.GetMatrix().MultiplyPoint(point))
+    renderer.SetWorldPoint(world)
+    renderer.WorldToView()
+    clip = frame.model_view_projection @ point
+    x, y, z = renderer.GetViewPoint()  # whose depth runs from 0 to 1
+    assert np.allclose(clip[:3] / clip[3], (x, y, 2 * z - 1), rtol=1e-9, atol=1e-8)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize(("near", "far"), [(10.0, 1000.0), (0.1, 10_000.0), (1e-4, 1e-2)])
+def test_positions_come_back_from_depth_in_float32(view, parallel, near, far):
+    """The error of a position is what the depth buffer's step is worth there, not more."""
+    _, _, frame = view(offset=1e6, near=near, far=far, parallel=parallel)
+    distance = np.geomspace(near * 1.001, far * 0.999, 200)
+    points = np.stack([0.2 * distance, -0.1 * distance, -distance, np.ones(200)])
+    clip = frame.projection @ points
+    ndc = clip[:3] / clip[3]
+    keys = np.round((0.5 + 0.5 * ndc[2]) * 4294967295.0)
+    complement = np.float32(4294967295.0 - keys) / np.float32(4294967295.0)
+    matrix = frame.pixel_to_view.astype(np.float32)
+    pixels = np.stack([*ndc[:2].astype(np.float32), complement, np.ones(200, np.float32)])
+    back = matrix @ pixels
+    back = back[:3] / back[3]
+    relative = np.abs(back - points[:3]).max(axis=0) / distance
+    if parallel:  # there depth is linear in distance: the error is a share of the range
+        relative = np.abs(back - points[:3]).max(axis=0) / far
+    step = distance * (far - near) / (far * near) / 4294967295.0
+    assert (relative < 3e-6 + 2 * step).all()
+
+
+def test_planes_keep_the_same_points_in_every_coordinates(view):
+    _, _, frame = view(offset=1e3)
+    random = np.random.default_rng(1)
+    planes = np.c_[random.normal(size=(50, 3)), random.normal(size=50) * 100]
+    planes[:, 3] -= planes[:, :3] @ (1e3, -1e3, 1e3)
+    world = np.r_[random.normal(size=(3, 1)) * 20 + np.array([[1e3], [-1e3], [1e3]]), [[1.0]]]
+    signs = np.sign(planes @ world)
+    in_view = frame.view @ world
+    assert np.array_equal(np.sign(frame.planes_in_view(planes) @ in_view), signs)
+    clip = frame.projection @ in_view
+    assert clip[3] > 0
+    assert np.array_equal(np.sign(frame.planes_in_clip(planes) @ clip), signs)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_cut_keeps_what_is_kept_and_gives_its_depth_back(view, parallel):
+    _, _, frame = view(parallel=parallel)
+    plane = np.array([[0.1, 1.0, 0.2, 3.0]])
+    clipped = cut(frame, plane)
+    assert len(clipped.planes) == 0
+    random = np.random.default_rng(2)
+    points = np.r_[random.uniform(-40, 40, (3, 500)), np.ones((1, 500))]
+    world = np.linalg.inv(frame.view) @ frame.model_view @ points
+    before = frame.model_view_projection @ points
+    after = clipped.model_view_projection @ points
+    kept = (plane @ world)[0] >= 0
+    inside = (np.abs(before[:3]) <= before[3]).all(axis=0)
+    assert inside.sum() > 100
+    assert np.array_equal((after[2] >= -after[3])[inside], kept[inside])
+    both = inside & kept
+    assert (after[2] <= after[3] * (1 + 1e-9))[both].all(), "nothing is lost beyond the far plane"
+    x, y, z = before[:3, both] / before[3, both]
+    oblique = 0.5 - 0.5 * after[2, both] / after[3, both]
+    window = clipped.depth @ np.stack([x, y, oblique, np.ones_like(x)])
+    assert np.allclose(window, 0.5 - 0.5 * z, atol=1e-9)
+
+
+def test_a_plane_seen_from_the_kept_side_is_left_to_the_resolve(view):
+    _, _, frame = view()
+    clipped = cut(frame, np.array([[0.0, -1.0, 0.0, 0.0]]))
+    assert len(clipped.planes) == 1
+    assert np.array_equal(clipped.depth, [0, 0, 1, 0])
+    assert np.array_equal(clipped.model_view_projection, frame.model_view_projection)
+
+
+def test_renderers_are_found_through_assemblies():
+    renderer, assembly, actor = vtkRenderer(), vtkAssembly(), vtkActor()
+    assembly.AddPart(actor)
+    renderer.AddActor(assembly)
+    assert list(renderers_of(actor)) == [renderer]
+    renderer.RemoveActor(assembly)
+    assert list(renderers_of(actor)) == []
