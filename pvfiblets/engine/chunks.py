@@ -4,8 +4,8 @@ A chunk holds whole pages, so that the page-relative indices of the records stay
 follows its last one, so that no shader looks into another chunk. What culling reads (anchors, reach) stays in buffers
 apart from what decoding reads (words, codes).
 
-Budget, bytes per fiblet: anchors 8, reach 2, words 12, codes 58 when full, and six bits by which the passes tell each
-other what to draw: 80.75, or 1.35 per point.
+Budget, bytes per fiblet: anchors 8, reach 2, words 12, codes 58 when full, and the eight bits by which the passes tell
+each other what to draw: 81, or 1.35 per point.
 """
 
 from __future__ import annotations

@@ -56,7 +56,8 @@ def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> np
     steps = np.divide(point - origin, scale, out=np.zeros(3), where=scale > 0.0)
     if not np.isfinite(steps).all():
         return middle
-    return np.rint(np.clip(steps, 0, top)).astype(np.int64)
+    chosen: npt.NDArray[np.int64] = np.rint(np.clip(steps, 0, top)).astype(np.int64)
+    return chosen
 
 
 def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:

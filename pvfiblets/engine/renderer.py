@@ -12,7 +12,7 @@ from .errors import EngineError
 from .frame import frame_block
 from .gbuffer import GBuffer
 from .passes import Passes
-from .pipelines.compute import CONSTANTS, ComputePipeline
+from .pipelines.compute import CLIPPING, CONSTANTS, ComputePipeline
 from .shaders import Programs
 from .values import ValueSources
 from .view import Style, View
@@ -149,7 +149,7 @@ class FibletRenderer:
         )
         self._buffers["frame"].write(block)
         features += ["WIDE_LINES"] if style.line_width > 1.0 else []
-        features += ["CLIPPING"] if margin < self._largest_reach else []
+        features += list(CLIPPING) if margin < self._largest_reach else []
         self._features = features + ([source] if source else [])
         self._passes.begin()
         pipeline.draw(self._chunks, self._target, self._features, self._passes)

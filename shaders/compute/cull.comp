@@ -6,8 +6,8 @@
 //   - Never culls a fiblet of which one pixel would be drawn. The sphere (`reach`, rounded up by the encoder) holds all
 //     points and the joining segment; the planes stand half a line's width and the rounding of this very computation
 //     further out (pvfiblets/engine/frame.py must agree).
-//   - A fiblet that is not called crossing lies inside all planes, by `guard.z` and its sphere: its segments need no
-//     clipping, and the programs that draw it hold none.
+//   - A fiblet of class 0 lies inside all planes, by `guard.z` and its sphere: its segments need no clipping. One of
+//     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others.
 //
 // One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), and which need clipping.
@@ -18,7 +18,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "decode/record.glsl"
 
 layout(std430, binding = 5) readonly buffer Reach { uint reaches[]; };  // two uint16 a word
-layout(std430, binding = 6) writeonly buffer Plan { uvec4 plan[]; };    // seen, seen crossing, other, other crossing
+layout(std430, binding = 6) writeonly buffer Plan { uint plan[]; };     // classes 0, 1, 2 of the seen, then of the others
 layout(std430, binding = 7) writeonly buffer Candidates { uint candidates[]; };
 layout(std430, binding = 12) buffer Seen { uint seen[]; };
 
@@ -26,21 +26,27 @@ void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
     if (first >= chunk.x) return;
-    uint shown = 0u, crossing = 0u, count = min(32u, chunk.x - first);
+    uint shown = 0u, crossing = 0u, crossing_depth = 0u, count = min(32u, chunk.x - first);
     for (uint i = 0u; i < count; ++i) {
         uint f = first + i;
         vec3 centre = anchor_local(f);
         if (fiblet_end(anchors[f]) == 0u) centre = 0.5 * (centre + anchor_local(f + 1u));
         float radius = float(bitfieldExtract(reaches[f >> 1], int(f & 1u) * 16, 16)) * anchor_scale.w;
-        float least = dot(planes[0].xyz, centre) + planes[0].w;
-        for (int side = 1; side < 6; ++side) least = min(least, dot(planes[side].xyz, centre) + planes[side].w);
-        if (least >= -radius) shown |= 1u << i;
-        if (least < radius + guard.z) crossing |= 1u << i;
+        float edges = dot(planes[0].xyz, centre) + planes[0].w;
+        for (int side = 1; side < 4; ++side) edges = min(edges, dot(planes[side].xyz, centre) + planes[side].w);
+        float depths = min(dot(planes[4].xyz, centre) + planes[4].w, dot(planes[5].xyz, centre) + planes[5].w);
+        if (min(edges, depths) >= -radius) shown |= 1u << i;
+        if (edges < radius + guard.z) crossing |= 1u << i;
+        if (depths < radius + guard.z) crossing_depth |= 1u << i;
     }
     word += chunk.y >> 5u;
     uint before = seen[word];
-    plan[word] = uvec4(shown & before & ~crossing, shown & before & crossing, shown & ~before & ~crossing,
-                       shown & ~before & crossing);
+    for (uint part = 0u; part < 6u; part += 3u) {
+        uint these = shown & (part == 0u ? before : ~before);
+        plan[word * 6u + part] = these & ~crossing & ~crossing_depth;
+        plan[word * 6u + part + 1u] = these & crossing & ~crossing_depth;
+        plan[word * 6u + part + 2u] = these & crossing_depth;
+    }
     candidates[word] = 0u;
     seen[word] = 0u;
 }

@@ -9,13 +9,13 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Plan { uvec4 plan[]; };
+layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
 layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
 layout(r32ui, binding = 0) coherent uniform uimage2D depth_image;
 
 uniform uint part;  // of the plan
 
-uint bits_of(uint word) { return plan[word][part]; }
+uint bits_of(uint word) { return plan[word * 6u + part]; }
 
 #include "compute/bits.glsl"
 

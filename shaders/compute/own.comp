@@ -9,14 +9,15 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Plan { uvec4 plan[]; };
+layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
 layout(std430, binding = 7) readonly buffer Candidates { uint candidates[]; };
 layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
 
+uniform uint part;  // of the plan: which class
+
 uint bits_of(uint word) {
-    uint crossing = plan[word].y | plan[word].w;
-    return candidates[word] & (FEATURE_CLIPPING == 1 ? crossing : ~crossing);
+    return candidates[word] & (plan[word * 6u + part] | plan[word * 6u + part + 3u]);
 }
 
 #include "compute/bits.glsl"

@@ -39,5 +39,16 @@ bool clip_segment(vec4 a, vec4 b, out float t0, out float t1) {
     return t0 <= t1;
 }
 
+// The same for a segment in front of the camera, in the window and against its four edges only.
+bool clip_window(vec2 a, vec2 b, out float t0, out float t1) {
+    vec2 margin = vec2(viewport.z), run = b - a;
+    precise vec2 inverse = 1.0 / mix(run, vec2(1e-20), equal(run, vec2(0.0)));
+    precise vec2 low = (-margin - a) * inverse, high = (viewport.xy + margin - a) * inverse;
+    vec2 enter = min(low, high), leave = max(low, high);
+    t0 = clamp(max(enter.x, enter.y), 0.0, 1.0);
+    t1 = clamp(min(leave.x, leave.y), 0.0, 1.0);
+    return max(enter.x, enter.y) <= min(leave.x, leave.y) && min(leave.x, leave.y) >= 0.0 && max(enter.x, enter.y) <= 1.0;
+}
+
 // Window depth as the G-buffer's fixed-point key. 2^32 (1 - 2^-23) is the largest drawn; all ones means empty.
 uint depth_key(float z) { return uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u; }

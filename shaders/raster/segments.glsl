@@ -19,7 +19,10 @@
 // Wide lines. All pixels whose centre is at most half the width from the segment: a capsule, whose round ends join
 // segments without notches.
 //
-// Fiblets that the cull pass found to lie inside all planes are drawn by a program without FEATURE_CLIPPING.
+// Clipping is as costly as all else together, so that three programs share the fiblets, as the cull pass found them:
+//   inside all planes                  no clipping
+//   inside the near and far planes     FEATURE_CLIPPING: in the window, where it takes four products
+//   the others                         FEATURE_CLIPPING and FEATURE_CLIPPING_DEPTH: in homogeneous coordinates
 //
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective.
 
@@ -29,12 +32,18 @@
 void plot(ivec2 pixel, float z, float s, uint segment);
 void start_segment(uint segment, vec3 delta);
 
-// The clipped segment, for along(): clip w at both ends, parameters at both ends.
+// The segment being drawn, for along(): clip w at both ends, and what was left of it by clipping.
 vec4 clipped = vec4(1.0, 1.0, 0.0, 1.0);
 
 float along(float s) {
-    float u = s * clipped.x / max((1.0 - s) * clipped.y + s * clipped.x, 1e-30);
-    return mix(clipped.z, clipped.w, clamp(u, 0.0, 1.0));
+#if FEATURE_CLIPPING && !FEATURE_CLIPPING_DEPTH
+    s = mix(clipped.z, clipped.w, s);  // clipped in the window, before perspective is corrected
+#endif
+    float u = clamp(s * clipped.x / max((1.0 - s) * clipped.y + s * clipped.x, 1e-30), 0.0, 1.0);
+#if FEATURE_CLIPPING_DEPTH
+    u = mix(clipped.z, clipped.w, u);  // clipped in space
+#endif
+    return u;
 }
 
 #if FEATURE_WIDE_LINES
@@ -87,7 +96,7 @@ void draw_fiblet(uint f) {
     precise vec4 c0 = to_clip(walk_point);
     precise vec4 s0 = to_window(c0);
     uint count = walk.last + (end && walk.last > 0u ? 0u : 1u);  // a single point is a segment of no length
-#if FEATURE_CLIPPING
+#if FEATURE_CLIPPING_DEPTH
     bool inside0 = in_volume(c0);
 #endif
     for (uint i = 1u; i <= count; ++i) {
@@ -102,7 +111,7 @@ void draw_fiblet(uint f) {
         precise vec4 s1 = to_window(c1);
         bool cap = end && i == count;
         start_segment(i - 1u, walk_delta);
-#if FEATURE_CLIPPING
+#if FEATURE_CLIPPING_DEPTH
         bool inside1 = in_volume(c1);
         float t0 = 0.0, t1 = 1.0;
         precise vec4 e0 = s0, e1 = s1;
@@ -116,6 +125,12 @@ void draw_fiblet(uint f) {
         if (any) draw_window(e0, e1, i - 1u, cap || t1 < 1.0);
         inside0 = inside1;
         c0 = c1;
+#elif FEATURE_CLIPPING
+        float t0, t1;
+        bool any = clip_window(s0.xy, s1.xy, t0, t1);
+        precise vec4 run = s1 - s0, e0 = s0 + t0 * run, e1 = t1 < 1.0 ? s0 + t1 * run : s1;
+        clipped = vec4(s0.w, s1.w, t0, t1);
+        if (any) draw_window(e0, e1, i - 1u, cap || t1 < 1.0);
 #else
         clipped = vec4(s0.w, s1.w, 0.0, 1.0);
         draw_window(s0, s1, i - 1u, cap);

@@ -45,7 +45,7 @@ def decoded_by_shader(gl, fiblets, source, threads):
     renderer = FibletRenderer(gl, fiblets)
     # A view whose reference is anchor 0, or close: what comes back is then relative to `origin` exactly.
     renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])))
-    features = [f for f in renderer.explain()["features"] if f not in ("WIDE_LINES", "CLIPPING")]
+    features = [f for f in renderer.explain()["features"] if f not in ("WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH")]
     program = gl.compute_shader(assemble("test", features, source=source))
     out = storage_buffer(gl, np.zeros((fiblets.n_fiblets, 64, 3), np.float32), "points")
     block = np.frombuffer(renderer._buffers["frame"].read(), "<u4").copy()

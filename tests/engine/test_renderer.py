@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View, shaders
 
 SIZE = (320, 240)
 EMPTY = 0xFFFFFFFF
@@ -348,29 +348,36 @@ def test_paging_changes_nothing(gl, fabricate, random_lines, camera):
         assert np.abs(pieces[2] - whole[2])[drawn].max() < 1e-3
 
 
-def test_culling_never_shows(gl, fabricate, random_lines, camera):
-    """A picture drawn with every sphere so large that nothing is culled is the same, byte for byte."""
+def test_culling_never_shows(gl, fabricate, random_lines, camera, monkeypatch):
+    """A picture drawn by a cull pass that lets everything through is the same, byte for byte."""
     fiblets = fabricate(random_lines(300, seed=13), kind=2, per_fiblet=10)
-    unculled = fabricate(random_lines(300, seed=13), kind=2, per_fiblet=10)
-    unculled.reach = np.full_like(unculled.reach, 65535)
-    unculled.reach_scale = 1.0
     rng = np.random.default_rng(14)
-    shares = []
+    cases = []
     for i in range(12):
         eye = rng.uniform(-60, 60, 3)
-        matrix = camera(
-            SIZE, eye=eye, target=eye + rng.normal(0, 1, 3), near=0.5, far=60.0, height=40.0 if i % 3 == 0 else None
-        )
-        style = Style(line_width=1.0 if i % 2 else 9.0)
+        height = 40.0 if i % 3 == 0 else None
+        matrix = camera(SIZE, eye=eye, target=eye + rng.normal(0, 1, 3), near=0.5, far=60.0, height=height)
+        cases.append((View(SIZE, matrix), Style(line_width=1.0 if i % 2 else 9.0)))
+
+    def pictures():
         renderer = FibletRenderer(gl, fiblets)
-        a = read(renderer.render(View(SIZE, matrix), style))
-        plan = np.frombuffer(renderer._pipeline.buffers["plan"].read(), np.uint8)
-        shares.append(np.unpackbits(plan).sum() / fiblets.n_fiblets)
+        for view, style in cases:
+            picture = read(renderer.render(view, style))
+            plan = np.frombuffer(renderer._pipeline.buffers["plan"].read(), np.uint8)
+            yield picture, np.unpackbits(plan).sum() / fiblets.n_fiblets
         renderer.release()
-        b = draw(gl, unculled, matrix, style=style)
+
+    culled = list(pictures())
+    test = "if (min(edges, depths) >= -radius) shown"
+    assert test in shaders.read_shader("compute/cull.comp")
+    honest = shaders.read_shader
+    monkeypatch.setattr(shaders, "read_shader", lambda name: honest(name).replace(test, "shown"))
+    for (a, share), (b, everything) in zip(culled, pictures(), strict=True):
+        assert everything == 1.0
+        assert share < 1.0
         assert (a[0] == b[0]).all()
         assert (a[1] == b[1])[a[0] != EMPTY].all()
-    assert np.mean(shares) < 0.5, "culling should spare work too"
+    assert np.mean([share for _, share in culled]) < 0.5, "culling should spare work too"
 
 
 def test_redraws_only_when_something_changed(gl, fabricate, random_lines, camera):
@@ -393,14 +400,14 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     renderer = FibletRenderer(gl, fabricate(random_lines(20), kind=2))
     renderer.render(View(SIZE, camera(SIZE)))
     plain = renderer.explain()
-    assert plain["features"] == ["LATTICE", "CLIPPING"]  # some lines leave the screen
+    assert plain["features"] == ["LATTICE", "CLIPPING", "CLIPPING_DEPTH"]  # some lines leave the screen
     assert [p["name"] for p in plain["passes"]] == ["clear", "cull", "depth", "own", "mark", "attributes"]
     assert all(p["ms"] >= 0 for p in plain["passes"])
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}
     renderer.render(View(SIZE, camera(SIZE)), Style(2.0, "curvature"))
     rich = renderer.explain()
-    assert rich["features"] == ["LATTICE", "WIDE_LINES", "CLIPPING", "VALUES_CURVATURE"]
+    assert rich["features"] == ["LATTICE", "WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "VALUES_CURVATURE"]
     assert "starts" in {b["name"] for b in rich["buffers"]}
     renderer.render(View(SIZE, camera(SIZE)))
     assert renderer.explain()["features"] == plain["features"]

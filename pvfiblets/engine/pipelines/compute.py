@@ -12,7 +12,7 @@ attributes     draws the owners again and writes streamline, tangent and place o
 =============  =================================================================================================
 
 Last time's fiblets only decide the order: the picture is the same whatever was seen before. Fiblets inside all planes
-of the view volume are drawn by programs without clipping; the others, if there are any, by programs with it.
+of the view volume are drawn by programs without clipping; the others, if there are any, by two programs with it.
 
 The sources are in ``shaders/compute``; what a program includes is decided by features.
 """
@@ -29,11 +29,13 @@ from ..gbuffer import GBuffer
 from ..passes import Passes, dispatch
 from ..shaders import Programs
 
-__all__ = ["CONSTANTS", "ComputePipeline"]
+__all__ = ["CLIPPING", "CONSTANTS", "ComputePipeline"]
 
 GROUP_SIZE = 64
 GROUP_WORDS = 8
 CONSTANTS = {"group_size": GROUP_SIZE, "group_words": GROUP_WORDS}
+
+CLIPPING = ("CLIPPING", "CLIPPING_DEPTH")
 
 BINDINGS = {
     "anchors": 0,
@@ -72,7 +74,7 @@ class ComputePipeline:
     Attributes
     ----------
     buffers : dict of str to moderngl.Buffer
-        ``plan`` (four bits per fiblet), ``candidates`` and ``seen`` (one each).
+        ``plan`` (six bits per fiblet), ``candidates`` and ``seen`` (one each).
     """
 
     def __init__(self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, max_groups: int) -> None:
@@ -81,7 +83,7 @@ class ComputePipeline:
         self._max_groups = max_groups
         words = -(-n_fiblets // 32)
         self.buffers: dict[str, moderngl.Buffer] = {}
-        for name, width in (("plan", 4), ("candidates", 1), ("seen", 1)):
+        for name, width in (("plan", 6), ("candidates", 1), ("seen", 1)):
             self.buffers[name] = storage_buffer(ctx, np.zeros(words * width, np.uint32), name)
 
     def draw(self, chunks: Sequence[Chunk], target: GBuffer, features: Sequence[str], passes: Passes) -> None:
@@ -100,8 +102,9 @@ class ComputePipeline:
             texture.bind_to_image(index, read=True, write=True)
         for name, binding in (("plan", 6), ("candidates", 7), ("seen", 12)):
             self.buffers[name].bind_to_storage_buffer(binding)
-        plain = [feature for feature in features if feature != "CLIPPING"]
-        variants = [plain, features] if "CLIPPING" in features else [plain]
+        plain = [feature for feature in features if feature not in CLIPPING]
+        # One program for each class of fiblets that cull.comp tells apart; without clipping there is only the first.
+        variants = [plain, [*plain, CLIPPING[0]], [*plain, *CLIPPING]] if CLIPPING[0] in features else [plain]
         rows = target.size[1]
 
         with passes.timed("clear"):
@@ -110,21 +113,17 @@ class ComputePipeline:
             self._run("cull", plain, chunks, 32 * GROUP_SIZE)
         self._barrier()
         with passes.timed("depth"):
-            for first in (0, 2):
-                for crossing, variant in enumerate(variants):
-                    self._program("depth", variant)["part"] = first + crossing
-                    self._run("depth", variant, chunks, 32 * GROUP_WORDS)
+            for first in (0, len(CLIPPING) + 1):
+                self._run_classes("depth", variants, chunks, first)
                 self._barrier()
         with passes.timed("own"):
-            for variant in variants:
-                self._run("own", variant, chunks, 32 * GROUP_WORDS)
+            self._run_classes("own", variants, chunks)
         self._barrier()
         with passes.timed("mark"):
             dispatch(self._program("mark", plain), rows, self._max_groups)
         self._barrier()
         with passes.timed("attributes"):
-            for variant in variants:
-                self._run("attributes", variant, chunks, 32 * GROUP_WORDS)
+            self._run_classes("attributes", variants, chunks)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
@@ -132,6 +131,13 @@ class ComputePipeline:
 
     def _barrier(self) -> None:
         self._ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT)
+
+    def _run_classes(
+        self, stage: str, variants: Sequence[Sequence[str]], chunks: Sequence[Chunk], first: int = 0
+    ) -> None:
+        for part, features in enumerate(variants, first):
+            self._program(stage, features)["part"] = part
+            self._run(stage, features, chunks, 32 * GROUP_WORDS)
 
     def _run(self, stage: str, features: Sequence[str], chunks: Sequence[Chunk], per_group: int) -> None:
         program = self._program(stage, features)
