@@ -1,0 +1,129 @@
+"""Sets made by the codec: what is drawn is what `decompress` gives, on made-up brains and on real tracking."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+import pytest
+
+from pvfiblets import Streamlines, compress, read
+from pvfiblets.codec import layout
+from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.synthetic import brain_streamlines
+
+SIZE = (640, 480)
+EMPTY = 0xFFFFFFFF
+
+
+def fitted(camera, bounds):
+    """A view of all of it."""
+    box = np.reshape(bounds, (3, 2))
+    middle, radius = box.mean(1), np.linalg.norm(np.diff(box, axis=1)) / 2
+    eye = middle + [0, -3.9 * radius, 0]
+    return camera(SIZE, eye=eye, target=middle, near=2.8 * radius, far=5.0 * radius, angle=30.0)
+
+
+def gl_mask(gl, lines, matrix):
+    """What OpenGL draws of the polylines with GL_LINES."""
+    program = gl.program(
+        vertex_shader="#version 330\nin vec3 p; uniform mat4 m; void main() { gl_Position = m * vec4(p, 1.0); }",
+        fragment_shader="#version 330\nout vec4 c; void main() { c = vec4(1.0); }",
+    )
+    vertices = np.concatenate([np.repeat(line, 2, axis=0)[1:-1] for line in lines])
+    middle = vertices.mean(0)
+    shift = np.eye(4)
+    shift[:3, 3] = middle
+    program["m"].write((matrix @ shift).T.astype("<f4").tobytes())
+    buffer = gl.buffer((vertices - middle).astype("<f4").tobytes())
+    array = gl.vertex_array(program, [(buffer, "3f", "p")])
+    colour = gl.renderbuffer(SIZE)
+    target = gl.framebuffer([colour])
+    before = gl.detect_framebuffer()
+    target.use()
+    gl.enable_only(moderngl.NOTHING)
+    target.clear()
+    array.render(moderngl.LINES)
+    mask = np.frombuffer(target.read(components=1), np.uint8).reshape(SIZE[1], SIZE[0]) > 0
+    before.use()
+    for thing in (array, buffer, program, target, colour):
+        thing.release()
+    return mask
+
+
+def near(mask):
+    padded, grown = np.pad(mask, 1), np.zeros_like(mask)
+    for dy in range(3):
+        for dx in range(3):
+            grown |= padded[dy : dy + mask.shape[0], dx : dx + mask.shape[1]]
+    return grown
+
+
+def assert_drawn_as_decompressed(gl, camera, fiblets, **limits):
+    decoded = fiblets.decompress()
+    matrix = fitted(camera, fiblets.bounds)
+    renderer = FibletRenderer(gl, fiblets, **limits)
+    gbuffer = renderer.render(View(SIZE, matrix), Style())
+    drawn = np.frombuffer(gbuffer.depth.read(), "<u4").reshape(SIZE[1], SIZE[0]) != EMPTY
+    ids = np.frombuffer(gbuffer.ids.read(), "<u4").reshape(SIZE[1], SIZE[0], 2)[..., 0]
+    place = np.frombuffer(gbuffer.position.read(), "<f4").reshape(SIZE[1], SIZE[0], 2)[..., 0]
+    renderer.release()
+    mask = gl_mask(gl, [line for line in decoded.to_list() if len(line) > 1], matrix)
+    assert drawn.sum() > 500
+    assert near(mask)[drawn].mean() >= 0.99
+    assert near(drawn)[mask].mean() >= 0.99
+    rows, columns = np.nonzero(drawn)
+    streamline, place = ids[rows, columns].astype(int), place[rows, columns].astype(float)
+    length = np.diff(decoded.offsets)[streamline]
+    first = np.minimum(place.astype(int), np.maximum(length - 2, 0))
+    a = decoded.points[decoded.offsets[streamline] + first].astype(float)
+    b = decoded.points[decoded.offsets[streamline] + np.minimum(first + 1, length - 1)].astype(float)
+    clip = np.concatenate([a + (place - first)[:, None] * (b - a), np.ones((len(a), 1))], axis=1) @ matrix.T
+    window = (clip[:, :2] / clip[:, 3:] + 1) / 2 * SIZE
+    away = np.abs(window - np.stack([columns, rows], axis=1) - 0.5).max(1)
+    assert away.max() < 1.0, "a pixel names a place that lies elsewhere"
+
+
+def test_a_made_up_brain(gl, camera):
+    fiblets = compress(brain_streamlines(1500, step=0.5))
+    assert layout.Kind.DIRECTION in layout.unpack("kind", fiblets.decoding)
+    assert_drawn_as_decompressed(gl, camera, fiblets)
+
+
+def test_steps_that_vary(gl, camera):
+    rng = np.random.default_rng(0)
+    lines = []
+    for _ in range(300):
+        n = int(rng.integers(1, 120))
+        steps = rng.normal(0, 1, (n, 3)) * rng.uniform(0, 4, (n, 1)) + rng.normal(0, 1, 3)
+        lines.append(rng.uniform(-40, 40, 3) + np.cumsum(steps, axis=0))
+    fiblets = compress(Streamlines.from_list(lines))
+    assert layout.unpack("kind", fiblets.decoding).max() > 0
+    assert_drawn_as_decompressed(gl, camera, fiblets)
+
+
+def test_a_tight_promise(gl, camera):
+    brain = brain_streamlines(100, step=0.5)
+    fiblets = compress(Streamlines(brain.points.astype(float) + 1e5, brain.offsets), max_error=1e-5)
+    assert fiblets.anchors_low is not None
+    assert_drawn_as_decompressed(gl, camera, fiblets)
+
+
+def test_gpu_bytes_per_point(gl):
+    """Full fiblets cost at most 1.4 bytes per point on the GPU, counters and all (tables and pictures do not grow)."""
+    line = np.stack([np.linspace(0, 600, 1201), np.zeros(1201), np.zeros(1201)], axis=1)[:1200]
+    lines = [line + [0, 0.1 * i, 0.05 * i] for i in range(500)]
+    fiblets = compress(Streamlines.from_list(lines))
+    renderer = FibletRenderer(gl, fiblets)
+    buffers = {b["name"]: b["bytes"] for b in renderer.explain()["buffers"]}
+    renderer.release()
+    assert (sum(buffers.values()) - buffers["directions"]) / fiblets.n_points <= 1.4
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["dipy_hist_tractogram.trk", "nv_stroke.trk.gz", "gen_fibercup_det_0.25mm.tck", "vtk_Coastlines_Los_Alamos.vtp"],
+)
+def test_real_files(gl, camera, shared_data, name):
+    if name.endswith("vtp"):
+        pytest.importorskip("vtkmodules")
+    assert_drawn_as_decompressed(gl, camera, compress(read(shared_data / name)))
