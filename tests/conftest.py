@@ -4,8 +4,8 @@ Three rules live here:
 
 * Real data is found, never copied: the ``shared_data`` fixture.
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
-* On continuous integration (``PVFIBLETS_CI`` is set) a test may be skipped only because the real
-  data is not on that machine; any other skip fails, so that a check cannot vanish unseen.
+* On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
+  must run with some of its parameters, unless the real data is not on that machine.
 """
 
 from __future__ import annotations
@@ -76,14 +76,39 @@ def _no_plotter_left_open():
         pyvista.close_all()
 
 
-@pytest.hookimpl(hookwrapper=True)
-def pytest_runtest_makereport(item, call):
-    """Turn skips that continuous integration does not allow into failures."""
-    outcome = yield
-    report = outcome.get_result()
-    if not (os.environ.get("PVFIBLETS_CI") and report.skipped) or hasattr(report, "wasxfail"):
-        return
-    reason = str(report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr)
-    if NO_DATA not in reason:
-        report.outcome = "failed"
-        report.longrepr = f"{item.nodeid} must run on continuous integration, but: {reason}"
+class _SkipRule:
+    """Remembers which test functions ran at least once, and which were only ever skipped."""
+
+    def __init__(self) -> None:
+        self.ran: set[str] = set()
+        self.skipped: dict[str, str] = {}
+
+    def pytest_runtest_logreport(self, report):
+        function = report.nodeid.partition("[")[0]
+        if report.skipped and not hasattr(report, "wasxfail"):
+            reason = str(report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr)
+            if NO_DATA not in reason:
+                self.skipped[function] = reason
+        elif getattr(report, "when", "") == "call":
+            self.ran.add(function)
+
+    def pytest_collectreport(self, report):
+        if report.skipped:  # a whole module
+            self.pytest_runtest_logreport(report)
+
+    def vanished(self) -> dict[str, str]:
+        return {name: reason for name, reason in self.skipped.items() if name not in self.ran}
+
+    def pytest_sessionfinish(self, session, exitstatus):
+        if self.vanished() and exitstatus == 0:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+    def pytest_terminal_summary(self, terminalreporter):
+        for name, reason in self.vanished().items():
+            terminalreporter.write_line(f"FAILED {name}: must run on continuous integration, but: {reason}")
+
+
+def pytest_configure(config):
+    """Hold the rule about skips where it must hold."""
+    if os.environ.get("PVFIBLETS_CI"):
+        config.pluginmanager.register(_SkipRule(), "pvfiblets-skips")
