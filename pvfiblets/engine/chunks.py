@@ -11,10 +11,10 @@ each other what to draw: 81, or 1.35 per point.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
@@ -24,32 +24,10 @@ from ..codec import layout
 from .errors import EngineError
 from .passes import is_software
 
-__all__ = ["Chunk", "ChunkPlan", "FibletData", "plan_chunks", "storage_buffer", "upload_chunk"]
+if TYPE_CHECKING:
+    from ..codec.fibletset import FibletSet
 
-IntArray = npt.NDArray[np.int64]
-
-
-class FibletData(Protocol):
-    """What the engine reads of a :class:`pvfiblets.codec.FibletSet`."""
-
-    anchors: npt.NDArray[np.uint32]
-    decoding: npt.NDArray[np.uint32]
-    reach: npt.NDArray[np.uint16]
-    codes: npt.NDArray[np.uint8]
-    pages: IntArray
-    anchors_low: npt.NDArray[np.uint16] | None
-    rank_to_id: npt.NDArray[Any] | None
-    origin: npt.NDArray[np.float64]
-    anchor_scale: npt.NDArray[np.float64]
-    step_lo: float
-    step_hi: float
-    lattice: float
-    reach_scale: float
-    per_point: Mapping[str, Any]
-
-    @property
-    def n_fiblets(self) -> int:
-        """Number of fiblets."""
+__all__ = ["Chunk", "ChunkPlan", "plan_chunks", "storage_buffer", "upload_chunk"]
 
 
 @dataclass(frozen=True)
@@ -96,12 +74,12 @@ class Chunk:
         self.buffers.clear()
 
 
-def plan_chunks(fiblets: FibletData, max_buffer_bytes: int) -> list[ChunkPlan]:
+def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int) -> list[ChunkPlan]:
     """Group pages so that no buffer of a group is larger than a limit.
 
     Parameters
     ----------
-    fiblets : FibletData
+    fiblets : FibletSet
     max_buffer_bytes : int
         The driver's limit for one storage block.
 
@@ -170,13 +148,13 @@ def storage_buffer(ctx: moderngl.Context, data: npt.NDArray[Any] | bytes, what: 
     return buffer
 
 
-def rank_of(fiblets: FibletData, index: int) -> int:
+def rank_of(fiblets: FibletSet, index: int) -> int:
     """Rank of one fiblet's streamline among those that have points."""
     words = np.asarray(fiblets.anchors[index])
     return int(fiblets.pages[index >> layout.PAGE_BITS, 0]) + int(layout.unpack("rank", words))
 
 
-def points_before(fiblets: FibletData, index: int) -> int:
+def points_before(fiblets: FibletSet, index: int) -> int:
     """Points that a fiblet's streamline has before it."""
     if index >= fiblets.n_fiblets or layout.unpack("begin", np.asarray(fiblets.anchors[index])):
         return 0
@@ -192,7 +170,7 @@ def points_before(fiblets: FibletData, index: int) -> int:
     return first_point(index) - first_point(high)
 
 
-def upload_chunk(ctx: moderngl.Context, fiblets: FibletData, plan: ChunkPlan) -> Chunk:
+def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan) -> Chunk:
     """Copy one chunk to the GPU.
 
     Raises

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import moderngl
 import numpy as np
 from tqdm import tqdm
 
 from ..codec import layout, tables
-from .chunks import Chunk, FibletData, available_memory, plan_chunks, storage_buffer, upload_chunk
+from .chunks import Chunk, available_memory, plan_chunks, storage_buffer, upload_chunk
 from .errors import EngineError
 from .frame import frame_block
 from .gbuffer import GBuffer
@@ -16,6 +18,9 @@ from .pipelines.compute import CLIPPING, CONSTANTS, ComputePipeline
 from .shaders import Programs
 from .values import ValueSources
 from .view import Style, View
+
+if TYPE_CHECKING:
+    from ..codec.fibletset import FibletSet
 
 __all__ = ["FibletRenderer"]
 
@@ -48,7 +53,7 @@ class FibletRenderer:
     def __init__(
         self,
         ctx: moderngl.Context,
-        fiblets: FibletData,
+        fiblets: FibletSet,
         *,
         progress: bool = False,
         max_buffer_bytes: int | None = None,

@@ -17,17 +17,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from ..codec import layout
-from .chunks import Chunk, FibletData, storage_buffer
+from .chunks import Chunk, storage_buffer
 from .errors import EngineError
 from .passes import dispatch
 from .shaders import Programs
+
+if TYPE_CHECKING:
+    from ..codec.fibletset import FibletSet
 
 __all__ = ["ValueSources"]
 
@@ -62,7 +65,7 @@ class ValueSources:
     ----------
     ctx : moderngl.Context
     programs : Programs
-    fiblets : FibletData
+    fiblets : FibletSet
     chunks : sequence of Chunk
         Gain and lose the buffers ``values`` and ``starts``.
     max_groups : int
@@ -72,7 +75,7 @@ class ValueSources:
         self,
         ctx: moderngl.Context,
         programs: Programs,
-        fiblets: FibletData,
+        fiblets: FibletSet,
         chunks: Sequence[Chunk],
         max_groups: int,
     ) -> None:
