@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -117,6 +118,33 @@ class FibletActor(pv.Actor):
         scalars = self._find(fiblets, self._choice)
         self._draw(fiblets)
         self._show(scalars)
+
+    def copy(self, deep: bool = True) -> FibletActor:
+        """Return another actor that draws the same fiblets with the same colours and place.
+
+        Parameters
+        ----------
+        deep : bool, default: True
+            Give the copy a property of its own; else both share one. A mapper serves one actor,
+            so each has its own in any case; the compressed data is shared.
+
+        Returns
+        -------
+        FibletActor
+            Not in any plotter yet.
+        """
+        twin = FibletActor(
+            self._fiblets,
+            scalars=self._choice,
+            settings=replace(self._settings),
+            line_width=self.line_width,
+            theme=self._theme,
+        )
+        twin.prop = self.prop.copy() if deep else self.prop
+        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
+        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
+        twin.visibility, twin.pickable = self.visibility, self.pickable
+        return twin
 
     def explain(self) -> dict[str, Any]:
         """Return what is active for this actor and what it costs, over all windows that show it.

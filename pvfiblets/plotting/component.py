@@ -58,7 +58,7 @@ class FibletsComponent:
     """
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
-        self._plotter = weakref.proxy(plotter)
+        self._plotter: Any = weakref.proxy(plotter)
         self._actors: list[FibletActor] = []
         self._renderers: dict[str, tuple[Any, int]] = {}
         self._bars: dict[str, _Bar] = {}
@@ -281,6 +281,7 @@ class FibletsComponent:
             # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
             self._plotter.scalar_bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
         if wanted is not None:
+            self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
             arguments = {**state.arguments, "title": wanted}
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
         state.title = wanted
@@ -304,7 +305,7 @@ class AddFiblets:
     """
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
-        self._plotter = weakref.proxy(plotter)
+        self._plotter: Any = weakref.proxy(plotter)
 
     @functools.wraps(FibletsComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> FibletActor:

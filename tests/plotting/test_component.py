@@ -170,6 +170,16 @@ def test_the_scalar_bar_shows_the_pictures_own_table(plotter, three_lines):
     assert len(plotter.scalar_bars) == 0
 
 
+def test_pyvistas_own_way_to_change_a_bars_range_changes_the_picture(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, scalars="weight", clim=(1, 50))
+    before = shot(plotter)
+    plotter.update_scalar_bar_range((0, 1000), name="weight")
+    assert actor.clim == (0, 1000)
+    plotter.update_scalar_bar_range((0, 2000))
+    assert actor.clim == (0, 2000)
+    assert (shot(plotter) != before).any()
+
+
 def test_two_actors_that_share_a_bar_share_its_range(plotter, three_lines):
     first = plotter.add_fiblets(three_lines, scalars="weight", clim=(0, 10))
     second = plotter.add_fiblets(three_lines, scalars="weight", clim=(5, 90))
@@ -264,6 +274,34 @@ def test_each_subplot_has_its_own_actors(three_lines):
     assert lit(picture[:, :200]) > 50
     assert lit(picture[:, 200:]) == 0
     assert len(plotter.fiblets) == 1
+
+
+def test_a_copy_draws_the_same_and_is_another(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, scalars="weight", show_scalar_bar=False, line_width=4.0)
+    plotter.view_xy()
+    before = shot(plotter)
+    twin = actor.copy()
+    plotter.remove_actor(actor)
+    plotter.add_actor(twin, reset_camera=False)
+    np.testing.assert_array_equal(shot(plotter), before)
+    twin.opacity = 0.25
+    assert actor.opacity == 1.0
+
+
+def test_clearing_the_plotter_gives_the_gpu_memory_back(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines)
+    shot(plotter)
+    plotter.clear_actors()
+    assert actor.explain()["gpu_bytes"] == 0
+    assert len(plotter.fiblets) == 0
+
+
+def test_adding_to_a_shown_plotter_renders_unless_told_not_to(plotter, three_lines):
+    plotter.show(auto_close=False)
+    plotter.add_fiblets(three_lines, render=False)
+    assert lit(plotter.screenshot(None)) == 0
+    plotter.add_fiblets(three_lines, render=True)
+    assert lit(plotter.screenshot(None)) > 100
 
 
 def test_explain_names_what_is_active(plotter, three_lines):
