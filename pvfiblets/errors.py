@@ -37,9 +37,7 @@ class FormatError(FibletsError, ValueError):
 'mrtrix tracks'
     """
 
-    def __init__(
-        self, path: str | PathLike[str], position: int | None, found: str, expected: str
-    ) -> None:
+    def __init__(self, path: str | PathLike[str], position: int | None, found: str, expected: str) -> None:
         self.path = fspath(path)
         self.position = position
         self.found = found
