@@ -28,6 +28,7 @@ from pvfiblets.mappers.scene import Frame, frame_of, world_planes
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 _MAX_PLANES = 6
+VTK_SURFACE = 2
 
 
 def engine_renderer(ctx: Any, fiblets: Any) -> Any:
@@ -74,6 +75,8 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     ) -> None:
         self._factory = renderer_factory
         self._actor = weak(None)
+        self._property = weak(None)
+        self._observer = 0
         self._active = ActiveRenderer()
         self._installed: tuple[resolve.Replacement, ...] = ()
         self._error: BaseException | None = None
@@ -140,12 +143,15 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         Parameters
         ----------
         actor : vtkActor
-            Leave its representation at surface. Replacements of others in its shader property stay.
+            Shader replacements of others stay. Its representation stays at surface whatever a key or a
+            menu sets for all actors: lines have no wireframe and no edges.
         """
-        if self.actor is not None and self.actor is not actor:
-            self.detach()
+        self.detach()
         self._actor = weak(actor)
         actor.SetMapper(self)
+        _keep_surface(actor.GetProperty(), "")
+        self._property = weak(actor.GetProperty())
+        self._observer = actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
         self._install()
 
     def detach(self) -> None:
@@ -153,6 +159,9 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         actor = self.actor
         if actor is not None:
             resolve.uninstall(actor.GetShaderProperty(), self._installed)
+        if self._property.Get() is not None:
+            self._property.Get().RemoveObserver(self._observer)
+        self._property = weak(None)
         self._installed = ()
         self._actor = weak(None)
 
@@ -355,13 +364,21 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                 context.release(self)
 
 
-@calldata_type(VTK_OBJECT)  # type: ignore[untyped-decorator]
+@calldata_type(VTK_OBJECT)
 def _update_shader(mapper: FibletMapper, _event: str, program: Any) -> None:
     mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
 
 
 def _modified(mapper: FibletMapper, _event: str) -> None:
     mapper._install()  # noqa: SLF001  clipping planes come and go without any other word
+
+
+def _keep_surface(actor_property: Any, _event: str) -> None:
+    """Undo wireframe, points and edges, in which VTK would not fill the covering triangle."""
+    if actor_property.GetRepresentation() != VTK_SURFACE:
+        actor_property.SetRepresentationToSurface()
+    if actor_property.GetEdgeVisibility():
+        actor_property.SetEdgeVisibility(False)
 
 
 def _check_count(colouring: Colouring, fiblets: Any) -> None:

@@ -45,6 +45,10 @@ vec3 fibletDirection(uint word)
 //@ fragment instead //VTK::PositionVC::Impl
   ivec2 fibletPixel = ivec2(gl_FragCoord.xy) - fibletOrigin;
   uint fibletKey = fibletSize.x > 0 ? texelFetch(fibletDepthMap, fibletPixel, 0).r : fibletEmpty;
+  if (fibletKey == fibletEmpty)
+  {
+    discard;
+  }
   uvec2 fibletIds = texelFetch(fibletIdMap, fibletPixel, 0).rg;
   float fibletDepth = float(fibletKey) / 4294967295.0;
   vec3 fibletTangent = fibletDirection(fibletIds.y);
@@ -55,11 +59,12 @@ vec3 fibletDirection(uint word)
   vertexVC /= vertexVC.w;
 
 //@ fragment before //VTK::Depth::Impl
-  if (fibletKey == fibletEmpty)
-  {
-    discard;
-  }
   gl_FragDepth = fibletDepth;
+
+// VTK takes derivatives here, of the position for a normal and of the depth for coincident topology.
+// Fiblets bring their normal, and neighbouring pixels may show other lines: there is no slope.
+//@ fragment instead //VTK::UniformFlow::Impl
+  const float cscale = 0.0;
 
 // VTK's own clip code tests varyings of the covering triangle, which mean nothing here.
 //@ vertex instead //VTK::Clip::Dec

@@ -102,6 +102,18 @@ def test_hardware_selection_finds_the_actor_where_a_line_is(scene):
     mapper.raise_pending()
 
 
+def test_hardware_selection_of_points_draws_no_error(scene, tools):
+    plotter, mapper, _, _ = scene
+    before = tools.picture(plotter, mapper)
+    selector = vtkHardwareSelector()
+    selector.SetRenderer(plotter.renderer)
+    selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_POINTS)
+    selector.SetArea(0, 0, 200, 150)
+    selector.Select()
+    mapper.raise_pending()
+    assert np.array_equal(tools.picture(plotter, mapper), before)
+
+
 def test_prop_picker_finds_the_actor_where_a_line_is(scene):
     plotter, mapper, actor, display = scene
     picker = vtkPropPicker()

@@ -138,6 +138,36 @@ def test_line_width_below_one_is_refused(plain):
         mapper.line_width = 0.0
 
 
+def test_wireframe_and_edges_change_nothing(make_plotter, plain, tools):
+    mapper, actor = plain.actor()
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    before = tools.picture(plotter, mapper)
+    for change in ("SetRepresentationToWireframe", "SetRepresentationToPoints", "EdgeVisibilityOn"):
+        getattr(actor.GetProperty(), change)()
+        assert np.array_equal(tools.picture(plotter, mapper), before)
+    mapper.detach()
+    actor.GetProperty().SetRepresentationToWireframe()
+    assert actor.GetProperty().GetRepresentation() == 1
+
+
+def test_coincident_topology(compare, tools):
+    """Polygon offset changes VTK's shader text; fiblets have no slope, only the offset."""
+    from vtkmodules.vtkRenderingCore import vtkMapper
+
+    def scene(plotter, actor, mapper):
+        plotter.add_mesh(pv.Sphere(radius=18), color="blue", lighting=False, reset_camera=False)
+        plotter.reset_camera()
+
+    before = vtkMapper.GetResolveCoincidentTopology()
+    vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
+    try:
+        ours, theirs = compare(scene)
+    finally:
+        vtkMapper.SetResolveCoincidentTopology(before)
+    assert tools.agreement(yellow(ours), yellow(theirs)) >= 0.99
+
+
 def test_an_actor_inside_an_assembly(make_plotter, lines, tools):
     from vtkmodules.vtkRenderingCore import vtkAssembly
 
