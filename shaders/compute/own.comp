@@ -3,6 +3,9 @@
 //
 // Ties (equal depth keys in one pixel) go to the fiblet with the smallest index: a picture does not depend on the order
 // in which a driver runs groups. Every tied fiblet is a candidate, because it came nearest or tied when it was drawn.
+//
+// A fiblet with such a sample is seen: the last pass draws no others, and the next picture begins with them. (Those that
+// lost all their pixels in ties are among them; the last pass finds that they own nothing.)
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
@@ -11,6 +14,7 @@ layout(local_size_x = {{ group_size }}) in;
 
 layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
 layout(std430, binding = 7) readonly buffer Candidates { uint candidates[]; };
+layout(std430, binding = 12) buffer Seen { uint seen[]; };
 layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
 
@@ -23,11 +27,15 @@ uint bits_of(uint word) {
 #include "compute/bits.glsl"
 
 uint owner;
+bool kept;
 
 void start_segment(uint segment, vec3 delta) {}
 
 void plot(ivec2 pixel, float z, float s, uint segment) {
-    if (depth_key(z) == imageLoad(depth_image, pixel).x) imageAtomicMin(owner_image, pixel, owner);
+    if (depth_key(z) == imageLoad(depth_image, pixel).x) {
+        kept = true;
+        imageAtomicMin(owner_image, pixel, owner);
+    }
 }
 
 void main() {
@@ -35,6 +43,8 @@ void main() {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
         owner = chunk.y + f;
+        kept = false;
         draw_fiblet(f);
+        if (kept) atomicOr(seen[owner >> 5], 1u << (f & 31u));
     }
 }

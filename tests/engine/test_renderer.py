@@ -401,7 +401,7 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     renderer.render(View(SIZE, camera(SIZE)))
     plain = renderer.explain()
     assert plain["features"] == ["LATTICE", "CLIPPING", "CLIPPING_DEPTH"]  # some lines leave the screen
-    assert [p["name"] for p in plain["passes"]] == ["clear", "cull", "depth", "own", "mark", "attributes"]
+    assert [p["name"] for p in plain["passes"]] == ["clear", "cull", "depth", "own", "attributes"]
     assert all(p["ms"] >= 0 for p in plain["passes"])
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}

@@ -6,9 +6,8 @@ pass           what it does
 clear          empties depth and owners
 cull           plans the drawing: which fiblets can show, which were seen last time, which need clipping
 depth          draws depth with imageAtomicMin, first those seen last time; marks those that came nearest somewhere
-own            draws these candidates again: where depth was kept, the pixel's owner is the least fiblet index
-mark           one bit per fiblet: does it own a pixel?
-attributes     draws the owners again and writes streamline, tangent and place of their pixels
+own            draws these candidates again: where depth was kept, the least fiblet index owns the pixel
+attributes     draws those with such pixels again and writes streamline, tangent and place of their pixels
 =============  =================================================================================================
 
 Last time's fiblets only decide the order: the picture is the same whatever was seen before. Fiblets inside all planes
@@ -105,10 +104,8 @@ class ComputePipeline:
         plain = [feature for feature in features if feature not in CLIPPING]
         # One program for each class of fiblets that cull.comp tells apart; without clipping there is only the first.
         variants = [plain, [*plain, CLIPPING[0]], [*plain, *CLIPPING]] if CLIPPING[0] in features else [plain]
-        rows = target.size[1]
-
         with passes.timed("clear"):
-            dispatch(self._program("clear", plain), rows, self._max_groups)
+            dispatch(self._program("clear", plain), target.size[1], self._max_groups)
         with passes.timed("cull"):
             self._run("cull", plain, chunks, 32 * GROUP_SIZE)
         self._barrier()
@@ -118,9 +115,6 @@ class ComputePipeline:
                 self._barrier()
         with passes.timed("own"):
             self._run_classes("own", variants, chunks)
-        self._barrier()
-        with passes.timed("mark"):
-            dispatch(self._program("mark", plain), rows, self._max_groups)
         self._barrier()
         with passes.timed("attributes"):
             self._run_classes("attributes", variants, chunks)
