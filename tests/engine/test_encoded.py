@@ -127,3 +127,60 @@ def test_real_files(gl, camera, shared_data, name):
     if name.endswith("vtp"):
         pytest.importorskip("vtkmodules")
     assert_drawn_as_decompressed(gl, camera, compress(read(shared_data / name)))
+
+
+def test_nothing_to_draw(gl, camera):
+    fiblets = compress(Streamlines.from_list([]))
+    renderer = FibletRenderer(gl, fiblets)
+    for style in (Style(), Style(3.0, "arc_length"), Style(1.0, "curvature")):
+        gbuffer = renderer.render(View(SIZE, camera(SIZE)), style)
+        assert (np.frombuffer(gbuffer.depth.read(), "<u4") == EMPTY).all()
+    assert renderer.value_range("curvature") == (0.0, 0.0)
+    assert renderer.explain()["fiblets_total"] == 0
+    renderer.release()
+
+
+def test_streamlines_without_points(gl, camera):
+    empty = np.zeros((0, 3))
+    fiblets = compress(Streamlines.from_list([empty, np.array([[0.0, 0, 0], [30.0, 0, 0]]), empty, np.zeros((1, 3))]))
+    renderer = FibletRenderer(gl, fiblets)
+    gbuffer = renderer.render(View(SIZE, camera(SIZE)))
+    drawn = np.frombuffer(gbuffer.depth.read(), "<u4") != EMPTY
+    assert set(np.frombuffer(gbuffer.ids.read(), "<u4")[::2][drawn]) <= {1, 3}
+    assert drawn.sum() > 20
+    renderer.release()
+
+
+def test_a_camera_on_a_point_looking_along_a_line(gl, camera):
+    """Points in the centre of projection and in the plane through it (w = 0) neither stop nor spoil a picture."""
+    line = np.stack([np.linspace(-50, 50, 101), np.zeros(101), np.zeros(101)], axis=1)
+    across = line[:, [1, 0, 2]] + [30.0, 0.0, 0.0]
+    fiblets = compress(Streamlines.from_list([line, across, line[::-1] * 0.5]), max_error=1e-3)
+    renderer = FibletRenderer(gl, fiblets)
+    for near_plane in (1e-6, 0.1, 5.0):
+        matrix = camera(SIZE, eye=(0, 0, 0), target=(1, 0, 0), near=near_plane, far=100.0, angle=60.0)
+        for style in (Style(), Style(5.0, "curvature")):
+            gbuffer = renderer.render(View(SIZE, matrix), style)
+            drawn = np.frombuffer(gbuffer.depth.read(), "<u4") != EMPTY
+            position = np.frombuffer(gbuffer.position.read(), "<f4").reshape(-1, 2)[drawn]
+            assert drawn.sum() > SIZE[0] / 2  # the line across fills the picture's width
+            assert np.isfinite(position).all()
+    renderer.release()
+
+
+def test_flat_sets(gl, camera):
+    """All points in a plane, on a line, at one place."""
+    t = np.linspace(-30, 30, 200)
+    zero = 0 * t
+    sets = {
+        "plane": [np.stack([t, zero, 20 * np.sin(t / 7)], axis=1)],
+        "line": [np.stack([t, zero, zero], axis=1)],
+        "point": [np.zeros((5, 3))],
+    }
+    for name, lines in sets.items():
+        fiblets = compress(Streamlines.from_list(lines))
+        renderer = FibletRenderer(gl, fiblets)
+        gbuffer = renderer.render(View(SIZE, camera(SIZE, eye=(0, -260, 1))))
+        drawn = np.frombuffer(gbuffer.depth.read(), "<u4") != EMPTY
+        renderer.release()
+        assert drawn.sum() == 1 if name == "point" else drawn.sum() > 100, name
