@@ -359,8 +359,9 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         window : vtkRenderWindow, optional
             All windows when left out. Call it before a window is closed, to have the memory back at once.
         """
+        address = None if window is None else window.GetAddressAsString("")
         for context in contexts_with(self):
-            if window is None or context.window is window:
+            if address in (None, context.address):
                 context.release(self)
 
 

@@ -156,7 +156,7 @@ class WindowContext:
             window.AddObserver(event, callback)
             for event, callback in zip(("EndEvent", "DeleteEvent"), self._callbacks, strict=True)
         ]
-        self._address = window.GetAddressAsString("")
+        self.address = window.GetAddressAsString("")
 
     @property
     def window(self) -> Any:
@@ -240,8 +240,7 @@ class WindowContext:
         if actor is None:
             return False
         return any(
-            renderer.GetRenderWindow() is not None
-            and renderer.GetRenderWindow().GetAddressAsString("") == self._address
+            renderer.GetRenderWindow() is not None and renderer.GetRenderWindow().GetAddressAsString("") == self.address
             for renderer in renderers_of(actor)
         )
 
@@ -265,8 +264,8 @@ class WindowContext:
     def _unregister(self) -> None:
         """Leave the list of contexts; the window may be half destroyed and is not touched."""
         self.slots.clear()
-        if _contexts.get(self._address) is self:
-            del _contexts[self._address]
+        if _contexts.get(self.address) is self:
+            del _contexts[self.address]
 
 
 def context_of(window: Any) -> WindowContext:

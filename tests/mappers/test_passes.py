@@ -178,3 +178,42 @@ def test_stereo_draws_both_eyes(compare, tools, kind_of_stereo):
         one, other = ours[..., channel] > 0, theirs[..., channel] > 0
         if other.any():
             assert tools.agreement(one, other) >= 0.98
+
+
+def test_fiblets_cast_shadows(make_plotter, make_fibres, tools):
+    """Rods under a high lamp darken the floor below them. (VTK's unlit lines fail to compile here.)"""
+    along = np.linspace(-30, 30, 121)[:, None] * np.array((1.0, 0.0, 0.0))
+    rods = [along + np.array((0, 0.1 * i, 20)) for i in range(-20, 21)]
+    fibres = make_fibres(type(tools.helices(1, 2)).from_list(rods))
+    mapper, actor = fibres.actor(lighting=True)
+    plotter = make_plotter(lighting="none")
+    plotter.add_actor(actor)
+    floor = pv.Plane(center=(0, 0, -20), i_size=100, j_size=100, i_resolution=10, j_resolution=10)
+    plotter.add_mesh(floor, color="white")
+    plotter.add_light(
+        pv.Light(
+            position=(0, 0, 400),
+            focal_point=(0, 0, 0),
+            light_type="scene light",
+            positional=True,
+            cone_angle=20,
+        )
+    )
+    plotter.camera_position = [(0, -150, 150), (0, 0, -10), (0, 0, 1)]
+    plotter.renderer.ResetCameraClippingRange()
+
+    def brightness():
+        image = tools.picture(plotter, mapper)
+        found = []
+        for y in (0, 15, -15):
+            plotter.renderer.SetWorldPoint(0.0, float(y), -20.0, 1.0)
+            plotter.renderer.WorldToDisplay()
+            column, row, _ = plotter.renderer.GetDisplayPoint()
+            found.append(int(image[image.shape[0] - 1 - int(row), int(column)].max()))
+        return found
+
+    assert min(brightness()) > 150
+    plotter.enable_shadows()
+    below, *beside = brightness()
+    assert below < 60
+    assert min(beside) > 150
