@@ -17,7 +17,7 @@
 //      . . . # # o o .
 //
 // Wide lines. All pixels whose centre is at most half the width from the segment: a capsule, whose round ends join
-// segments without notches.
+// segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's.
 //
 // Clipping is as costly as all else together, so that three programs share the fiblets, as the cull pass found them:
 //   inside all planes                  no clipping
@@ -47,7 +47,7 @@ float along(float s) {
 }
 
 #if FEATURE_WIDE_LINES
-void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
+void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     float r = viewport.z;
     vec2 d = b.xy - a.xy;
     bool steep = abs(d.y) > abs(d.x);
@@ -56,23 +56,26 @@ void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
     float inverse = 1.0 / max(dot(run, run), 1e-12);
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
     float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
-    int column0 = int(max(ceil(min(from.x, to.x) - r - 0.5), 0.0));
-    int column1 = int(min(floor(max(from.x, to.x) + r - 0.5), size.x - 1.0));
+    float behind = start ? r : r * min(abs(slope), 1.0), least = start ? -3.0e38 : 0.0;  // columns before the start
+    vec2 before = run.x < 0.0 ? vec2(r, behind) : vec2(behind, r);
+    int column0 = int(max(ceil(min(from.x, to.x) - before.x - 0.5), 0.0));
+    int column1 = int(min(floor(max(from.x, to.x) + before.y - 0.5), size.x - 1.0));
     for (int column = column0; column <= column1; ++column) {
         float x = float(column) + 0.5;
         float y = from.y + slope * (clamp(x, min(from.x, to.x), max(from.x, to.x)) - from.x);
         int row0 = int(max(ceil(y - reach - 0.5), 0.0)), row1 = int(min(floor(y + reach - 0.5), size.y - 1.0));
         for (int row = row0; row <= row1; ++row) {
             vec2 centre = vec2(x, float(row) + 0.5) - from;
-            precise float s = clamp(dot(centre, run) * inverse, 0.0, 1.0);
+            float foot = dot(centre, run) * inverse;
+            precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = a.z + (b.z - a.z) * s;
-            if (dot(away, away) <= r * r) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
+            if (foot >= least && dot(away, away) <= r * r) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
         }
     }
 }
 #else
-void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
+void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     // A point on the right or upper edge belongs to the last pixel; the margin outweighs the rounding of from + s run.
     vec2 top = viewport.xy - 0.01;
     precise vec2 from = clamp(a.xy, vec2(0.0), top), run = clamp(b.xy, vec2(0.0), top) - from;
@@ -91,7 +94,7 @@ void draw_window(vec4 a, vec4 b, uint segment, bool cap) {
 // Draws fiblet f and the segment that joins it to the next.
 void draw_fiblet(uint f) {
     walk_begin(f);
-    bool end = fiblet_end(anchors[f]) != 0u;
+    bool begin = fiblet_begin(anchors[f]) != 0u, end = fiblet_end(anchors[f]) != 0u;
     precise vec3 next = anchor_local(end ? f : f + 1u);
     precise vec4 c0 = to_clip(walk_point);
     precise vec4 s0 = to_window(c0);
@@ -109,7 +112,7 @@ void draw_fiblet(uint f) {
         }
         precise vec4 c1 = to_clip(walk_point);
         precise vec4 s1 = to_window(c1);
-        bool cap = end && i == count;
+        bool start = i == 1u && begin, cap = end && i == count;
         start_segment(i - 1u, walk_delta);
 #if FEATURE_CLIPPING_DEPTH
         bool inside1 = in_volume(c1);
@@ -122,7 +125,7 @@ void draw_fiblet(uint f) {
             if (t1 < 1.0) e1 = to_window(c0 + t1 * (c1 - c0));
         }
         clipped = vec4(e0.w, e1.w, t0, t1);
-        if (any) draw_window(e0, e1, i - 1u, cap || t1 < 1.0);
+        if (any) draw_window(e0, e1, i - 1u, start || t0 > 0.0, cap || t1 < 1.0);
         inside0 = inside1;
         c0 = c1;
 #elif FEATURE_CLIPPING
@@ -130,10 +133,10 @@ void draw_fiblet(uint f) {
         bool any = clip_window(s0.xy, s1.xy, t0, t1);
         precise vec4 run = s1 - s0, e0 = s0 + t0 * run, e1 = t1 < 1.0 ? s0 + t1 * run : s1;
         clipped = vec4(s0.w, s1.w, t0, t1);
-        if (any) draw_window(e0, e1, i - 1u, cap || t1 < 1.0);
+        if (any) draw_window(e0, e1, i - 1u, start || t0 > 0.0, cap || t1 < 1.0);
 #else
         clipped = vec4(s0.w, s1.w, 0.0, 1.0);
-        draw_window(s0, s1, i - 1u, cap);
+        draw_window(s0, s1, i - 1u, start, cap);
 #endif
         s0 = s1;
     }

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, shaders
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View, passes, shaders
 
 SIZE = (320, 240)
 EMPTY = 0xFFFFFFFF
@@ -412,6 +412,17 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     renderer.render(View(SIZE, camera(SIZE)))
     assert renderer.explain()["features"] == plain["features"]
     assert renderer.explain()["buffers"] == plain["buffers"]
+    renderer.release()
+
+
+def test_timer_queries_are_read_where_opengl_is_hardware(gl, fabricate, random_lines, camera, monkeypatch):
+    monkeypatch.setattr(passes, "is_software", lambda ctx: False)
+    renderer = FibletRenderer(gl, fabricate(random_lines(20), kind=2))
+    for near_plane in (10.0, 20.0):
+        renderer.render(View(SIZE, camera(SIZE, near=near_plane)))
+        times = renderer.explain()["passes"]
+        assert len(times) == 5
+        assert all(0 <= p["ms"] < 1e5 for p in times)
     renderer.release()
 
 
