@@ -61,6 +61,18 @@ class MappedFile:
         self.check(position, count, what)
         return bytes(self.buffer[position : position + count])
 
+    def forget(self, position: int, n_bytes: int) -> None:
+        """Let go of the memory behind bytes that will hardly be read again; they stay readable.
+
+        Without this a file streamed piece by piece ends up resident as a whole, however small the pieces.
+        """
+        if isinstance(self.buffer, bytes) or not hasattr(mmap, "MADV_DONTNEED"):
+            return
+        first = -(-position // mmap.PAGESIZE) * mmap.PAGESIZE
+        length = (position + n_bytes) // mmap.PAGESIZE * mmap.PAGESIZE - first
+        if length > 0:
+            self.buffer.madvise(mmap.MADV_DONTNEED, first, length)
+
     def check(self, position: int, n_bytes: int, what: str) -> None:
         """Raise FormatError unless the file holds `n_bytes` bytes from `position`."""
         if n_bytes < 0 or position < 0:

@@ -213,6 +213,8 @@ class Data:
                 last = False
                 window = parse_rows(self.rows[position : position + window.first_end], kind, last)
             size = max_rows
+            stride = self.header.dtype.itemsize * self.columns
+            self.file.forget(self.header.data_position + position * stride, window.used * stride)
             position += window.used
             found += len(window.counts)
             dropped = {NONFINITE: window.dropped} if window.dropped else {}

@@ -75,10 +75,12 @@ class _Words(Protocol):
 class _MappedWords:
     def __init__(self, file: MappedFile, order: str) -> None:
         self.path = file.path
+        self._file = file
         n, self._odd = divmod(file.size - HEADER_SIZE, 4)
         self._words = file.array(f"{order}i4", HEADER_SIZE, n, "the records")
 
     def window(self, first: int, n: int) -> Array:
+        self._file.forget(HEADER_SIZE, first * 4)
         return self._words[first : first + n]
 
     def rest(self, first: int) -> int:

@@ -318,6 +318,8 @@ def _entry(base: str, values: Array, name: str) -> str:
     if values.ndim > 2:
         raise ValueError(f"{base!r} has the shape {values.shape}; a trx file holds at most 2 axes")
     columns = values.shape[1] if values.ndim == 2 else 1
+    if columns == 0:
+        raise ValueError(f"{base!r} has no columns; remove it, since a trx file cannot hold such an array")
     _checked(name)
     # Without the number, a name that itself ends in ".3" would be read as three columns.
     explicit = columns != 1 or base.rsplit(".", 1)[-1].isdecimal()

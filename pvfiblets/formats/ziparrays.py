@@ -243,5 +243,6 @@ class ArrayEntry:
         name_size, extra_size = struct.unpack("<HH", head[26:30])
         begin = at + 30 + name_size + extra_size
         stride = self.columns * self.dtype.itemsize
+        file.forget(begin, first * stride)
         values = file.array(self.dtype, begin + first * stride, (last - first) * self.columns, self._info.filename)
         return values.reshape(-1, self.columns)
