@@ -39,7 +39,7 @@ def nonfinite(values: Array) -> Ints:
     return np.concatenate(parts) if parts else np.zeros(0, np.int64)
 
 
-def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints]:
+def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints, Array]:
     """Copy the rows that are finite throughout, in one pass over the memory.
 
     Parameters
@@ -55,6 +55,8 @@ def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints]:
         The finite rows.
     (n - m,) int64
         Numbers of the others, ascending.
+    (n - m, k) array
+        The others.
     """
     n, k = rows.shape
     kind = np.dtype(dtype)
@@ -70,7 +72,7 @@ def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints]:
     known = [threading.Event() for _ in range(n_blocks + 1)]
     known[0].set()
 
-    def part(first: int, last: int) -> Ints:
+    def part(first: int, last: int) -> tuple[Ints, Array]:
         i = first // step
         try:
             block = np.ascontiguousarray(rows[first:last], kind)
@@ -87,14 +89,14 @@ def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints]:
             keep[bad] = False
             source = source[keep]
         target[at : at + len(source)] = source
-        numbers: Ints = bad + first
-        return numbers
+        return bad + first, block[bad]  # while the block is in the cache
 
     parts = _each_block(part, n, k * kind.itemsize)
-    bad = np.concatenate(parts) if parts else np.zeros(0, np.int64)
+    bad = np.concatenate([p[0] for p in parts]) if parts else np.zeros(0, np.int64)
+    others = np.concatenate([p[1] for p in parts]) if parts else np.zeros((0, k), kind)
     kept = out[: n - len(bad)]
     # A file of little but delimiters should not keep the space that they took.
-    return (kept.copy() if len(bad) > n // 8 else kept), bad
+    return (kept.copy() if len(bad) > n // 8 else kept), bad, others
 
 
 def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:

@@ -81,7 +81,11 @@ def read_header(file: MappedFile, magic: str) -> Header:
     head = file.bytes(0, min(file.size, 64), "the header")
     if not head.startswith(magic.encode()):
         raise FormatError(file.path, 0, repr(head[:20]), f"the line {magic!r}")
-    text = file.bytes(0, min(file.size, _HEADER_LIMIT), "the header")
+    size = 1 << 12  # nearly every header fits; copying the limit at once costs as much as a small file's points
+    text = file.bytes(0, min(file.size, size), "the header")
+    while size < min(file.size, _HEADER_LIMIT) and b"\nEND\n" not in text and b"\nEND\r" not in text:
+        size *= 16
+        text = file.bytes(0, min(file.size, size, _HEADER_LIMIT), "the header")
     fields: dict[str, str] = {}
     places: dict[str, int] = {}
     position = 0
@@ -158,8 +162,7 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
     last : bool
         Whether the data end with these rows: then what follows the last delimiter is taken too.
     """
-    finite, special = finite_rows(rows, dtype)
-    values = rows[special]
+    finite, special, values = finite_rows(rows, dtype)
     is_nan: Array = np.asarray(np.isnan(values).all(axis=1))
     is_end: Array = np.asarray(np.isinf(values).all(axis=1))
     ended = bool(is_end.any())
