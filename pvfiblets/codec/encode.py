@@ -71,7 +71,6 @@ class Encoder:
     n_codes: int = 0
     n_points: int = 0
     n_streamlines: int = 0
-    n_lattice: int = 0
 
     def __post_init__(self) -> None:
         if self.effort not in ("fast", "high"):
@@ -95,7 +94,7 @@ class Encoder:
         cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(len(points), np.uint8)
         encode = kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
         out = (ok, shape, step, cap, radius, end, codes)
-        encode(points, origin, slots, scale, self.top, (p.step_lo, p.step_hi), p.promise, search_tables(), out)
+        encode(points, origin, slots, scale, self.top, (p.step_lo, p.step_hi), p.budget, search_tables(), out)
 
         wanted = np.flatnonzero(ok == 0)
         pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
@@ -130,7 +129,6 @@ class Encoder:
             lattice_kernels.encode_lattices(
                 points, origin, slots, wanted, scale, self.top, p.lattice, cuts, end, at, filled
             )
-            self.n_lattice += int(pieces[wanted].sum())
         ranks = np.repeat(rank, pieces)
         begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
         ends = np.append(begins[1:], True) if total else begins

@@ -14,7 +14,6 @@ from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
 from .quantised import QuantisedPoints
-from .tables import quaternions
 
 __all__ = ["FibletSet"]
 
@@ -193,10 +192,6 @@ class FibletSet:
         lengths = counts.astype(np.int64)  # float64 sums of whole numbers are exact below 2 ** 53
         return np.concatenate([[0], np.cumsum(lengths)])
 
-    def first_fiblets(self) -> npt.NDArray[np.int64]:
-        """``(n_ranks + 1,)`` int64: first fiblet of each streamline that has points, and ``n_fiblets``."""
-        return np.append(np.flatnonzero(unpack("begin", self.anchors)), self.n_fiblets)
-
     # ----------------------------------------------------------------------------------------------------- decoding
 
     def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
@@ -230,12 +225,9 @@ class FibletSet:
         return np.float32 if float(np.spacing(largest)) <= 0.02 * self.promise else np.float64
 
     def lengths(self) -> npt.NDArray[np.float64]:
-        """Length of each streamline as decoded, ``(n_streamlines,)``, mm."""
-        return self.decompress(dtype=np.float64).lengths()
-
-    def quaternion_table(self) -> npt.NDArray[np.float32]:
-        """The direction table that the codes refer to; see :func:`pvfiblets.codec.tables.quaternions`."""
-        return quaternions()
+        """Length of each streamline as decoded, ``(n_streamlines,)``, mm, without holding all points at once."""
+        parts = [chunk.lengths() for chunk in self.iter_chunks()]
+        return np.concatenate(parts) if parts else np.zeros(0)
 
     def rank_at(self, fiblet: int) -> int:
         """Rank of one fiblet's streamline, without reading the others."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 200_000  # segment lengths kept from each chunk; a median needs no more
 LARGEST = 1e35  # mm
+BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
 Vector = npt.NDArray[np.float64]
@@ -185,15 +186,16 @@ class Parameters:
             step=step,
             step_lo=lo,
             step_hi=hi,
-            # Rounding to a cubic lattice errs by at most half its diagonal; the rest is room for float64's own.
-            lattice=2.0 / math.sqrt(3.0) * promise * (1.0 - 1e-6),
+            # Rounding to a cubic lattice errs by at most half its diagonal.
+            lattice=2.0 / math.sqrt(3.0) * promise * BUDGET,
             reach_scale=(MAX_POINTS * found.longest + 4.0 * promise) / 65535.0,
             promise=promise,
         )
 
-    def with_step(self, step: float) -> Parameters:
-        """The same for data known to have one constant step, mm."""
-        return replace(self, step=step, step_lo=step, step_hi=step)
+    @property
+    def budget(self) -> float:
+        """Largest error that coding may cause, mm: the promise less what rounding decoded points may add."""
+        return self.promise * BUDGET
 
 
 def _anchor_error(extent: Vector, bits: int) -> float:

@@ -31,9 +31,9 @@ def reference_slot(points: np.ndarray, fiblets: FibletSet) -> list[reference.Dir
         smallest = reference.choose_cap(points)
         for cap in range(smallest, min(smallest + 3, 16)):
             piece = reference.encode_direction(points, anchors[0], step, length, cap)
-            if piece.error <= p.promise and (best is None or piece.error < best.error):
+            if piece.error <= p.budget and (best is None or piece.error < best.error):
                 best = piece
-            if best is not None and best.error <= 0.5 * p.promise:
+            if best is not None and best.error <= 0.5 * p.budget:
                 break
         if best is not None:
             return [best]
