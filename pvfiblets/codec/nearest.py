@@ -46,6 +46,7 @@ def _direction(u: float, v: float, ratio: float) -> Any:
 def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
     cell = 2.0 * EXTENT / CELLS
     distance = np.empty(CODES)
+    tx, ty, tz = table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy()
     total = 0
     for j in range(CELLS):
         for i in range(CELLS):
@@ -57,11 +58,10 @@ def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
                 radius = max(radius, math.sqrt((a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2))
             nearest = 9.0
             for code in range(CODES):
-                d = math.sqrt((table[code, 0] - x) ** 2 + (table[code, 1] - y) ** 2 + (table[code, 2] - z) ** 2)
-                distance[code] = d
-                nearest = min(nearest, d)
+                distance[code] = (tx[code] - x) ** 2 + (ty[code] - y) ** 2 + (tz[code] - z) ** 2
+                nearest = min(nearest, distance[code])
             # 2.2 radii instead of 2: the map from disc to sphere is not quite linear within a cell.
-            bound = nearest + 2.2 * radius + 1e-6
+            bound = (math.sqrt(nearest) + 2.2 * radius + 1e-6) ** 2
             for code in range(CODES):
                 if distance[code] <= bound:
                     codes[total] = code
