@@ -18,7 +18,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -140,11 +139,19 @@ def measure(way: str, path: str, frames: int, seconds: float) -> dict:
         "segments_per_second": segments / median,
         "gpu_bytes": gpu,
         "gpu_bytes_per_point": gpu / n_points,
-        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        "peak_memory_bytes": peak_memory(),
         "load_seconds": load,
         "read_and_compress_seconds": compress_seconds,
         "pixels": int((picture.max(axis=2) > 0).sum()),
     }
+
+
+def peak_memory() -> int:
+    """Return the most memory that this process ever had, bytes; needs Linux or macOS."""
+    import resource
+
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
 def orbit(plotter, frames: int, seconds: float) -> list[float]:
