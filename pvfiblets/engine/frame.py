@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from .view import View
 
-__all__ = ["frame_block", "reference_anchor"]
+__all__ = ["frame_block", "local_frame", "reference_anchor"]
 
 Array = npt.NDArray[np.float64]
 
@@ -60,6 +60,33 @@ def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> np
     return chosen
 
 
+def local_frame(view: View, origin: Array, scale: Array, top: int) -> tuple[npt.NDArray[np.int64], Array, Array]:
+    """Choose local coordinates and compose what leads into and out of them.
+
+    Parameters
+    ----------
+    view : View
+    origin, scale, top
+        As in :func:`reference_anchor`.
+
+    Returns
+    -------
+    reference : numpy.ndarray
+        (3,) int64, see :func:`reference_anchor`.
+    to_data : numpy.ndarray
+        (4, 4) local mm to data mm.
+    to_clip : numpy.ndarray
+        (4, 4) local mm to clip coordinates, whose scale is chosen to keep float32 clear of its ends; that moves
+        nothing on the screen.
+    """
+    reference = reference_anchor(view.model_view_projection, origin, scale, top)
+    to_data = np.eye(4)
+    to_data[:3, 3] = origin + scale * reference
+    to_clip = view.model_view_projection @ to_data
+    to_clip /= np.abs(to_clip).max() or 1.0
+    return reference, to_data, to_clip
+
+
 def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:
     """Pack the ``Frame`` uniform block (std140).
 
@@ -79,14 +106,7 @@ def frame_block(view: View, line_width: float, origin: Array, scale: Array, top:
         How far inside the view volume all anchors lie (mm); negative if some do not. A set whose spheres all have a
         smaller radius needs no clipping.
     """
-    matrix = view.model_view_projection
-    reference = reference_anchor(matrix, origin, scale, top)
-    to_data = np.eye(4)
-    to_data[:3, 3] = origin + scale * reference
-    local = matrix @ to_data
-    # Scaling clip coordinates moves nothing on the screen and keeps float32 clear of its ends.
-    local /= np.abs(local).max() or 1.0
-
+    reference, _, local = local_frame(view, origin, scale, top)
     size = np.array(view.size, np.float64)
     half = 0.0 if line_width == 1.0 else line_width / 2.0
     guard = 1.0 + 2.0 * half / size

@@ -10,11 +10,12 @@ from tqdm import tqdm
 
 from ..codec import layout, tables
 from .chunks import Chunk, available_memory, plan_chunks, storage_buffer, upload_chunk
+from .clipping import BLOCK_BYTES, clip_planes_block
 from .errors import EngineError
 from .frame import frame_block
 from .gbuffer import GBuffer
 from .passes import Passes
-from .pipelines.compute import CLIPPING, CONSTANTS, ComputePipeline
+from .pipelines.compute import CLIP_PLANES, CLIPPING, CONSTANTS, ComputePipeline
 from .shaders import Programs
 from .values import ValueSources
 from .view import Style, View
@@ -145,16 +146,8 @@ class FibletRenderer:
         self._bind_shared()
         features = self._decoding_features()
         source = values.activate(style.values, features)
-        block, margin = frame_block(
-            view,
-            style.line_width,
-            np.asarray(self._fiblets.origin, np.float64),
-            np.asarray(self._fiblets.anchor_scale, np.float64),
-            self._top,
-        )
-        self._buffers["frame"].write(block)
         features += ["WIDE_LINES"] if style.line_width > 1.0 else []
-        features += list(CLIPPING) if margin < self._largest_reach else []
+        features += self._write_frame(view, style)
         self._features = features + ([source] if source else [])
         self._passes.begin()
         pipeline.draw(self._chunks, self._target, self._features, self._passes)
@@ -162,6 +155,23 @@ class FibletRenderer:
         self._target.generation = self._generation
         self._drawn = (view, style)
         return self._target
+
+    def _write_frame(self, view: View, style: Style) -> list[str]:
+        """Bring the uniform blocks of the camera up to date; return the features that the view asks for."""
+        origin = np.asarray(self._fiblets.origin, np.float64)
+        scale = np.asarray(self._fiblets.anchor_scale, np.float64)
+        block, margin = frame_block(view, style.line_width, origin, scale, self._top)
+        self._buffers["frame"].write(block)
+        planes = clip_planes_block(view, style.line_width, origin, scale, self._top, self._largest_reach)
+        if planes is None:
+            if "clip_planes" in self._buffers:
+                self._buffers.pop("clip_planes").release()
+            return list(CLIPPING) if margin < self._largest_reach else []
+        if "clip_planes" not in self._buffers:
+            self._buffers["clip_planes"] = self._ctx.buffer(reserve=BLOCK_BYTES)
+        self._buffers["clip_planes"].write(planes)
+        self._buffers["clip_planes"].bind_to_uniform_block(3)
+        return [*CLIPPING, CLIP_PLANES]
 
     def value_range(self, values: str) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.

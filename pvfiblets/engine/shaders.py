@@ -37,6 +37,7 @@ FEATURES: dict[str, str] = {
     "WIDE_LINES": "lines wider than one pixel",
     "CLIPPING": "fiblets that cross the edges of the picture",
     "CLIPPING_DEPTH": "fiblets that cross the near or the far plane",
+    "CLIP_PLANES": "fiblets that cross planes of the caller's",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Style", "View"]
+__all__ = ["MAX_CLIP_PLANES", "Style", "View"]
+
+MAX_CLIP_PLANES = 8
+"""As many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,16 +26,22 @@ class View:
     model_view_projection : array_like
         ``(4, 4)`` float64: data coordinates in mm (column vectors) to OpenGL clip coordinates. Perspective or
         parallel; any actor placement belongs in it.
+    clip_planes : array_like, optional
+        ``(k, 4)`` float64 planes (a, b, c, d) in data coordinates, k <= 8: of the fiblets only what lies where
+        ax + by + cz + d >= 0 for all of them is there, and what lies behind a cut shows. They need not be
+        normalised. None, or planes that nothing touches, cost nothing.
 
     Raises
     ------
     ValueError
-        If the size is not positive, or the matrix is not 4 x 4 and finite.
+        If the size is not positive, the matrix is not 4 x 4 and finite, or the planes are not finite, not four numbers
+        each or too many.
     """
 
     size: tuple[int, int]
     model_view_projection: npt.NDArray[np.float64]
-    _key: tuple[int, int, bytes] = field(init=False, repr=False)
+    clip_planes: Sequence[Sequence[float]] | npt.NDArray[np.float64] = ()
+    _key: tuple[int, int, bytes, bytes] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         width, height = (int(n) for n in self.size)
@@ -41,9 +51,18 @@ class View:
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
             raise ValueError(f"model_view_projection must be a finite (4, 4) matrix, got {matrix.tolist()}")
         matrix.flags.writeable = False
+        planes = np.array(self.clip_planes, np.float64)
+        if planes.size == 0:
+            planes = planes.reshape(0, 4)
+        if planes.ndim != 2 or planes.shape[1] != 4 or not np.isfinite(planes).all():
+            raise ValueError(f"clip_planes must be finite rows (a, b, c, d), got {planes.tolist()}")
+        if len(planes) > MAX_CLIP_PLANES:
+            raise ValueError(f"{len(planes)} clip planes are more than {MAX_CLIP_PLANES}; leave some out")
+        planes.flags.writeable = False
         object.__setattr__(self, "size", (width, height))
         object.__setattr__(self, "model_view_projection", matrix)
-        object.__setattr__(self, "_key", (width, height, matrix.tobytes()))
+        object.__setattr__(self, "clip_planes", planes)
+        object.__setattr__(self, "_key", (width, height, matrix.tobytes(), planes.tobytes()))
 
     def __eq__(self, other: object) -> bool:
         return self._key == other._key if isinstance(other, View) else NotImplemented

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
@@ -20,14 +19,12 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
-from pvfiblets.mappers.clipping import Cut, cut
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.picking import Drawn, pick
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import Frame, frame_of, world_planes
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
-_MAX_PLANES = 6
 VTK_SURFACE = 2
 
 
@@ -86,7 +83,6 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         self.SetScalarVisibility(False)
         self.set_fiblets(fiblets)
         self.AddObserver("UpdateShaderEvent", _update_shader)
-        self.AddObserver("ModifiedEvent", _modified)
 
     # What is drawn, and how
 
@@ -173,10 +169,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     @property
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader in use."""
-        names = {"gbuffer", "normal"} | self._colouring.features
-        if self.GetNumberOfClippingPlanes():
-            names.add("clip")
-        return frozenset(names)
+        return frozenset({"gbuffer", "normal"} | self._colouring.features)
 
     def _install(self) -> None:
         """Bring the actor's shader pieces and its translucency up to date."""
@@ -228,8 +221,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             )
         viewport = gl_viewport(context.window)
         frame = frame_of(renderer, actor, viewport)
-        clipped = cut(frame, world_planes(self)[:_MAX_PLANES])
-        view = View(viewport[2:], clipped.model_view_projection)
+        view = View(viewport[2:], frame.model_view_projection, frame.planes_in_data(world_planes(self)))
         style = self._style(renderer, viewport)
         slot = context.slot(self)
         with context.foreign():
@@ -241,7 +233,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
-        self._set_uniforms(program, frame, clipped)
+        self._set_uniforms(program, frame)
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
@@ -278,7 +270,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             textures[name] = slot.list_texture(name, colouring, pixels, context.ctx)
         return textures
 
-    def _set_uniforms(self, program: Any, frame: Frame, clipped: Cut) -> None:
+    def _set_uniforms(self, program: Any, frame: Frame) -> None:
         x, y, width, height = frame.viewport
         program.SetUniform2i("fibletOrigin", (x, y))
         program.SetUniform2i("fibletSize", (width, height))
@@ -291,12 +283,6 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         if colouring.mode == "point_value" and colouring.lut is not None:
             program.SetUniformi("fibletTableSize", len(colouring.lut))
             program.SetUniform3f("fibletTableRange", colouring.scaled_range())
-        if program.IsUniformUsed("fibletObliqueDepth"):
-            rows = np.zeros((_MAX_PLANES, 4))
-            rows[: len(clipped.planes)] = clipped.planes
-            program.SetUniform4f("fibletObliqueDepth", clipped.depth.tolist())
-            program.SetUniformi("fibletPlaneCount", len(clipped.planes))
-            program.SetUniform4fv("fibletPlanes", _MAX_PLANES, rows.ravel().tolist())
 
     # Questions
 
@@ -368,10 +354,6 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
 @calldata_type(VTK_OBJECT)
 def _update_shader(mapper: FibletMapper, _event: str, program: Any) -> None:
     mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
-
-
-def _modified(mapper: FibletMapper, _event: str) -> None:
-    mapper._install()  # noqa: SLF001  clipping planes come and go without any other word
 
 
 def _keep_surface(actor_property: Any, _event: str) -> None:

@@ -22,7 +22,6 @@ from pvfiblets.engine.shaders import read_shader
 FEATURES = (
     "gbuffer",
     "normal",
-    "clip",
     "colour_orientation",
     "colour_solid",
     "colour_streamline",

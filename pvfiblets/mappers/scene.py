@@ -25,18 +25,24 @@ class Frame:
     ----------
     viewport : tuple of 4 ints
         x, y, width, height in pixels of the bound framebuffer.
-    model_view : numpy.ndarray
-        (4, 4), data mm to view coordinates: camera times actor.
+    model : numpy.ndarray
+        (4, 4), data mm to world coordinates: the actor.
     view : numpy.ndarray
-        (4, 4), world to view coordinates.
+        (4, 4), world to view coordinates: the camera.
     projection : numpy.ndarray
         (4, 4), view to clip coordinates.
     """
 
     viewport: tuple[int, int, int, int]
-    model_view: Matrix
+    model: Matrix
     view: Matrix
     projection: Matrix
+
+    @property
+    def model_view(self) -> Matrix:
+        """(4, 4), data mm to view coordinates."""
+        product: Matrix = self.view @ self.model
+        return product
 
     @property
     def model_view_projection(self) -> Matrix:
@@ -61,16 +67,10 @@ class Frame:
         scaled: Matrix = linear / np.abs(linear).max()
         return scaled
 
-    def planes_in_view(self, planes: Matrix) -> Matrix:
-        """Return (k, 4) world planes in view coordinates."""
-        moved: Matrix = planes @ np.linalg.inv(self.view)
+    def planes_in_data(self, planes: Matrix) -> Matrix:
+        """Return (k, 4) world planes in data coordinates."""
+        moved: Matrix = planes @ self.model
         return moved
-
-    def planes_in_clip(self, planes: Matrix) -> Matrix:
-        """Return (k, 4) world planes in clip coordinates, each scaled to a largest entry of 1."""
-        moved = planes @ np.linalg.inv(self.projection @ self.view)
-        scaled: Matrix = moved / np.abs(moved).max(axis=1, keepdims=True)
-        return scaled
 
 
 def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int]) -> Frame:
@@ -81,7 +81,7 @@ def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, i
     view = to_array(camera.GetModelViewTransformMatrix())
     aspect = renderer.GetTiledAspectRatio()
     projection = to_array(camera.GetProjectionTransformMatrix(aspect, -1.0, 1.0))
-    return Frame(viewport, view @ to_array(model), view, projection)
+    return Frame(viewport, to_array(model), view, projection)
 
 
 def to_array(matrix: vtkMatrix4x4) -> Matrix:

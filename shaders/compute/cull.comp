@@ -7,7 +7,8 @@
 //     points and the joining segment; the planes stand half a line's width and the rounding of this very computation
 //     further out (pvfiblets/engine/frame.py must agree).
 //   - A fiblet of class 0 lies inside all planes, by `guard.z` and its sphere: its segments need no clipping. One of
-//     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others.
+//     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, and
+//     those that the caller's planes may touch.
 //
 // One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), and which need clipping.
@@ -16,6 +17,7 @@
 layout(local_size_x = {{ group_size }}) in;
 
 #include "decode/record.glsl"
+#include "frame/clip_planes.glsl"
 
 layout(std430, binding = 5) readonly buffer Reach { uint reaches[]; };  // two uint16 a word
 layout(std430, binding = 6) writeonly buffer Plan { uint plan[]; };     // classes 0, 1, 2 of the seen, then of the others
@@ -35,6 +37,10 @@ void main() {
         float edges = dot(planes[0].xyz, centre) + planes[0].w;
         for (int side = 1; side < 4; ++side) edges = min(edges, dot(planes[side].xyz, centre) + planes[side].w);
         float depths = min(dot(planes[4].xyz, centre) + planes[4].w, dot(planes[5].xyz, centre) + planes[5].w);
+#if FEATURE_CLIP_PLANES
+        depths = min(depths, clip_height(centre) + clip_info.y);
+        if (clip_touches(centre, radius)) crossing_depth |= 1u << i;
+#endif
         if (min(edges, depths) >= -radius) shown |= 1u << i;
         if (edges < radius + guard.z) crossing |= 1u << i;
         if (depths < radius + guard.z) crossing_depth |= 1u << i;

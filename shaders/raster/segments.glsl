@@ -22,12 +22,18 @@
 // Clipping is as costly as all else together, so that three programs share the fiblets, as the cull pass found them:
 //   inside all planes                  no clipping
 //   inside the near and far planes     FEATURE_CLIPPING: in the window, where it takes four products
-//   the others                         FEATURE_CLIPPING and FEATURE_CLIPPING_DEPTH: in homogeneous coordinates
+//   the others                         FEATURE_CLIPPING and FEATURE_CLIPPING_DEPTH: in homogeneous coordinates,
+//                                      and with FEATURE_CLIP_PLANES against the planes of the caller's
+//
+// At a plane of the caller's a thin line ends in the pixel of the cut. A wide line ends in a round brush, of which the
+// pixels are left out that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
+// and a line cut head-on shows the whole brush.
 //
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective.
 
 #include "decode/sequential.glsl"
 #include "raster/project.glsl"
+#include "frame/clip_planes.glsl"
 
 void plot(ivec2 pixel, float z, float s, uint segment);
 void start_segment(uint segment, vec3 delta);
@@ -45,6 +51,44 @@ float along(float s) {
 #endif
     return u;
 }
+
+#if FEATURE_CLIP_PLANES
+// Narrows t to the part of the segment on the kept side of all planes, as clip_segment() does for the view volume.
+bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
+    for (int plane = 0; plane < clip_count(); ++plane) {
+        precise float ha = clip_height_of(plane, a), hb = clip_height_of(plane, b);
+        if (ha < 0.0 && hb < 0.0) return false;
+        precise float t = ha / (ha - hb);
+        if (ha < 0.0) t0 = max(t0, t);
+        else if (hb < 0.0) t1 = min(t1, t);
+    }
+    return t0 <= t1;
+}
+#endif
+
+#if FEATURE_CLIP_PLANES && FEATURE_WIDE_LINES
+// h / w above every plane at both ends of the segment being drawn. It is linear in the window, so that no division is
+// left to do at a pixel.
+vec2 clip_heights[{{ max_clip_planes }}];
+
+void start_heights(vec3 a, vec3 b, vec4 e0, vec4 e1, float t0, float t1) {
+    for (int plane = 0; plane < clip_count(); ++plane) {
+        precise float ha = clip_height_of(plane, a), hb = clip_height_of(plane, b);
+        precise vec2 h = vec2(ha + t0 * (hb - ha), ha + t1 * (hb - ha)) / max(vec2(e0.w, e1.w), vec2(1e-30));
+        clip_heights[plane] = max(h, vec2(0.0));
+    }
+}
+
+// Whether a pixel, `away` from the point s of the segment, is on the kept side of all planes.
+bool brush_kept(float s, vec2 away) {
+    for (int plane = 0; plane < clip_count(); ++plane) {
+        precise float h = clip_heights[plane].x + s * (clip_heights[plane].y - clip_heights[plane].x);
+        precise float there = h + dot(clip_tilts[plane].xy, away);
+        if (there < 0.0) return false;
+    }
+    return true;
+}
+#endif
 
 #if FEATURE_WIDE_LINES
 void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
@@ -70,6 +114,9 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
             precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = a.z + (b.z - a.z) * s;
+#if FEATURE_CLIP_PLANES
+            if (!brush_kept(s, steep ? away.yx : away)) continue;
+#endif
             if (foot >= least && dot(away, away) <= r * r) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
         }
     }
@@ -101,6 +148,9 @@ void draw_fiblet(uint f) {
     uint count = walk.last + (end && walk.last > 0u ? 0u : 1u);  // a single point is a segment of no length
 #if FEATURE_CLIPPING_DEPTH
     bool inside0 = in_volume(c0);
+#if FEATURE_CLIP_PLANES
+    inside0 = inside0 && clip_height(walk_point) >= 0.0;
+#endif
 #endif
     for (uint i = 1u; i <= count; ++i) {
         precise vec3 from = walk_point;
@@ -116,15 +166,24 @@ void draw_fiblet(uint f) {
         start_segment(i - 1u, walk_delta);
 #if FEATURE_CLIPPING_DEPTH
         bool inside1 = in_volume(c1);
+#if FEATURE_CLIP_PLANES
+        inside1 = inside1 && clip_height(walk_point) >= 0.0;
+#endif
         float t0 = 0.0, t1 = 1.0;
         precise vec4 e0 = s0, e1 = s1;
         bool any = true;
         if (!(inside0 && inside1)) {
             any = clip_segment(c0, c1, t0, t1);
+#if FEATURE_CLIP_PLANES
+            any = any && clip_by_planes(from, walk_point, t0, t1);
+#endif
             if (t0 > 0.0) e0 = to_window(c0 + t0 * (c1 - c0));
             if (t1 < 1.0) e1 = to_window(c0 + t1 * (c1 - c0));
         }
         clipped = vec4(e0.w, e1.w, t0, t1);
+#if FEATURE_CLIP_PLANES && FEATURE_WIDE_LINES
+        if (any) start_heights(from, walk_point, e0, e1, t0, t1);
+#endif
         if (any) draw_window(e0, e1, i - 1u, start || t0 > 0.0, cap || t1 < 1.0);
         inside0 = inside1;
         c0 = c1;

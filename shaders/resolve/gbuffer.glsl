@@ -54,7 +54,6 @@ vec3 fibletDirection(uint word)
   vec3 fibletTangent = fibletDirection(fibletIds.y);
   vec2 fibletNDC = 2.0 * (vec2(fibletPixel) + 0.5) / vec2(fibletSize) - 1.0;
   float fibletFarness = float(fibletEmpty - fibletKey) / 4294967295.0;   // 1 - depth
-//pvfiblets::Depth::Impl
   vec4 vertexVC = fibletPixelToView * vec4(fibletNDC, fibletFarness, 1.0);
   vertexVC /= vertexVC.w;
 
@@ -66,7 +65,8 @@ vec3 fibletDirection(uint word)
 //@ fragment instead //VTK::UniformFlow::Impl
   const float cscale = 0.0;
 
-// VTK's own clip code tests varyings of the covering triangle, which mean nothing here.
+// VTK's own clip code tests varyings of the covering triangle, which mean nothing here. The engine has cut the fiblets
+// at the mapper's planes already, before it kept the nearest, so that what lies behind a cut is in the G-buffer.
 //@ vertex instead //VTK::Clip::Dec
 //@ vertex instead //VTK::Clip::Impl
 //@ fragment instead //VTK::Clip::Dec

@@ -215,5 +215,6 @@ def tools():
         grown=grown,
         fibres=fibres,
         helices=helices,
+        polylines=polylines,
         check=check,
     )

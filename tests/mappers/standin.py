@@ -1,7 +1,8 @@
 """An independent renderer with the engine's interface: OpenGL's own lines from the points themselves.
 
-It shares no code with the engine: no culling, no decoding, no compute shaders. Tests of the mapper that
-pass with both renderers say nothing about the engine, and those that pass with one tell whose fault it is.
+It shares no code with the engine: no culling, no decoding, no compute shaders; planes cut by
+gl_ClipDistance. Tests of the mapper that pass with both renderers say nothing about the engine, and
+those that pass with one tell whose fault it is.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import moderngl
 import numpy as np
 
 EMPTY = 0xFFFFFFFF
+GL_CLIP_DISTANCE0 = 0x3000
 
 VERTEX = """
 #version 330
@@ -38,9 +40,11 @@ void main()
 
 # A line's tangent is the same at both ends of a segment, so a geometry shader hands it over.
 GEOMETRY = """
-#version 330
+#version 400
 layout(lines) in;
 layout(line_strip, max_vertices = 2) out;
+uniform vec4 planes[8];
+out gl_PerVertex { vec4 gl_Position; float gl_ClipDistance[8]; };
 in vec3 position[];
 in float along[];
 in float number[];
@@ -54,6 +58,10 @@ void main()
   for (int i = 0; i < 2; ++i)
   {
     gl_Position = gl_in[i].gl_Position;
+    for (int p = 0; p < 8; ++p)
+    {
+      gl_ClipDistance[p] = dot(planes[p], vec4(position[i], 1.0));
+    }
     tangent = normalize(position[1] - position[0]);
     streamline = id[0];
     at = along[i];
@@ -171,7 +179,16 @@ class LineRenderer:
         self._target.clear(depth=1.0)
         self._target.color_attachments[0].write(np.full(view.size, EMPTY, "u4").tobytes())
         self._program["matrix"].write(matrix.T.astype("f4").tobytes())
+        planes = np.zeros((8, 4))
+        count = len(view.clip_planes)
+        planes[:count] = view.clip_planes
+        planes[:, 3] += planes[:, :3] @ self.origin
+        self._program["planes"].write(planes.astype("f4").tobytes())
+        for plane in range(count):
+            self.ctx.enable_direct(GL_CLIP_DISTANCE0 + plane)
         self._lines.render(moderngl.LINE_STRIP)
+        for plane in range(count):
+            self.ctx.disable_direct(GL_CLIP_DISTANCE0 + plane)
         self.draws += 1
         self._key = key
         depth, ids, position = self._target.color_attachments

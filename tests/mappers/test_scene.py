@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkRenderer, vtkRenderWindow
 
-from pvfiblets.mappers.clipping import cut
 from pvfiblets.mappers.scene import frame_of, renderers_of
 
 
@@ -70,49 +69,15 @@ def test_positions_come_back_from_depth_in_float32(view, parallel, near, far):
     assert (relative < 3e-6 + 2 * step).all()
 
 
-def test_planes_keep_the_same_points_in_every_coordinates(view):
-    _, _, frame = view(offset=1e3)
+@pytest.mark.parametrize("offset", [1e3, 1e6])
+def test_planes_keep_the_same_points_in_data_coordinates(view, offset):
+    _, actor, frame = view(offset=offset)
     random = np.random.default_rng(1)
     planes = np.c_[random.normal(size=(50, 3)), random.normal(size=50) * 100]
-    planes[:, 3] -= planes[:, :3] @ (1e3, -1e3, 1e3)
-    world = np.r_[random.normal(size=(3, 1)) * 20 + np.array([[1e3], [-1e3], [1e3]]), [[1.0]]]
-    signs = np.sign(planes @ world)
-    in_view = frame.view @ world
-    assert np.array_equal(np.sign(frame.planes_in_view(planes) @ in_view), signs)
-    clip = frame.projection @ in_view
-    assert clip[3] > 0
-    assert np.array_equal(np.sign(frame.planes_in_clip(planes) @ clip), signs)
-
-
-@pytest.mark.parametrize("parallel", [False, True])
-def test_a_cut_keeps_what_is_kept_and_gives_its_depth_back(view, parallel):
-    _, _, frame = view(parallel=parallel)
-    plane = np.array([[0.1, 1.0, 0.2, 3.0]])
-    clipped = cut(frame, plane)
-    assert len(clipped.planes) == 0
-    random = np.random.default_rng(2)
-    points = np.r_[random.uniform(-40, 40, (3, 500)), np.ones((1, 500))]
-    world = np.linalg.inv(frame.view) @ frame.model_view @ points
-    before = frame.model_view_projection @ points
-    after = clipped.model_view_projection @ points
-    kept = (plane @ world)[0] >= 0
-    inside = (np.abs(before[:3]) <= before[3]).all(axis=0)
-    assert inside.sum() > 100
-    assert np.array_equal((after[2] >= -after[3])[inside], kept[inside])
-    both = inside & kept
-    assert (after[2] <= after[3] * (1 + 1e-9))[both].all(), "nothing is lost beyond the far plane"
-    x, y, z = before[:3, both] / before[3, both]
-    oblique = 0.5 - 0.5 * after[2, both] / after[3, both]
-    window = clipped.depth @ np.stack([x, y, oblique, np.ones_like(x)])
-    assert np.allclose(window, 0.5 - 0.5 * z, atol=1e-9)
-
-
-def test_a_plane_seen_from_the_kept_side_is_left_to_the_resolve(view):
-    _, _, frame = view()
-    clipped = cut(frame, np.array([[0.0, -1.0, 0.0, 0.0]]))
-    assert len(clipped.planes) == 1
-    assert np.array_equal(clipped.depth, [0, 0, 1, 0])
-    assert np.array_equal(clipped.model_view_projection, frame.model_view_projection)
+    planes[:, 3] -= planes[:, :3] @ (offset, -offset, offset)
+    data = np.r_[random.normal(size=3) * 20, 1.0]
+    world = np.array(actor.GetMatrix().MultiplyPoint(data))
+    assert np.allclose(frame.planes_in_data(planes) @ data, planes @ world, atol=1e-8)
 
 
 def test_renderers_are_found_through_assemblies():

@@ -11,7 +11,8 @@ attributes     draws those with such pixels again and writes streamline, tangent
 =============  =================================================================================================
 
 Last time's fiblets only decide the order: the picture is the same whatever was seen before. Fiblets inside all planes
-of the view volume are drawn by programs without clipping; the others, if there are any, by two programs with it.
+of the view volume are drawn by programs without clipping; the others, if there are any, by two programs with it. The
+caller's planes concern the second of these alone, and the cull pass.
 
 The sources are in ``shaders/compute``; what a program includes is decided by features.
 """
@@ -27,14 +28,16 @@ from ..chunks import Chunk, storage_buffer
 from ..gbuffer import GBuffer
 from ..passes import Passes, dispatch
 from ..shaders import Programs
+from ..view import MAX_CLIP_PLANES
 
-__all__ = ["CLIPPING", "CONSTANTS", "ComputePipeline"]
+__all__ = ["CLIPPING", "CLIP_PLANES", "CONSTANTS", "ComputePipeline"]
 
 GROUP_SIZE = 64
 GROUP_WORDS = 8
-CONSTANTS = {"group_size": GROUP_SIZE, "group_words": GROUP_WORDS}
+CONSTANTS = {"group_size": GROUP_SIZE, "group_words": GROUP_WORDS, "max_clip_planes": MAX_CLIP_PLANES}
 
 CLIPPING = ("CLIPPING", "CLIPPING_DEPTH")
+CLIP_PLANES = "CLIP_PLANES"
 
 BINDINGS = {
     "anchors": 0,
@@ -101,13 +104,14 @@ class ComputePipeline:
             texture.bind_to_image(index, read=True, write=True)
         for name, binding in (("plan", 6), ("candidates", 7), ("seen", 12)):
             self.buffers[name].bind_to_storage_buffer(binding)
-        plain = [feature for feature in features if feature not in CLIPPING]
+        plain = [feature for feature in features if feature not in (*CLIPPING, CLIP_PLANES)]
+        planes = [CLIP_PLANES] if CLIP_PLANES in features else []
         # One program for each class of fiblets that cull.comp tells apart; without clipping there is only the first.
-        variants = [plain, [*plain, CLIPPING[0]], [*plain, *CLIPPING]] if CLIPPING[0] in features else [plain]
+        variants = [plain, [*plain, CLIPPING[0]], [*plain, *CLIPPING, *planes]] if CLIPPING[0] in features else [plain]
         with passes.timed("clear"):
             dispatch(self._program("clear", plain), target.size[1], self._max_groups)
         with passes.timed("cull"):
-            self._run("cull", plain, chunks, 32 * GROUP_SIZE)
+            self._run("cull", [*plain, *planes], chunks, 32 * GROUP_SIZE)
         self._barrier()
         with passes.timed("depth"):
             for first in (0, len(CLIPPING) + 1):

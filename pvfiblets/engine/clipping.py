@@ -1,0 +1,88 @@
+"""The caller's clip planes as the shaders take them: the uniform block of ``shaders/frame/clip_planes.glsl``.
+
+Planes cut before the nearest is chosen, so that what lies behind a cut shows. The cull pass drops fiblets beyond a
+plane and tells those that a plane touches from the others, which are drawn by the same programs as in a view without
+planes. A segment that crosses is shortened to its kept part, and of a wide line's brush the pixels beyond a plane are
+left out: no pixel shows, or stands for, a position that a plane cuts away.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .frame import Array, local_frame
+from .view import MAX_CLIP_PLANES, View
+
+__all__ = ["BLOCK_BYTES", "clip_planes_block"]
+
+BLOCK_BYTES = (2 * MAX_CLIP_PLANES + 1) * 16
+_HUGE = 1e30  # in float32, and so is its double
+
+
+def clip_planes_block(
+    view: View, line_width: float, origin: Array, scale: Array, top: int, reach: float
+) -> bytes | None:
+    """Pack the ``ClipPlanes`` uniform block (std140) with the planes that matter.
+
+    Parameters
+    ----------
+    view : View
+    line_width : float
+        Pixels; 1 is a thin line.
+    origin, scale, top
+        Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
+    reach : float
+        Largest radius of a fiblet's sphere (mm).
+
+    Returns
+    -------
+    bytes or None
+        None if all that can be drawn lies clear of all planes: then there is nothing to do.
+    """
+    planes = np.asarray(view.clip_planes, np.float64)
+    if not len(planes):
+        return None
+    reference, to_data, to_clip = local_frame(view, origin, scale, top)
+    local = _normalised(planes) @ to_data
+    tilts = _tilts(local, to_clip, view.size)
+    half = 0.0 if line_width == 1.0 else line_width / 2.0
+    brush = half * np.linalg.norm(tilts, axis=1)
+    slope = float(np.linalg.norm(to_clip[3, :3]))
+    corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
+    heights = corners @ local[:, :3].T + local[:, 3]
+    w = max(float((corners @ to_clip[3, :3] + to_clip[3, 3]).max()) + 2 * reach * slope, 0.0)
+    # Three products and their sum in float32 err by no more than this share of the largest of them.
+    slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(local[:, 3]))
+    # A sphere's centre lies between anchors, hence in their box.
+    near = heights.min(axis=0) < reach + 4.0 * slack + w * brush
+    if not near.any():
+        return None
+    block: npt.NDArray[Any] = np.zeros((2 * MAX_CLIP_PLANES + 1, 4))
+    count = int(near.sum())
+    block[:count] = local[near]
+    block[MAX_CLIP_PLANES : MAX_CLIP_PLANES + count, :2] = tilts[near]
+    block[MAX_CLIP_PLANES : MAX_CLIP_PLANES + count, 2] = brush[near]
+    block[-1, :3] = count, slack[near].max(), slope
+    return np.clip(block, -_HUGE, _HUGE).astype("<f4").tobytes()
+
+
+def _normalised(planes: Array) -> Array:
+    """Scale to normals of length one; a plane without a normal keeps everything or nothing and stays as it is."""
+    with np.errstate(over="ignore"):
+        planes = planes / np.maximum(np.abs(planes[:, :3]).max(axis=1), np.finfo(float).tiny)[:, None]
+    lengths = np.linalg.norm(planes[:, :3], axis=1)
+    scaled: Array = planes / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    return np.clip(scaled, -_HUGE, _HUGE)
+
+
+def _tilts(local: Array, to_clip: Array, size: tuple[int, int]) -> Array:
+    """Return (k, 2): change of (height / clip w) per pixel to the right and upwards, at constant depth."""
+    try:
+        moved = local @ np.linalg.inv(to_clip)
+    except np.linalg.LinAlgError:
+        return np.zeros((len(local), 2))  # a flattening matrix: brushes stay whole
+    tilts: Array = moved[:, :2] * (2.0 / np.array(size, np.float64))
+    return tilts
