@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import io
 import json
+import mmap
 import os
 import struct
 import tokenize
@@ -24,7 +25,7 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 
-__all__ = ["HEADER", "Member", "array_member", "check_members", "open_archive", "write_archive"]
+__all__ = ["HEADER", "Member", "array_member", "check_members", "forget", "open_archive", "write_archive"]
 
 HEADER = "header.json"
 ALIGNMENT = 64
@@ -173,6 +174,21 @@ def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.
     if n == 0:
         return np.empty(shape, dtype)
     return np.memmap(path, dtype, "r", at, shape)
+
+
+def forget(array: npt.NDArray[Any], first: int, last: int) -> None:
+    """Let go of the memory behind rows of a mapped array; they stay readable. Arrays in memory are left alone.
+
+    Without this a file that is streamed through its map ends up resident as a whole.
+    """
+    if not isinstance(array, np.memmap) or not hasattr(mmap, "MADV_DONTNEED") or array.size == 0:
+        return
+    row = array.strides[0]
+    start = array.offset % mmap.ALLOCATIONGRANULARITY  # the map begins at the page that holds the array's first byte
+    begin = -(-(start + first * row) // mmap.PAGESIZE) * mmap.PAGESIZE
+    length = (start + last * row) // mmap.PAGESIZE * mmap.PAGESIZE - begin
+    if length > 0:
+        array._mmap.madvise(mmap.MADV_DONTNEED, begin, length)  # type: ignore[attr-defined]  # noqa: SLF001
 
 
 def check_members(path: str | os.PathLike[str]) -> list[str]:

@@ -14,6 +14,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from .jit import kernel, parallel_kernel
 from .kernels import (
     BLOCK,
     _nearest,
@@ -30,10 +31,9 @@ __all__ = ["encode_directions", "neighbours"]
 
 WIDTH = 6  # partial codings kept
 BRANCH = 5  # continuations tried from each: the nearest code and four of its neighbours
-_jit = numba.njit(cache=True, error_model="numpy")
 
 
-@_jit
+@kernel
 def neighbours(directions: Any) -> Any:
     """The ``BRANCH - 1`` codes nearest to each code: ``(caps, 256, BRANCH - 1)`` uint8."""
     caps = len(directions)
@@ -55,7 +55,7 @@ def neighbours(directions: Any) -> Any:
     return found
 
 
-@_jit
+@kernel
 def _beam(
     true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, near: Any, scratch: Any, codes: Any
 ) -> float:
@@ -132,7 +132,7 @@ def _beam(
     return float(states[0, 7])
 
 
-@_jit
+@kernel
 def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, decoded: Any) -> float:
     """Decode from the anchor in ``decoded[0]``; returns the largest squared error."""
     px, py, pz = decoded[0, 0], decoded[0, 1], decoded[0, 2]
@@ -155,7 +155,7 @@ def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, de
     return worst
 
 
-@numba.njit(cache=True, error_model="numpy", parallel=True)
+@parallel_kernel
 def encode_directions(
     points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
 ) -> None:

@@ -154,8 +154,8 @@ def measure_file_error(
 def _compare(originals: Iterable[Streamlines], total: int, target: str | PathLike[str], progress: bool) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = open_fiblets(target)
-    tally = ErrorTally(coded.promise, coded.step)
-    decoded = coded.iter_chunks()
+    tally = ErrorTally(coded.promise, coded.step, by_streamline=False)
+    decoded = coded.iter_chunks(CHUNK_POINTS)
     rest: Streamlines | None = None
     seen = 0
     for chunk in _shown(originals, total, "measuring", progress):

@@ -7,17 +7,16 @@ from typing import Any
 import numba
 import numpy as np
 
+from .jit import kernel, parallel_kernel
 from .kernels import first_frame
 from .layout import DIRECTION, PAGE_BITS, STEP_LEVELS, WIDE, WIDE_HEADER
 
 __all__ = ["decode"]
 
 BLOCK = 256  # fiblets a thread decodes in one go
-_jit = numba.njit(cache=True, error_model="numpy")
-_parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_jit
+@kernel
 def _decode_direction(
     a: Any, shape: int, step: float, table: Any, codes: Any, at: int, n: int, origin: Any, p: Any
 ) -> None:
@@ -41,7 +40,7 @@ def _decode_direction(
         p[i, 0], p[i, 1], p[i, 2] = ax + origin[0], ay + origin[1], az + origin[2]
 
 
-@_jit
+@kernel
 def _take(codes: Any, at: int, width: int) -> Any:
     value = np.int64(0)
     for byte in range(width):
@@ -49,12 +48,12 @@ def _take(codes: Any, at: int, width: int) -> Any:
     return value
 
 
-@_jit
+@kernel
 def _signed(value: int, bits: int) -> int:
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
-@_jit
+@kernel
 def _decode_lattice(
     a: Any, kind: int, shape: int, step: int, h: float, codes: Any, at: int, n: int, origin: Any, p: Any
 ) -> None:
@@ -84,7 +83,7 @@ def _decode_lattice(
         p[i, 2] = a[2] + h * k2 + origin[2]
 
 
-@_parallel
+@parallel_kernel
 def decode(
     fiblets: Any,
     destination: Any,

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from ..errors import FormatError
 from ..streamlines import Streamlines
 from . import decode_kernels
-from .layout import MAX_POINTS, unpack
+from .archive import forget
+from .layout import MAX_POINTS, PAGE_BITS, unpack
 from .tables import quaternions
 
 if TYPE_CHECKING:
@@ -207,7 +208,19 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
             space=dict(fiblets.space),
             dropped=dict(fiblets.dropped) if first_id == 0 else {},
         )
+        _forget(fiblets, a, b, rows)
         a, first_id, first_point = b, stop, rows.stop
+
+
+def _forget(fiblets: FibletSet, a: int, b: int, rows: slice) -> None:
+    """Give back the memory of what was read of a mapped file, up to the page of codes that fiblet ``b`` begins in."""
+    for array in (fiblets.anchors, fiblets.decoding, fiblets.anchors_low):
+        if array is not None:
+            forget(array, a, b)
+    pages = fiblets.pages[:, 1]
+    forget(fiblets.codes, int(pages[a >> PAGE_BITS]), int(pages[b >> PAGE_BITS]))
+    for points in fiblets.per_point.values():
+        forget(points.codes, rows.start, rows.stop)
 
 
 def _next_begin(fiblets: FibletSet, a: int, wanted: int) -> int:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from ..streamlines import Streamlines
 from . import beam_kernels, kernels, lattice_kernels, nearest
+from .jit import parallel_kernel
 from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack
 from .parameters import Parameters
 from .tables import cap_ratios, directions, quaternions
@@ -224,7 +225,7 @@ def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> 
     return spread
 
 
-@numba.njit(cache=True, parallel=True)
+@parallel_kernel
 def _gather(codes: Any, slots: Any, which: Any, code_at: Any, packed: Any) -> None:
     for w in numba.prange(len(which)):
         slot = which[w]

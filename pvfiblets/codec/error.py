@@ -27,7 +27,7 @@ class CodingError:
     max_steps, mean_steps, p999_steps : float
         The same in median steps (NaN where there is no step).
     streamline_max_mm, streamline_mean_mm : numpy.ndarray
-        ``(n_streamlines,)`` by streamline; NaN for those without points.
+        ``(n_streamlines,)`` by streamline, NaN for those without points; empty where only a summary was asked for.
     """
 
     max_mm: float
@@ -48,10 +48,12 @@ class CodingError:
 
 
 class ErrorTally:
-    """Gathers errors chunk by chunk in bounded memory."""
+    """Gathers errors chunk by chunk; in bounded memory, unless they are wanted by streamline."""
 
-    def __init__(self, promise: float, step: float) -> None:
+    def __init__(self, promise: float, step: float, *, by_streamline: bool = True) -> None:
         self._step = step
+        self._by_streamline = by_streamline
+        self._largest = 0.0
         self._edge = max(promise, np.finfo(float).tiny) * 1.25
         self._histogram = np.zeros(_BINS + 1, np.int64)
         self._sum = 0.0
@@ -68,6 +70,9 @@ class ErrorTally:
         self._histogram += np.bincount(bins, minlength=_BINS + 1)
         self._sum += float(distance.sum())
         self._n += len(distance)
+        self._largest = max(self._largest, float(distance.max(initial=0.0)))
+        if not self._by_streamline:
+            return
         lengths = np.diff(offsets)
         filled = lengths > 0
         largest, mean = np.full(len(lengths), np.nan), np.full(len(lengths), np.nan)
@@ -84,7 +89,7 @@ class ErrorTally:
         means = np.concatenate(self._means) if self._means else np.empty(0)
         if self._n == 0:
             return CodingError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, maxima, means)
-        largest, mean = float(np.nanmax(maxima)), self._sum / self._n
+        largest, mean = self._largest, self._sum / self._n
         place = int(np.searchsorted(np.cumsum(self._histogram), 0.999 * self._n))
         p999 = largest if place >= _BINS else min(largest, (place + 1) * self._edge / _BINS)
         scale = 1.0 / self._step if self._step > 0.0 else float("nan")

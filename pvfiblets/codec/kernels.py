@@ -12,6 +12,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from .jit import kernel, parallel_kernel
 from .layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .nearest import CELLS, EXTENT
 
@@ -19,11 +20,9 @@ __all__ = ["encode_directions", "first_frame", "pack_direction", "quantise", "sc
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
-_jit = numba.njit(cache=True, error_model="numpy", inline="never")
-_parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_parallel
+@parallel_kernel
 def scan(points: Any, offsets: Any, found: Any) -> None:
     """Bounds and longest squared segment, by thousands of streamlines.
 
@@ -52,7 +51,7 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
                 found[row, 6] = max(found[row, 6], squares)
 
 
-@_jit
+@kernel
 def quantise(value: float, scale: float, top: float) -> float:
     """Anchor coordinate as a whole number (float64 holds all 32 bits)."""
     if scale <= 0.0:
@@ -60,7 +59,7 @@ def quantise(value: float, scale: float, top: float) -> float:
     return min(max(float(np.rint(value / scale)), 0.0), top)
 
 
-@_jit
+@kernel
 def pack_direction(x: float, y: float, z: float) -> int:
     """See :func:`.reference.pack_direction`."""
     if x == 0.0 and y == 0.0 and z == 0.0:
@@ -77,7 +76,7 @@ def pack_direction(x: float, y: float, z: float) -> int:
     return (iu & 0xFFFF) | ((iv & 0xFFFF) << 16)
 
 
-@_jit
+@kernel
 def first_frame(word: int) -> Any:
     """First direction and frame ``(dx, dy, dz, w, x, y, z)``; see :func:`.reference.first_frame`."""
     iu = word & 0xFFFF
@@ -108,7 +107,7 @@ def first_frame(word: int) -> Any:
     return dx, dy, dz, -qz, qy, 0.0, qw
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: Any, table: Any) -> int:
     """Code whose direction is nearest to (l0, l1, l2); see :mod:`.nearest`."""
     n = math.sqrt(l0 * l0 + l1 * l1 + l2 * l2)
@@ -141,7 +140,7 @@ def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: 
     return best
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, codes: Any, decoded: Any) -> float:
     """Code ``true[:n]`` from the anchor in ``decoded[0]``; returns the largest squared error, inf above ``give_up``."""
     quats, dirs, ratios, starts, listed = tables
@@ -185,7 +184,7 @@ def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: An
     return worst if worst <= give_up else math.inf
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
     """See :func:`.reference.choose_cap`."""
     least = 1.0
@@ -203,7 +202,7 @@ def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
     return len(ratios) - 1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
     """See :func:`.reference.choose_step`."""
     if hi <= lo:
@@ -215,7 +214,7 @@ def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
     return int(np.rint(min(max((arc / (n - 1) - lo) / (hi - lo) * STEP_LEVELS, 0.0), float(STEP_LEVELS))))
 
 
-@_parallel
+@parallel_kernel
 def encode_directions(
     points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
 ) -> None:
@@ -291,7 +290,7 @@ def encode_directions(
                 radius[slot] = _radius(points, origin, scale, top, decoded[mine], first, n, end[slot])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _radius(points: Any, origin: Any, scale: Any, top: float, decoded: Any, first: int, n: int, end: int) -> float:
     """Radius of the sphere around the middle of this anchor and the next that holds all that the fiblet draws."""
     cx, cy, cz = decoded[0, 0], decoded[0, 1], decoded[0, 2]

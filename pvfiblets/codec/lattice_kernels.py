@@ -8,6 +8,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from .jit import kernel, parallel_kernel
 from .kernels import quantise
 from .layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
 
@@ -19,11 +20,9 @@ MAX_HALVINGS = 15
 TREE_DEPTH = 6
 NONE = 1 << 30
 _NODES = 1 << (TREE_DEPTH + 1)
-_jit = numba.njit(cache=True, error_model="numpy")
-_parallel = numba.njit(cache=True, error_model="numpy", parallel=True)
 
 
-@_jit
+@kernel
 def _box(true: Any, a: int, b: int, anchor: Any, h: float, lo: Any, n: Any) -> int:
     """Box of the lattice steps of ``true[a:b]``, into ``lo`` and ``n``; bytes per code + 8 * kind, or 0 if none."""
     for axis in range(3):
@@ -63,20 +62,20 @@ def _box(true: Any, a: int, b: int, anchor: Any, h: float, lo: Any, n: Any) -> i
     return width + 8 * (width if narrow else WIDE)
 
 
-@_jit
+@kernel
 def _size(found: int, count: int) -> int:
     if found == 0:
         return NONE
     return RECORD_BYTES + (WIDE_HEADER if found >> 3 == WIDE else 0) + (count - 1) * (found & 7)
 
 
-@_jit
+@kernel
 def _anchor(true: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
     for axis in range(3):
         anchor[axis] = scale[axis] * quantise(true[i, axis], scale[axis], top)
 
 
-@_jit
+@kernel
 def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) -> Any:
     """Cheapest split by repeated halving: sizes of the pieces into ``cuts``; their number and their bytes of codes."""
     low = np.zeros(_NODES, np.int64)
@@ -132,7 +131,7 @@ def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) ->
     return pieces, total
 
 
-@_parallel
+@parallel_kernel
 def plan_lattices(
     points: Any,
     origin: Any,
@@ -160,13 +159,13 @@ def plan_lattices(
         pieces[w], size[w] = _plan(true, n, scale, top, h, mine)
 
 
-@_jit
+@kernel
 def _put(codes: Any, at: int, value: int, width: int) -> None:
     for byte in range(width):
         codes[at + byte] = (value >> (8 * byte)) & 0xFF
 
 
-@_jit
+@kernel
 def _encode(true: Any, a: int, b: int, scale: Any, top: float, h: float, codes: Any, at: int, decoded: Any) -> Any:
     """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written."""
     anchor, lo, n = np.empty(3), np.empty(3, np.int64), np.empty(3, np.int64)
@@ -208,7 +207,7 @@ def _encode(true: Any, a: int, b: int, scale: Any, top: float, h: float, codes: 
     return kind, shape, step, halvings, at - start
 
 
-@_parallel
+@parallel_kernel
 def encode_lattices(
     points: Any,
     origin: Any,

@@ -12,10 +12,10 @@ import math
 from functools import cache
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from .jit import kernel
 from .tables import CAP_DEGREES, CODES, cap_ratios, directions
 
 __all__ = ["CELLS", "EXTENT", "Candidates", "candidates"]
@@ -31,7 +31,7 @@ class Candidates(NamedTuple):
     codes: npt.NDArray[np.uint8]
 
 
-@numba.njit(cache=True)
+@kernel
 def _direction(u: float, v: float, ratio: float) -> Any:
     """Direction at a point of the disc; beyond the antipode there is none, and the antipode stands in."""
     rho2 = u * u + v * v
@@ -42,7 +42,7 @@ def _direction(u: float, v: float, ratio: float) -> Any:
     return x, lateral * u, lateral * v
 
 
-@numba.njit(cache=True)
+@kernel
 def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
     cell = 2.0 * EXTENT / CELLS
     distance = np.empty(CODES)

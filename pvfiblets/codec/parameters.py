@@ -17,7 +17,7 @@ __all__ = ["DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
 DEFAULT_PROMISE_STEPS = 0.1
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
-SAMPLE = 200_000  # segment lengths kept from each chunk; a median needs no more
+SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 LARGEST = 1e35  # mm
 BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
@@ -36,7 +36,7 @@ class Survey:
     longest : float
         Longest segment, mm.
     sample : list of numpy.ndarray
-        Segment lengths, mm, evenly taken.
+        Segment lengths, mm: every ``stride``-th, so few that memory stays bounded.
     n_points, n_streamlines : int
         Totals.
     """
@@ -45,6 +45,7 @@ class Survey:
     upper: Vector = field(default_factory=lambda: np.full(3, -np.inf))
     longest: float = 0.0
     sample: list[npt.NDArray[np.float64]] = field(default_factory=list)
+    stride: int = 1
     n_points: int = 0
     n_streamlines: int = 0
     values: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -86,13 +87,19 @@ class Survey:
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
-        self.sample.append(_segments(points, streamlines.offsets))
+        self._take(_segments(points, streamlines.offsets, self.stride))
+
+    def _take(self, lengths: Vector) -> None:
+        """Add to the sample; when it is full, keep every other length, and take half as many from then on."""
+        self.sample.append(lengths)
+        while sum(len(part) for part in self.sample) > SAMPLE:
+            self.sample = [np.concatenate(self.sample)[::2].copy()]
+            self.stride *= 2
 
 
-def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> Vector:
-    """Lengths of evenly sampled segments, mm."""
-    n = max(len(points) - 1, 0)
-    first = np.arange(0, n, max(1, n // SAMPLE))
+def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], stride: int) -> Vector:
+    """Lengths of every ``stride``-th segment, mm."""
+    first = np.arange(0, max(len(points) - 1, 0), stride)
     joins = np.searchsorted(offsets, first + 1)  # a segment that would cross into the next streamline is none
     inside = offsets[np.minimum(joins, len(offsets) - 1)] != first + 1
     first = first[inside]

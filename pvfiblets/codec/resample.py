@@ -9,6 +9,7 @@ import numba
 import numpy as np
 
 from ..streamlines import Streamlines
+from .jit import parallel_kernel
 
 __all__ = ["resample"]
 
@@ -72,7 +73,7 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     )
 
 
-@numba.njit(cache=True, parallel=True)
+@parallel_kernel
 def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
     for s in numba.prange(len(offsets) - 1):
         sum_ = 0.0
@@ -84,7 +85,7 @@ def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
             arc[i] = sum_
 
 
-@numba.njit(cache=True, parallel=True)
+@parallel_kernel
 def _locate(arc: Any, offsets: Any, fresh: Any, step: float, low: Any, weight: Any) -> None:
     """Segment that each new point lies in, and how far along it."""
     for s in numba.prange(len(offsets) - 1):

@@ -67,7 +67,8 @@ def test_pieces_with_other_columns_are_refused(tmp_path: Path) -> None:
 PEAK = """
 import sys
 import resource
-import pvfiblets
+import pvfiblets.codec.convert
+pvfiblets.codec.convert.CHUNK_POINTS = 200_000
 pvfiblets.compress_file(sys.argv[1], sys.argv[2])
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 """

@@ -1,0 +1,51 @@
+"""How the codec's kernels are compiled and kept.
+
+numba keeps compiled kernels beside their source and looks at that one file to see whether they are still good. A kernel
+that calls another module's kernel, or takes its constants, would be used on after that module changed, and might then
+read beyond arrays whose layout is another by now. So the kept kernels are keyed by all the codec's sources as well.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core.caching import FunctionCache
+
+__all__ = ["kernel", "parallel_kernel", "sources_digest"]
+
+
+@cache
+def sources_digest() -> str:
+    """Digest of every source file of the codec."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+class _KeyedBySources(FunctionCache):
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        return (*super()._index_key(sig, codegen), sources_digest())
+
+
+def _compiled(function: Any, parallel: bool) -> Any:
+    # The numpy error model: a division by zero gives inf or NaN, which later checks see, instead of an exception that
+    # would have to be raised out of a parallel loop.
+    dispatcher = numba.njit(function, error_model="numpy", parallel=parallel)
+    dispatcher._cache = _KeyedBySources(function)  # noqa: SLF001 - numba offers no public way to key its cache
+    return dispatcher
+
+
+def kernel(function: Any) -> Any:
+    """Compile a function when first called, and keep the result on disk."""
+    return _compiled(function, parallel=False)
+
+
+def parallel_kernel(function: Any) -> Any:
+    """The same for one whose ``numba.prange`` loops run on all cores."""
+    return _compiled(function, parallel=True)
