@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from .view import View
 
-__all__ = ["frame_block", "local_frame", "reference_anchor"]
+__all__ = ["frame_block", "local_frame", "reference_anchor", "segment_pixels"]
 
 Array = npt.NDArray[np.float64]
 
@@ -85,6 +85,18 @@ def local_frame(view: View, origin: Array, scale: Array, top: int) -> tuple[npt.
     to_clip = view.model_view_projection @ to_data
     to_clip /= np.abs(to_clip).max() or 1.0
     return reference, to_data, to_clip
+
+
+def segment_pixels(view: View, origin: Array, scale: Array, top: int, length: float) -> float:
+    """Estimate how many pixels a segment of some length (mm) takes where the anchors come nearest to the camera.
+
+    At least 4, and at most 100: of longer ones few are in the picture at a time.
+    """
+    reference, _, (x, y, _, w) = local_frame(view, origin, scale, top)
+    corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
+    nearest = float((corners @ w[:3] + w[3]).min())
+    across = float(np.hypot(np.linalg.norm(x[:3]) * view.size[0], np.linalg.norm(y[:3]) * view.size[1])) / 2
+    return min(max(length * across / nearest, 4.0), 100.0) if nearest > 0.0 else 100.0
 
 
 def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:

@@ -12,7 +12,7 @@ from ..codec import layout, tables
 from .chunks import Chunk, available_memory, plan_chunks, storage_buffer, upload_chunk
 from .clipping import BLOCK_BYTES, clip_planes_block
 from .errors import EngineError
-from .frame import frame_block
+from .frame import frame_block, segment_pixels
 from .gbuffer import GBuffer
 from .passes import Passes
 from .pipelines.compute import CLIP_PLANES, CLIPPING, CONSTANTS, ComputePipeline
@@ -77,6 +77,7 @@ class FibletRenderer:
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
         self._largest_reach = 0.0
+        self._segment = 0.0
         self._features: list[str] = []
         self._values: ValueSources | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
@@ -150,7 +151,7 @@ class FibletRenderer:
         features += self._write_frame(view, style)
         self._features = features + ([source] if source else [])
         self._passes.begin()
-        pipeline.draw(self._chunks, self._target, self._features, self._passes)
+        pipeline.draw(self._chunks, self._target, self._features, self._passes, style.line_width, self._segment)
         self._generation += 1
         self._target.generation = self._generation
         self._drawn = (view, style)
@@ -160,6 +161,8 @@ class FibletRenderer:
         """Bring the uniform blocks of the camera up to date; return the features that the view asks for."""
         origin = np.asarray(self._fiblets.origin, np.float64)
         scale = np.asarray(self._fiblets.anchor_scale, np.float64)
+        # Where steps vary, four times their mean stands for the longest.
+        self._segment = segment_pixels(view, origin, scale, self._top, 4.0 * self._fiblets.step)
         block, margin = frame_block(view, style.line_width, origin, scale, self._top)
         self._buffers["frame"].write(block)
         planes = clip_planes_block(view, style.line_width, origin, scale, self._top, self._largest_reach)

@@ -91,7 +91,10 @@ bool brush_kept(float s, vec2 away) {
 #endif
 
 #if FEATURE_WIDE_LINES
+uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pipelines/compute.py
+
 void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
+    if (segment < share.x || segment >= share.y) return;
     float r = viewport.z;
     vec2 d = b.xy - a.xy;
     bool steep = abs(d.y) > abs(d.x);
@@ -114,10 +117,11 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
             precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = a.z + (b.z - a.z) * s;
+            if (foot < least || dot(away, away) > r * r) continue;
 #if FEATURE_CLIP_PLANES
             if (!brush_kept(s, steep ? away.yx : away)) continue;
 #endif
-            if (foot >= least && dot(away, away) <= r * r) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
+            plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
         }
     }
 }

@@ -101,6 +101,7 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
         rank_to_id=rank_to_id,
         origin=lo,
         anchor_scale=scale,
+        step=float(np.linalg.norm(steps, axis=1).mean()) if steps.size else 0.0,
         step_lo=0.0,
         step_hi=0.0,
         lattice=lattice,

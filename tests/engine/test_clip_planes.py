@@ -260,7 +260,7 @@ def test_planes_moved_live(gl, fabricate, random_lines, camera):
 
 
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
-@pytest.mark.parametrize("width", [3.0, 8.0])
+@pytest.mark.parametrize("width", [3.0, 12.0])
 def test_wide_lines_show_nothing_beyond_a_plane(gl, fabricate, random_lines, camera, width, parallel):
     """Against the position that a pixel and its depth stand for."""
     planes = np.array(CUTS["two that face the viewer"] + [(0, 0, 1, 4)], float)

@@ -112,6 +112,7 @@ def random_directions(n, rng):
         rank_to_id=None,
         origin=np.array([-70.0, -100.0, -60.0]),
         anchor_scale=np.array([140.0, 180.0, 120.0]) / 65535,
+        step=1.0,
         step_lo=0.1,
         step_hi=1.0,
         lattice=1.0,

@@ -298,6 +298,38 @@ def test_wide_lines(gl, fabricate, camera, width):
     assert not drawn[nearest > width / 2 + 0.01].any()
 
 
+@pytest.mark.parametrize("width", [2.0, 12.0, 25.0, 60.0])
+def test_no_width_loses_pieces(gl, fabricate, random_lines, camera, width):
+    """Software OpenGL leaves loops that run long: what a thin line shows, a wide one must."""
+    fiblets = fabricate(random_lines(150, seed=6), kind=2)
+    matrix = camera(SIZE)
+    thin = draw(gl, fiblets, matrix)[0] != EMPTY
+    wide = draw(gl, fiblets, matrix, style=Style(width))
+    assert near(wide[0] != EMPTY)[thin].all()
+    again = draw(gl, fiblets, matrix, style=Style(width))
+    drawn = wide[0] != EMPTY
+    assert (again[0] == wide[0]).all()
+    assert (again[1] == wide[1])[drawn].all()
+    assert (again[2] == wide[2])[drawn].all()
+
+
+def test_wide_lines_in_a_close_view(gl, fabricate, camera):
+    """Segments of a hundred pixels, in all fiblets of one group."""
+    rng = np.random.default_rng(2)
+    lines = [np.cumsum(rng.normal(0, 1, (60, 3)), axis=0) for _ in range(200)]
+    fiblets = fabricate([line - line.mean(0) for line in lines], kind=2)
+    matrix = camera(SIZE, eye=(0, -8, 0), near=0.5, far=60.0)
+    thin = draw(gl, fiblets, matrix)[0] != EMPTY
+    assert near(draw(gl, fiblets, matrix, style=Style(9.0))[0] != EMPTY)[thin].all()
+
+
+def test_a_width_beyond_software_opengl_is_told(gl, fabricate, random_lines, camera):
+    if "llvmpipe" not in gl.info["GL_RENDERER"]:
+        pytest.skip("hardware draws any width")
+    with pytest.raises(EngineError, match="at most 100"):
+        draw(gl, fabricate(random_lines(5), kind=2), camera(SIZE), style=Style(400.0))
+
+
 def test_wide_lines_reach_in_from_outside(gl, fabricate, camera):
     """A wide line just off the screen shows its edge."""
     size, matrix = (200, 100), camera((200, 100), height=100.0)

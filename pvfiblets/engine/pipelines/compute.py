@@ -19,14 +19,18 @@ The sources are in ``shaders/compute``; what a program includes is decided by fe
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Sequence
 
 import moderngl
 import numpy as np
 
+from ...codec.layout import MAX_POINTS
 from ..chunks import Chunk, storage_buffer
+from ..errors import EngineError
 from ..gbuffer import GBuffer
-from ..passes import Passes, dispatch
+from ..passes import Passes, dispatch, is_software
 from ..shaders import Programs
 from ..view import MAX_CLIP_PLANES
 
@@ -51,6 +55,13 @@ BINDINGS = {
     "starts": 11,
 }
 """Storage bindings of a chunk's buffers; 3 is the direction table, 6, 7 and 12 are the pipeline's own."""
+
+SOFTWARE_ITERATIONS = 60_000
+"""What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
+iterations in sum and says nothing."""
+
+WIDEST_IN_SOFTWARE = 100
+"""Pixels of line width with which one segment of each fiblet stays within that."""
 
 _DECODING = frozenset({"anchors", "decoding", "codes", "pages", "anchors_low"})
 _READS = {
@@ -83,12 +94,22 @@ class ComputePipeline:
         self._ctx = ctx
         self._programs = programs
         self._max_groups = max_groups
+        self._software = is_software(ctx)
+        self._shares = [(0, MAX_POINTS)]
         words = -(-n_fiblets // 32)
         self.buffers: dict[str, moderngl.Buffer] = {}
         for name, width in (("plan", 6), ("candidates", 1), ("seen", 1)):
             self.buffers[name] = storage_buffer(ctx, np.zeros(words * width, np.uint32), name)
 
-    def draw(self, chunks: Sequence[Chunk], target: GBuffer, features: Sequence[str], passes: Passes) -> None:
+    def draw(
+        self,
+        chunks: Sequence[Chunk],
+        target: GBuffer,
+        features: Sequence[str],
+        passes: Passes,
+        line_width: float,
+        segment: float,
+    ) -> None:
         """Draw all chunks; the ``Frame`` and ``Coding`` blocks and the direction table are bound already.
 
         Parameters
@@ -99,7 +120,18 @@ class ComputePipeline:
             Keys of :data:`pvfiblets.engine.shaders.FEATURES`.
         passes : Passes
             Takes the times.
+        line_width : float
+            Pixels; counts with the feature ``WIDE_LINES``.
+        segment : float
+            Pixels that the longest segments in the picture take, roughly.
+
+        Raises
+        ------
+        EngineError
+            If lines are so wide that software OpenGL would lose parts of them.
         """
+        if self._software:
+            self._shares = _shares(line_width, segment)
         for index, texture in enumerate((target.depth, target.owner, target.ids, target.position)):
             texture.bind_to_image(index, read=True, write=True)
         for name, binding in (("plan", 6), ("candidates", 7), ("seen", 12)):
@@ -134,8 +166,16 @@ class ComputePipeline:
         self, stage: str, variants: Sequence[Sequence[str]], chunks: Sequence[Chunk], first: int = 0
     ) -> None:
         for part, features in enumerate(variants, first):
-            self._program(stage, features)["part"] = part
-            self._run(stage, features, chunks, 32 * GROUP_WORDS)
+            program = self._program(stage, features)
+            program["part"] = part
+            if "WIDE_LINES" not in features:
+                self._run(stage, features, chunks, 32 * GROUP_WORDS)
+                continue
+            for share in self._shares:
+                program["share"] = share
+                self._run(stage, features, chunks, 32 * GROUP_WORDS)
+                if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
+                    self._barrier()
 
     def _run(self, stage: str, features: Sequence[str], chunks: Sequence[Chunk], per_group: int) -> None:
         program = self._program(stage, features)
@@ -150,3 +190,23 @@ class ComputePipeline:
         for buffer in self.buffers.values():
             buffer.release()
         self.buffers.clear()
+
+
+def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
+    """Cut the segments of a fiblet into ranges whose pixels software OpenGL draws before it leaves the loops.
+
+    An invocation draws ``32 * GROUP_WORDS / GROUP_SIZE`` fiblets or fewer, and waits for its neighbours' segments.
+    Over each pixel of a segment's longer side stand at most sqrt(2) widths, 1.2 on average.
+    """
+    if line_width == 1.0:
+        return [(0, MAX_POINTS)]
+    fiblets = 32 * GROUP_WORDS // GROUP_SIZE
+    count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment + line_width)))
+    if count < 1 and line_width > WIDEST_IN_SOFTWARE:
+        raise EngineError(
+            f"a line width of {line_width:g} pixels is more than software OpenGL draws whole; give at most "
+            f"{WIDEST_IN_SOFTWARE}"
+        )
+    ranges = math.ceil(MAX_POINTS / max(count, 1))
+    edges = [MAX_POINTS * i // ranges for i in range(ranges + 1)]
+    return list(itertools.pairwise(edges))
