@@ -185,6 +185,11 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan) -> 
     chunk = Chunk(plan, kinds)
     pages = np.zeros((plan.pages[1] - plan.pages[0], 4), np.uint32)
     pages[:, :3] = np.asarray(fiblets.pages[plan.pages[0] : plan.pages[1]]) - [0, plan.codes[0], plan.points[0]]
+    n_pages, first_rank = len(pages), 0
+    if (ids := fiblets.rank_to_id) is not None and n:
+        first_rank, last_rank = rank_of(fiblets, first), rank_of(fiblets, last - 1)
+        ranks = np.asarray(ids[first_rank : last_rank + 1]).astype(np.uint32)
+        pages = np.concatenate([pages, np.resize(ranks, (-(-len(ranks) // 4), 4))])
     arrays: dict[str, Callable[[], npt.NDArray[Any]]] = {
         "anchors": lambda: _with_next(fiblets.anchors, first, last),
         "reach": lambda: np.asarray(fiblets.reach[first:last]),
@@ -192,15 +197,11 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan) -> 
         "codes": lambda: np.concatenate([fiblets.codes[plan.codes[0] : plan.codes[1]], np.zeros(4, np.uint8)]),
         "pages": lambda: pages,
     }
-    first_rank = 0
     if (low := fiblets.anchors_low) is not None:
         arrays["anchors_low"] = lambda: _with_next(low, first, last)
-    if (ids := fiblets.rank_to_id) is not None and n:
-        first_rank, last_rank = rank_of(fiblets, first), rank_of(fiblets, last - 1)
-        arrays["rank_to_id"] = lambda: np.asarray(ids[first_rank : last_rank + 1]).astype(np.uint32)
     block = np.zeros(12, np.uint32)
     block[:3] = n, first, points_before(fiblets, first)
-    block[4] = first_rank
+    block[4], block[6] = first_rank, n_pages
     with _all_or_nothing(chunk):
         for name, array in arrays.items():
             chunk.buffers[name] = storage_buffer(ctx, array(), name)

@@ -95,6 +95,11 @@ class FibletRenderer:
     def _upload(self, max_buffer_bytes: int, max_total_bytes: int | None, progress: bool) -> None:
         fiblets = self._fiblets
         plans = plan_chunks(fiblets, max_buffer_bytes)
+        if fiblets.n_fiblets > max_buffer_bytes:  # the pipeline's marks: a byte for each, in one buffer
+            raise EngineError(
+                f"{fiblets.n_fiblets} fiblets are more than the {max_buffer_bytes} for which this OpenGL's largest "
+                "buffer keeps a byte each; draw fewer streamlines"
+            )
         needed = sum(plan.nbytes for plan in plans)
         limits = [n for n in (max_total_bytes, available_memory(self._ctx)) if n is not None]
         if limits and needed > min(limits):

@@ -36,7 +36,7 @@ __all__ = ["ValueSources"]
 
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
 BATCH = 1 << 16  # fiblets measured at a time: 3 MB
-MEASURE_BINDINGS = {"anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "anchors_low": 8}
+MEASURE_BINDINGS = {"anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "anchors_low": 6}
 GROUP_SIZE = 64
 
 Floats = npt.NDArray[np.float64]
@@ -184,7 +184,7 @@ class ValueSources:
         rows = np.empty((chunk.n_fiblets, 12), "<f4")
         scratch = storage_buffer(self._ctx, bytes(min(BATCH, chunk.n_fiblets) * 48), "measures")
         try:
-            scratch.bind_to_storage_buffer(12)
+            scratch.bind_to_storage_buffer(5)
             for first in range(0, chunk.n_fiblets, BATCH):
                 size = min(BATCH, chunk.n_fiblets - first)
                 program["batch_first"], program["batch_size"] = first, size

@@ -6,11 +6,8 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
-layout(std430, binding = 12) readonly buffer Seen { uint seen[]; };
-#if FEATURE_RANK_TO_ID
-layout(std430, binding = 9) readonly buffer RankToId { uint rank_to_id[]; };
-#endif
+#include "compute/marks.glsl"
+
 layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = 1) readonly uniform uimage2D owner_image;
 layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
@@ -19,7 +16,7 @@ layout(rg32f, binding = 3) writeonly uniform image2D position_image;
 uniform uint part;  // of the plan: which class
 
 uint bits_of(uint word) {
-    return seen[word] & (plan[word * 6u + part] | plan[word * 6u + part + 3u]);
+    return marks[word * 8u + SEEN] & (marks[word * 8u + part] | marks[word * 8u + part + 3u]);
 }
 
 #include "compute/bits.glsl"

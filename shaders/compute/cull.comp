@@ -19,10 +19,8 @@ layout(local_size_x = {{ group_size }}) in;
 #include "decode/record.glsl"
 #include "frame/clip_planes.glsl"
 
-layout(std430, binding = 5) readonly buffer Reach { uint reaches[]; };  // two uint16 a word
-layout(std430, binding = 6) writeonly buffer Plan { uint plan[]; };     // classes 0, 1, 2 of the seen, then of the others
-layout(std430, binding = 7) writeonly buffer Candidates { uint candidates[]; };
-layout(std430, binding = 12) buffer Seen { uint seen[]; };
+layout(std430, binding = 2) readonly buffer Reach { uint reaches[]; };  // two uint16 a word
+#include "compute/marks.glsl"
 
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
@@ -45,14 +43,14 @@ void main() {
         if (edges < radius + guard.z) crossing |= 1u << i;
         if (depths < radius + guard.z) crossing_depth |= 1u << i;
     }
-    word += chunk.y >> 5u;
-    uint before = seen[word];
+    word = ((chunk.y >> 5u) + word) * 8u;
+    uint before = marks[word + SEEN];
     for (uint part = 0u; part < 6u; part += 3u) {
         uint these = shown & (part == 0u ? before : ~before);
-        plan[word * 6u + part] = these & ~crossing & ~crossing_depth;
-        plan[word * 6u + part + 1u] = these & crossing & ~crossing_depth;
-        plan[word * 6u + part + 2u] = these & crossing_depth;
+        marks[word + part] = these & ~crossing & ~crossing_depth;
+        marks[word + part + 1u] = these & crossing & ~crossing_depth;
+        marks[word + part + 2u] = these & crossing_depth;
     }
-    candidates[word] = 0u;
-    seen[word] = 0u;
+    marks[word + CANDIDATES] = 0u;
+    marks[word + SEEN] = 0u;
 }

@@ -9,13 +9,13 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
-layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
+#include "compute/marks.glsl"
+
 layout(r32ui, binding = 0) coherent uniform uimage2D depth_image;
 
 uniform uint part;  // of the plan
 
-uint bits_of(uint word) { return plan[word * 6u + part]; }
+uint bits_of(uint word) { return marks[word * 8u + part]; }
 
 #include "compute/bits.glsl"
 
@@ -35,6 +35,6 @@ void main() {
         if (f == NO_FIBLET) break;
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(candidates[(chunk.y + f) >> 5], 1u << (f & 31u));
+        if (won) atomicOr(marks[((chunk.y + f) >> 5) * 8u + CANDIDATES], 1u << (f & 31u));
     }
 }

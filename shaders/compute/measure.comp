@@ -15,7 +15,7 @@ struct Measure {
     vec4 turns;   // x, y: least and greatest turn between the first and the last point; z: the first of them
 };
 
-layout(std430, binding = 12) writeonly buffer Measures { Measure measures[]; };
+layout(std430, binding = 5) writeonly buffer Measures { Measure measures[]; };
 
 uniform uint batch_first;
 uniform uint batch_size;

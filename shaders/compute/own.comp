@@ -12,16 +12,15 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
-layout(std430, binding = 6) readonly buffer Plan { uint plan[]; };
-layout(std430, binding = 7) readonly buffer Candidates { uint candidates[]; };
-layout(std430, binding = 12) buffer Seen { uint seen[]; };
+#include "compute/marks.glsl"
+
 layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
 
 uniform uint part;  // of the plan: which class
 
 uint bits_of(uint word) {
-    return candidates[word] & (plan[word * 6u + part] | plan[word * 6u + part + 3u]);
+    return marks[word * 8u + CANDIDATES] & (marks[word * 8u + part] | marks[word * 8u + part + 3u]);
 }
 
 #include "compute/bits.glsl"
@@ -45,6 +44,6 @@ void main() {
         owner = chunk.y + f;
         kept = false;
         draw_fiblet(f);
-        if (kept) atomicOr(seen[owner >> 5], 1u << (f & 31u));
+        if (kept) atomicOr(marks[(owner >> 5) * 8u + SEEN], 1u << (f & 31u));
     }
 }

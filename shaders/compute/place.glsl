@@ -7,7 +7,7 @@
 uint streamline_of(uint f) {
     uint rank = rank_of(f);
 #if FEATURE_RANK_TO_ID
-    return rank_to_id[rank - chunk_bases.x];
+    return id_of_rank(rank);
 #else
     return rank;
 #endif

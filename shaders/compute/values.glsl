@@ -8,7 +8,7 @@
 // pvfiblets/engine/values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
 
 #if FEATURE_VALUES_STORED
-layout(std430, binding = 10) readonly buffer Values { uint values[]; };
+layout(std430, binding = 7) readonly buffer Values { uint values[]; };
 
 uint values_first;
 uint values_last;  // index within the fiblet of the last point that a segment of it reaches
@@ -35,7 +35,7 @@ float value_at(uint segment, float t) {
 }
 
 #elif FEATURE_VALUES_ARC_LENGTH
-layout(std430, binding = 11) readonly buffer Starts { float starts[]; };
+layout(std430, binding = 7) readonly buffer Starts { float starts[]; };
 
 float arc_from;
 float arc_to;
@@ -52,7 +52,7 @@ float value_at(uint segment, float t) { return mix(arc_from, arc_to, t); }
 #elif FEATURE_VALUES_CURVATURE
 #include "compute/turn.glsl"
 
-layout(std430, binding = 11) readonly buffer Starts { float starts[]; };
+layout(std430, binding = 7) readonly buffer Starts { float starts[]; };
 
 float curvatures[FIBLET_MAX_POINTS + 1u];
 

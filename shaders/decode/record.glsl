@@ -8,8 +8,15 @@
 
 layout(std430, binding = 0) readonly buffer Anchors { uvec2 anchors[]; };
 layout(std430, binding = 4) readonly buffer Pages { uvec4 pages[]; };  // x: rank, y: code, z: point of a page's first
+#if FEATURE_RANK_TO_ID
+// Streamlines by rank stand behind the pages, four a row.
+uint id_of_rank(uint rank) {
+    uint index = rank - chunk_bases.x;
+    return pages[chunk_bases.z + (index >> 2)][index & 3u];
+}
+#endif
 #if FEATURE_ANCHORS_LOW
-layout(std430, binding = 8) readonly buffer AnchorsLow { uint anchors_low[]; };  // three uint16 a fiblet
+layout(std430, binding = 6) readonly buffer AnchorsLow { uint anchors_low[]; };  // three uint16 a fiblet
 uint anchor_low(uint index) { return bitfieldExtract(anchors_low[index >> 1], int(index & 1u) * 16, 16); }
 #endif
 

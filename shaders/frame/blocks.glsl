@@ -23,7 +23,7 @@ layout(std140, binding = 1) uniform Coding {
 
 layout(std140, binding = 2) uniform Chunk {
     uvec4 chunk;           // x: fiblets here, y: index of the first, z: points of its streamline before it
-    uvec4 chunk_bases;     // x: first rank here, y: bits per stored value
+    uvec4 chunk_bases;     // x: first rank here, y: bits per stored value, z: pages here
     vec4 chunk_values;     // x: value of code 0, y: value per code
 };
 

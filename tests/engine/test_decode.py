@@ -15,7 +15,7 @@ SEQUENTIAL = """
 #version 430
 layout(local_size_x = 64) in;
 #include "decode/sequential.glsl"
-layout(std430, binding = 12) writeonly buffer Out { float points[]; };
+layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void put(uint f, uint i) { for (int a = 0; a < 3; ++a) points[(f * 64u + i) * 3u + a] = walk_point[a]; }
 void main() {
     uint f = group_index() * 64u + gl_LocalInvocationIndex;
@@ -29,7 +29,7 @@ PARALLEL = """
 #version 430
 layout(local_size_x = 32) in;
 #include "decode/parallel.glsl"
-layout(std430, binding = 12) writeonly buffer Out { float points[]; };
+layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void main() {
     uint f = group_index();
     if (f >= chunk.x) return;
@@ -57,7 +57,7 @@ def decoded_by_shader(gl, fiblets, source, threads):
             chunk.buffers[name].bind_to_storage_buffer(binding)
     renderer._bind_shared()
     chunk.buffers["chunk"].bind_to_uniform_block(2)
-    out.bind_to_storage_buffer(12)
+    out.bind_to_storage_buffer(5)
     program.run(-(-fiblets.n_fiblets // threads))
     gl.memory_barrier(moderngl.ALL_BARRIER_BITS)
     points = np.frombuffer(out.read(fiblets.n_fiblets * 64 * 12), "<f4").reshape(-1, 64, 3)

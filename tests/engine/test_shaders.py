@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -87,3 +88,17 @@ def test_older_opengl_is_refused_plainly():
     if "4.1" not in done.stdout and not done.stdout:
         pytest.skip("this OpenGL is not Mesa: its version cannot be lowered")
     assert done.stdout.startswith("drawing fiblets needs OpenGL 4.3, found 4.1")
+
+
+@pytest.mark.parametrize("stage", ["clear", "cull", "depth", "own", "attributes", "measure"])
+@pytest.mark.parametrize("value", ["VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE"])
+def test_storage_buffers_are_no_more_than_opengl_promises(gl, stage, value):
+    """Eight bindings, 0 to 7: asked of the driver for a program with everything on."""
+    features = (set(FEATURES) - {f for f in FEATURES if f.startswith("VALUES_")}) | {value}
+    source = assemble(f"compute/{stage}.comp", features, CONSTANTS)
+    bindings = [int(n) for n in re.findall(r"std430, binding = (\d+)", source)]
+    assert all(n < 8 for n in bindings)
+    program = gl.compute_shader(source)
+    blocks = [m for m in (program[name] for name in program) if type(m).__name__ == "StorageBlock"]
+    program.release()
+    assert len(blocks) <= 8

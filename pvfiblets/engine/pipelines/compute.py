@@ -48,13 +48,13 @@ BINDINGS = {
     "decoding": 1,
     "codes": 2,
     "pages": 4,
-    "reach": 5,
-    "anchors_low": 8,
-    "rank_to_id": 9,
-    "values": 10,
-    "starts": 11,
+    "reach": 2,
+    "anchors_low": 6,
+    "values": 7,
+    "starts": 7,
 }
-"""Storage bindings of a chunk's buffers; 3 is the direction table, 6, 7 and 12 are the pipeline's own."""
+"""Storage bindings of a chunk's buffers; 3 is the direction table, 5 the pipeline's own. OpenGL promises eight: those
+that no pass reads together share a number."""
 
 SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
@@ -68,7 +68,7 @@ _READS = {
     "cull": frozenset({"anchors", "pages", "reach", "anchors_low"}),
     "depth": _DECODING,
     "own": _DECODING,
-    "attributes": _DECODING | {"rank_to_id", "values", "starts"},
+    "attributes": _DECODING | {"values", "starts"},
 }
 
 
@@ -87,7 +87,7 @@ class ComputePipeline:
     Attributes
     ----------
     buffers : dict of str to moderngl.Buffer
-        ``plan`` (six bits per fiblet), ``candidates`` and ``seen`` (one each).
+        ``marks``, eight bits per fiblet: see ``shaders/compute/marks.glsl``.
     """
 
     def __init__(self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, max_groups: int) -> None:
@@ -98,8 +98,7 @@ class ComputePipeline:
         self._shares = [(0, MAX_POINTS)]
         words = -(-n_fiblets // 32)
         self.buffers: dict[str, moderngl.Buffer] = {}
-        for name, width in (("plan", 6), ("candidates", 1), ("seen", 1)):
-            self.buffers[name] = storage_buffer(ctx, np.zeros(words * width, np.uint32), name)
+        self.buffers["marks"] = storage_buffer(ctx, np.zeros(words * 8, np.uint32), "marks")
 
     def draw(
         self,
@@ -134,8 +133,7 @@ class ComputePipeline:
             self._shares = _shares(line_width, segment)
         for index, texture in enumerate((target.depth, target.owner, target.ids, target.position)):
             texture.bind_to_image(index, read=True, write=True)
-        for name, binding in (("plan", 6), ("candidates", 7), ("seen", 12)):
-            self.buffers[name].bind_to_storage_buffer(binding)
+        self.buffers["marks"].bind_to_storage_buffer(5)
         plain = [feature for feature in features if feature not in (*CLIPPING, CLIP_PLANES)]
         planes = [CLIP_PLANES] if CLIP_PLANES in features else []
         # One program for each class of fiblets that cull.comp tells apart; without clipping there is only the first.
