@@ -117,11 +117,11 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
             precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = a.z + (b.z - a.z) * s;
-            if (foot < least || dot(away, away) > r * r) continue;
+            bool covered = foot >= least && dot(away, away) <= r * r;
 #if FEATURE_CLIP_PLANES
-            if (!brush_kept(s, steep ? away.yx : away)) continue;
+            covered = covered && brush_kept(s, steep ? away.yx : away);
 #endif
-            plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
+            if (covered) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
         }
     }
 }

@@ -1,6 +1,7 @@
 // The G-buffer of the engine, read by VTK's own polydata shader.
 //
-// VTK draws one triangle that covers the viewport. Every fragment fetches its own texel:
+// VTK draws two triangles that cover the rectangle of the viewport in which fiblets can be: pixels outside it cost
+// nothing. Every fragment fetches its own texel:
 //
 //   fibletDepthMap     r32ui   window depth * 4294967295, 0xFFFFFFFF where no fiblet was drawn
 //   fibletIdMap        rg32ui  streamline id | unit tangent, data coordinates, octahedral, 2 x 16 bit
@@ -15,9 +16,15 @@
 //
 // Sections: "//@ stage where TAG"; where = before | after | instead of VTK's tag.
 
+//@ vertex after //VTK::CustomUniforms::Dec
+uniform vec4 fibletRectangle;      // left, lower, right, upper in [-1, 1]
+
 //@ vertex instead //VTK::PositionVC::Impl
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-  // Vertices 3 to 5 are the second triangle of the proxy, which is there for the bounds: no area.
+  // Counter-clockwise: 0 lower left, 1 lower right, 2 upper left; 3 upper right, 4 upper left, 5 lower right.
+  bool fibletRight = gl_VertexID == 1 || gl_VertexID == 3 || gl_VertexID == 5;
+  bool fibletUpper = gl_VertexID >= 2 && gl_VertexID <= 4;
+  gl_Position = vec4(fibletRight ? fibletRectangle.z : fibletRectangle.x,
+                     fibletUpper ? fibletRectangle.w : fibletRectangle.y, 0.0, 1.0);
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform usampler2D fibletDepthMap;
