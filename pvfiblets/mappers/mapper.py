@@ -233,7 +233,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
-        self._set_uniforms(program, frame)
+        self._set_uniforms(program, frame, style)
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
@@ -270,10 +270,13 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             textures[name] = slot.list_texture(name, colouring, pixels, context.ctx)
         return textures
 
-    def _set_uniforms(self, program: Any, frame: Frame) -> None:
+    def _set_uniforms(self, program: Any, frame: Frame, style: Style) -> None:
         x, y, width, height = frame.viewport
         program.SetUniform2i("fibletOrigin", (x, y))
         program.SetUniform2i("fibletSize", (width, height))
+        # Decoded points may lie outside the bounds, by as much as the promise.
+        rectangle = frame.rectangle(self._fiblets.bounds, self._fiblets.promise, style.line_width / 2.0 + 2.0)
+        program.SetUniform4f("fibletRectangle", rectangle)
         # VTK takes matrices column by column here.
         program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())
         program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())

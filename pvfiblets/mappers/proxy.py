@@ -9,10 +9,10 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 
 def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
-    """Return two triangles that have the given bounds and cover nothing.
+    """Return two triangles that have the given bounds and cover nothing until the vertex shader places them.
 
     ``reset_camera``, the clipping range and VTK's frustum culling take the bounds from them; the vertex
-    shader spreads the first over the viewport and leaves the second without area. One sits with all its
+    shader spreads them over the part of the viewport that the bounds cover. One sits with all its
     vertices in the least corner of the bounds, the other in the greatest, so that no picker that
     intersects geometry finds a surface or an edge in mid-air.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -66,6 +66,36 @@ class Frame:
         linear = self.model_view[:3, :3]
         scaled: Matrix = linear / np.abs(linear).max()
         return scaled
+
+    def rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[float, float, float, float]:
+        """Return the part of the viewport in which anything within bounds can be seen.
+
+        Parameters
+        ----------
+        bounds : sequence of float
+            xmin, xmax, ymin, ymax, zmin, zmax in data mm.
+        slack : float
+            How far, in mm, things may lie outside the bounds.
+        margin : float
+            Pixels to add on each side.
+
+        Returns
+        -------
+        tuple of float
+            Left, lower, right, upper, within [-1, 1]; all of the viewport where a corner of the bounds is beside or
+            behind the camera.
+        """
+        ends = [(bounds[i] - slack, bounds[i + 1] + slack) for i in (0, 2, 4)]
+        corners = np.array([[x, y, z, 1.0] for x in ends[0] for y in ends[1] for z in ends[2]])
+        clip = corners @ self.model_view_projection.T
+        w = clip[:, 3]
+        if not np.isfinite(clip).all() or w.min() <= 1e-6 * w.max():
+            return -1.0, -1.0, 1.0, 1.0
+        place = clip[:, :2] / w[:, None]
+        pad = 2.0 * margin / np.array(self.viewport[2:], dtype=np.float64)
+        left, lower = np.clip(place.min(axis=0) - pad, -1.0, 1.0)
+        right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
+        return float(left), float(lower), float(right), float(upper)
 
     def planes_in_data(self, planes: Matrix) -> Matrix:
         """Return (k, 4) world planes in data coordinates."""

@@ -107,6 +107,7 @@ class PlainFiblets:
     points: np.ndarray
     offsets: np.ndarray
     values: np.ndarray | None = None
+    promise: float = 0.0
 
     @property
     def n_streamlines(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkRenderer, vtkRenderWindow
 
 from pvfiblets.mappers.scene import frame_of, renderers_of
@@ -87,3 +88,38 @@ def test_renderers_are_found_through_assemblies():
     assert list(renderers_of(actor)) == [renderer]
     renderer.RemoveActor(assembly)
     assert list(renderers_of(actor)) == []
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_the_rectangle_holds_every_point_and_little_else(parallel: bool) -> None:
+    rng = np.random.default_rng(5)
+    bounds = (-3.0, 5.0, 10.0, 11.0, -2.0, 2.0)
+    points = np.array([[x, y, z] for x in bounds[:2] for y in bounds[2:4] for z in bounds[4:]])
+    for _ in range(50):
+        plotter = pv.Plotter(off_screen=True, window_size=(400, 300))
+        plotter.camera.position = 30.0 * rng.normal(size=3) / 1.7 + (0, 10, 0)
+        plotter.camera.focal_point = rng.uniform(-3, 3, 3) + (0, 10, 0)
+        plotter.camera.up = rng.normal(size=3)
+        plotter.camera.parallel_projection = parallel
+        plotter.renderer.SetActiveCamera(plotter.camera)
+        frame = frame_of(plotter.renderer, pv.Actor(), (0, 0, 400, 300))
+        left, lower, right, upper = frame.rectangle(bounds, 0.0, 2.0)
+        clip = np.c_[points, np.ones(8)] @ frame.model_view_projection.T
+        plotter.close()
+        if clip[:, 3].min() <= 0:
+            assert (left, lower, right, upper) == (-1, -1, 1, 1)
+            continue
+        place = np.clip(clip[:, :2] / clip[:, 3:], -1, 1)
+        slack = 1.01 * 4.0 / np.array([400, 300])
+        assert (place.min(0) >= (left, lower)).all()
+        assert (place.max(0) <= (right, upper)).all()
+        assert (place.min(0) - (left, lower) <= slack).all()
+        assert ((right, upper) - place.max(0) <= slack).all()
+
+
+def test_a_camera_among_the_bounds_takes_the_whole_viewport() -> None:
+    plotter = pv.Plotter(off_screen=True, window_size=(400, 300))
+    plotter.camera.position, plotter.camera.focal_point = (0, 0, 0), (0, 0, -1)
+    frame = frame_of(plotter.renderer, pv.Actor(), (0, 0, 400, 300))
+    assert frame.rectangle((-1, 1, -1, 1, -1, 1), 0.0, 2.0) == (-1, -1, 1, 1)
+    plotter.close()
