@@ -87,14 +87,11 @@ class Survey:
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
-        self._take(_segments(points, streamlines.offsets, self.stride))
-
-    def _take(self, lengths: Vector) -> None:
-        """Add to the sample; when it is full, keep every other length, and take half as many from then on."""
-        self.sample.append(lengths)
-        while sum(len(part) for part in self.sample) > SAMPLE:
-            self.sample = [np.concatenate(self.sample)[::2].copy()]
+        # The sample stays evenly taken: when it would overflow, every other length goes and half as many come then.
+        while self.n_points > self.stride * SAMPLE:
+            self.sample = [part[::2].copy() for part in self.sample]
             self.stride *= 2
+        self.sample.append(_segments(points, streamlines.offsets, self.stride))
 
 
 def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], stride: int) -> Vector:
