@@ -37,7 +37,7 @@ def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
     least, greatest = np.array(bounds[0::2], dtype=np.float64), np.array(bounds[1::2], dtype=np.float64)
     extent = greatest - least
     # At least some units in the last place, so that the vertices differ however far from the origin they are.
-    apart = np.maximum(1e-9 * extent.max(), 8.0 * np.spacing(np.maximum(np.abs(least), np.abs(greatest))))
+    apart = np.maximum(max(1e-9 * extent.max(), 1e-12), 8.0 * np.spacing(np.maximum(np.abs(least), np.abs(greatest))))
     triangles = vtkCellArray()
     for first, corner, inwards in ((0, least, apart), (3, greatest, -apart)):
         for vertex in range(3):
