@@ -135,6 +135,18 @@ def test_verify_finds_a_flipped_bit_a_moved_point_and_another_original(compresse
     assert "damaged.fiblets" in fails(capsys, "verify", damaged, tractogram[0])
 
 
+def test_verify_alone_finds_a_changed_byte_that_leaves_sense(compressed, tmp_path, capsys):
+    """A direction code may be any byte: only the checksum knows."""
+    from pvfiblets.codec.fibletset import FibletSet
+
+    codes = FibletSet.open(compressed).codes
+    data = bytearray(compressed.read_bytes())
+    data[codes.offset + len(codes) // 2] ^= 1
+    changed = tmp_path / "changed.fiblets"
+    changed.write_bytes(data)
+    assert "changed bytes in codes.npy" in fails(capsys, "verify", changed)
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
