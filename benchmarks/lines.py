@@ -223,7 +223,12 @@ def machine() -> dict:
     with context:
         gl = {key: context.info[key] for key in ("GL_RENDERER", "GL_VERSION")}
     context.release()
-    return {**gl, "cpus": os.cpu_count(), "system": f"{platform.system()} {platform.machine()}", "vtk": vtk.vtkVersion().GetVTKVersion()}
+    return {
+        **gl,
+        "cpus": os.cpu_count(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "vtk": vtk.vtkVersion().GetVTKVersion(),
+    }
 
 
 def row(result: dict) -> str:
