@@ -23,6 +23,8 @@ lint: environment
 
 fuzz: environment
 	$(BIN)/python -m pytest -m hypothesis --hypothesis-profile=fuzz --timeout=3600
+	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/formats/test_fuzz.py --timeout=3600
+	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/codec/test_storage.py -k mutated --timeout=3600
 
 bench: environment gl
 	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json

@@ -130,6 +130,7 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
         NotImplementedError,
         RuntimeError,
         struct.error,
+        EOFError,
         OSError,
     ) as error:
         # Offsets of a damaged directory make seeking fail with EINVAL; a missing file is its own error.

@@ -188,6 +188,8 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         stop = fiblets.n_streamlines
         if b < n:
             stop = last_rank if fiblets.rank_to_id is None else int(fiblets.rank_to_id[last_rank])
+        if not first_id <= stop <= fiblets.n_streamlines:  # numbers from a damaged file must not size an array
+            raise IndexError(f"streamlines {first_id} to {stop}, in a set of {fiblets.n_streamlines}")
         lengths = np.zeros(stop - first_id, np.int64)
         lengths[np.asarray(ids) - first_id] = per_rank
         points = np.empty((int(counts.sum()), 3), kind)

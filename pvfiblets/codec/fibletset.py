@@ -173,7 +173,11 @@ class FibletSet:
     def fiblet_streamlines(self) -> npt.NDArray[np.int64]:
         """``(n_fiblets,)`` index of each fiblet's streamline."""
         ranks = self.fiblet_ranks()
-        return ranks if self.rank_to_id is None else self.rank_to_id[ranks]
+        ids = ranks if self.rank_to_id is None else self.rank_to_id[ranks]
+        # Numbers from a damaged file must not size an array.
+        if len(ids) and not 0 <= int(ids.min()) <= int(ids.max()) < self.n_streamlines:
+            raise IndexError(f"fiblets of streamlines {ids.min()} to {ids.max()}, in a set of {self.n_streamlines}")
+        return ids
 
     def fiblet_points(self) -> npt.NDArray[np.int64]:
         """``(n_fiblets,)`` index of each fiblet's first point among all points."""
