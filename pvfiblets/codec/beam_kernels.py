@@ -24,6 +24,8 @@ from .kernels import (
     first_frame,
     pack_direction,
     quantise,
+    take_points,
+    turn,
 )
 from .layout import MAX_POINTS, STEP_LEVELS
 
@@ -114,9 +116,7 @@ def _beam(
             s, code = int(fresh[k, 8]), int(fresh[k, 9])
             parents[i, k], chosen[i, k] = s, code
             w, x, y, z = states[s, 3], states[s, 4], states[s, 5], states[s, 6]
-            tw, tx, ty, tz = table[code, 0], table[code, 1], table[code, 2], table[code, 3]
-            qw, qx = w * tw - x * tx - y * ty - z * tz, w * tx + x * tw + y * tz - z * ty
-            qy, qz = w * ty - x * tz + y * tw + z * tx, w * tz + x * ty - y * tx + z * tw
+            qw, qx, qy, qz = turn(w, x, y, z, table[code])
             fresh[k, 0] = states[s, 0] + step * (1.0 - 2.0 * (qy * qy + qz * qz))
             fresh[k, 1] = states[s, 1] + step * (2.0 * (qx * qy + qw * qz))
             fresh[k, 2] = states[s, 2] + step * (2.0 * (qx * qz - qw * qy))
@@ -141,13 +141,7 @@ def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, de
     worst = (true[0, 0] - px) ** 2 + (true[0, 1] - py) ** 2 + (true[0, 2] - pz) ** 2
     for i in range(1, n):
         if i > 1:
-            t = quats[cap, codes[i - 2]]
-            w, x, y, z = (
-                w * t[0] - x * t[1] - y * t[2] - z * t[3],
-                w * t[1] + x * t[0] + y * t[3] - z * t[2],
-                w * t[2] - x * t[3] + y * t[0] + z * t[1],
-                w * t[3] + x * t[2] - y * t[1] + z * t[0],
-            )
+            w, x, y, z = turn(w, x, y, z, quats[cap, codes[i - 2]])
             dx, dy, dz = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
         px, py, pz = px + step * dx, py + step * dy, pz + step * dz
         decoded[i, 0], decoded[i, 1], decoded[i, 2] = px, py, pz
@@ -173,9 +167,7 @@ def encode_directions(
         scratch = (anchor, states, fresh, parents, chosen)
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
-            for i in range(n):
-                for axis in range(3):
-                    true[i, axis] = np.float64(points[first + i, axis]) - origin[axis]
+            take_points(points, origin, first, n, true)
             for axis in range(3):
                 anchor[axis] = scale[axis] * quantise(true[0, axis], scale[axis], top)
                 decoded[0, axis] = anchor[axis]

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from .jit import kernel, parallel_kernel
-from .kernels import first_frame
+from .kernels import first_frame, turn
 from .layout import DIRECTION, PAGE_BITS, STEP_LEVELS, WIDE, WIDE_HEADER
 
 __all__ = ["decode"]
@@ -27,13 +27,7 @@ def _decode_direction(
     p[1, 0], p[1, 1], p[1, 2] = ax + origin[0], ay + origin[1], az + origin[2]
     for i in range(2, n):
         code = codes[at + i - 2]
-        tw, tx, ty, tz = table[code, 0], table[code, 1], table[code, 2], table[code, 3]
-        w, x, y, z = (
-            w * tw - x * tx - y * ty - z * tz,
-            w * tx + x * tw + y * tz - z * ty,
-            w * ty - x * tz + y * tw + z * tx,
-            w * tz + x * ty - y * tx + z * tw,
-        )
+        w, x, y, z = turn(w, x, y, z, table[code])
         ax += step * (1.0 - 2.0 * (y * y + z * z))
         ay += step * (2.0 * (x * y + w * z))
         az += step * (2.0 * (x * z - w * y))

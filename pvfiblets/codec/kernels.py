@@ -16,7 +16,7 @@ from .jit import kernel, parallel_kernel
 from .layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .nearest import CELLS, EXTENT
 
-__all__ = ["encode_directions", "first_frame", "pack_direction", "quantise", "scan"]
+__all__ = ["encode_directions", "first_frame", "pack_direction", "quantise", "scan", "take_points", "turn"]
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
@@ -57,6 +57,25 @@ def quantise(value: float, scale: float, top: float) -> float:
     if scale <= 0.0:
         return 0.0
     return min(max(float(np.rint(value / scale)), 0.0), top)
+
+
+@kernel
+def take_points(points: Any, origin: Any, first: int, n: int, true: Any) -> None:
+    """Points ``first`` to ``first + n`` into ``true``, in float64 and from the origin."""
+    for i in range(n):
+        for axis in range(3):
+            true[i, axis] = np.float64(points[first + i, axis]) - origin[axis]
+
+
+@kernel
+def turn(w: float, x: float, y: float, z: float, t: Any) -> Any:
+    """Product of the frame ``(w, x, y, z)`` and a code's quaternion ``t``: the frame one step on."""
+    return (
+        w * t[0] - x * t[1] - y * t[2] - z * t[3],
+        w * t[1] + x * t[0] + y * t[3] - z * t[2],
+        w * t[2] - x * t[3] + y * t[0] + z * t[1],
+        w * t[3] + x * t[2] - y * t[1] + z * t[0],
+    )
 
 
 @kernel
@@ -168,13 +187,7 @@ def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: An
         l2 = ax * (2.0 * (x * z + w * y)) + ay * (2.0 * (y * z - w * x)) + az * (1.0 - 2.0 * (x * x + y * y))
         code = _nearest(l0, l1, l2, ratio, start, listed, reach)
         codes[i - 2] = code
-        tw, tx, ty, tz = table[code, 0], table[code, 1], table[code, 2], table[code, 3]
-        w, x, y, z = (
-            w * tw - x * tx - y * ty - z * tz,
-            w * tx + x * tw + y * tz - z * ty,
-            w * ty - x * tz + y * tw + z * tx,
-            w * tz + x * ty - y * tx + z * tw,
-        )
+        w, x, y, z = turn(w, x, y, z, table[code])
         px += step * (1.0 - 2.0 * (y * y + z * z))
         py += step * (2.0 * (x * y + w * z))
         pz += step * (2.0 * (x * z - w * y))
@@ -249,9 +262,7 @@ def encode_directions(
         trial = np.empty((2, MAX_POINTS), np.uint8)
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
-            for i in range(n):
-                for axis in range(3):
-                    true[i, axis] = np.float64(points[first + i, axis]) - origin[axis]
+            take_points(points, origin, first, n, true)
             for axis in range(3):
                 a = scale[axis] * quantise(true[0, axis], scale[axis], top)
                 decoded[0, 0, axis] = a

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from .jit import kernel, parallel_kernel
-from .kernels import quantise
+from .kernels import quantise, take_points
 from .layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
 
 __all__ = ["encode_lattices", "plan_lattices"]
@@ -152,9 +152,7 @@ def plan_lattices(
     for w in numba.prange(len(wanted)):
         first, n = slots[wanted[w], 0], slots[wanted[w], 1]
         true = np.empty((MAX_POINTS, 3))
-        for i in range(n):
-            for axis in range(3):
-                true[i, axis] = np.float64(points[first + i, axis]) - origin[axis]
+        take_points(points, origin, first, n, true)
         mine = cuts[first : first + n]
         pieces[w], size[w] = _plan(true, n, scale, top, h, mine)
 
@@ -233,9 +231,7 @@ def encode_lattices(
         more = 0 if end[slot] else 1
         true = np.empty((MAX_POINTS + 1, 3))
         decoded = np.empty((MAX_POINTS + 1, 3))
-        for i in range(n + more):
-            for axis in range(3):
-                true[i, axis] = np.float64(points[first + i, axis]) - origin[axis]
+        take_points(points, origin, first, n + more, true)
         nxt = np.empty(3)
         fiblet, byte = at[w, 0], at[w, 1]
         a = 0

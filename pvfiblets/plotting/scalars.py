@@ -96,7 +96,7 @@ def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | None) -> Scalar
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == "length":
-        return per_streamline("length", _lengths(fiblets), fiblets.n_streamlines)
+        return per_streamline("length", fiblets.lengths(), fiblets.n_streamlines)
     if scalars == "arc_length":
         longest = _longest(fiblets)
         return Scalars("arc_length", "point_value", None, (0.0, longest or 1.0), fiblets.step)
@@ -160,12 +160,6 @@ def per_streamline(name: str, values: Any, n_streamlines: int) -> Scalars:
     elif colours.size and (colours.min() < 0 or colours.max() > 255):
         raise ValueError(f"colours {name!r} must lie between 0 and 255")
     return Scalars(name, "streamline_rgb", np.ascontiguousarray(colours, dtype=np.uint8))
-
-
-def _lengths(fiblets: FibletSet) -> np.ndarray:
-    """Return the length of every streamline, mm, without ever holding all points."""
-    chunks = [chunk.lengths() for chunk in fiblets.iter_chunks()]
-    return np.concatenate(chunks) if chunks else np.zeros(0)
 
 
 def _longest(fiblets: FibletSet) -> float:
