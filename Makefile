@@ -8,12 +8,13 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo test lint fuzz bench wheel environment gl clean
+.PHONY: demo test lint fuzz bench wheel environment gl shaders clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
 
-test: environment gl lint
+test: export LEAST = 4.3
+test: environment gl shaders lint
 	$(BIN)/python -m pytest
 
 lint: environment
@@ -40,6 +41,9 @@ $(READY): pyproject.toml scripts/environment.sh
 
 gl: environment
 	@PYTHON=$(BIN)/python scripts/gl_libraries.sh
+
+shaders:
+	@scripts/shader_tools.sh
 
 clean:
 	rm -rf $(VENV) $(DEMO) dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis

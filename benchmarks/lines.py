@@ -125,7 +125,7 @@ def measure(way: str, path: str, frames: int, seconds: float) -> dict:
     times = orbit(plotter, frames, seconds)
     if gpu is None:
         report = actor.explain()
-        fixed = ("gbuffer",)  # the picture's own, whatever is drawn
+        fixed = ("gbuffer", "occlusion", "framebuffer")  # the picture's own, whatever is drawn
         gpu = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in fixed)
     picture = plotter.screenshot(None)
     plotter.close()

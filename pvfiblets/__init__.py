@@ -23,9 +23,12 @@ _HOME = {
     "write": "formats",
 }
 
-__all__ = ["__version__", *_HOME]
+_ROOMS = ("synthetic",)
+
+__all__ = ["__version__", *_HOME, *_ROOMS]
 
 if TYPE_CHECKING:
+    from . import synthetic
     from .codec.compress import compress
     from .codec.convert import compress_file
     from .codec.error import CodingError, measure_error
@@ -40,8 +43,10 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
         globals()[name] = value
         return value
+    if name in _ROOMS:
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME])
+    return sorted([*globals(), *_HOME, *_ROOMS])

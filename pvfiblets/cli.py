@@ -129,6 +129,14 @@ def make_parser() -> argparse.ArgumentParser:
     _scene(show)
     show.set_defaults(run="pvfiblets.cli_pictures:show")
 
+    gl = commands.add_parser(
+        "gl",
+        help="say what this machine's OpenGL is, and which pipelines can draw with it",
+        description="List the driver, its limits, and every pipeline: available, or why not.",
+    )
+    _json(gl)
+    gl.set_defaults(run="pvfiblets.cli_gl:gl")
+
     demo = commands.add_parser(
         "demo", help="make, compress and draw a whole-brain-like tractogram, and print size and error"
     )

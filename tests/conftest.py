@@ -66,6 +66,35 @@ def gl(_headless_context):
         assert _headless_context.error == "GL_NO_ERROR", "this test left an OpenGL error"
 
 
+# What OpenGL 4.1 lacks and Mesa lists as extensions however old it is told to be. Two more it will not take away,
+# texture_storage and direct_state_access: calls of those are not caught.
+NEWER_THAN_4_1 = (
+    "buffer_storage", "clear_texture", "compute_shader", "copy_image", "explicit_uniform_location",
+    "gpu_shader_int64", "indirect_parameters", "multi_draw_indirect", "shader_atomic_counters", "shader_ballot",
+    "shader_image_load_store", "shader_storage_buffer_object", "shading_language_420pack",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def older_opengl(_headless_context):
+    """Return a function: the environment in which Mesa's OpenGL is no newer than a version up to 4.1, for a subprocess.
+
+    MESA_GL_VERSION_OVERRIDE alone changes the number that is told and nothing else: compute shaders still compile and
+    run, so that a test under it shows nothing. The version of GLSL must be held down and extensions taken away too.
+    """
+    if "Mesa" not in _headless_context.info["GL_VERSION"]:
+        pytest.skip("only Mesa's OpenGL can be told to be older")
+
+    def environment(version: str) -> dict[str, str]:
+        return os.environ | {
+            "MESA_GL_VERSION_OVERRIDE": version,
+            "MESA_GLSL_VERSION_OVERRIDE": {"3.2": "150"}.get(version, version.replace(".", "") + "0"),
+            "MESA_EXTENSION_OVERRIDE": " ".join(f"-GL_ARB_{name}" for name in NEWER_THAN_4_1),
+        }
+
+    return environment
+
+
 @pytest.fixture(autouse=True)
 def _no_plotter_left_open():
     """Close what a failing test leaves open, so that it cannot spoil the next one."""

@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
+from ..formats.mapped import drop_pages
 
 __all__ = ["HEADER", "Member", "array_member", "check_members", "forget", "open_archive", "write_archive"]
 
@@ -182,14 +183,12 @@ def forget(array: npt.NDArray[Any], first: int, last: int) -> None:
 
     Without this a file that is streamed through its map ends up resident as a whole.
     """
-    if not isinstance(array, np.memmap) or not hasattr(mmap, "MADV_DONTNEED") or array.size == 0:
+    if not isinstance(array, np.memmap) or array.size == 0:
         return
     row = array.strides[0]
     start = array.offset % mmap.ALLOCATIONGRANULARITY  # the map begins at the page that holds the array's first byte
-    begin = -(-(start + first * row) // mmap.PAGESIZE) * mmap.PAGESIZE
-    length = (start + last * row) // mmap.PAGESIZE * mmap.PAGESIZE - begin
-    if length > 0:
-        array._mmap.madvise(mmap.MADV_DONTNEED, begin, length)  # type: ignore[attr-defined]  # noqa: SLF001
+    mapped = array._mmap  # type: ignore[attr-defined]  # noqa: SLF001  numpy has no other way to its map
+    drop_pages(mapped, start + first * row, (last - first) * row)
 
 
 def check_members(path: str | os.PathLike[str]) -> list[str]:

@@ -14,13 +14,14 @@ from typing import Any
 import numba
 import numpy as np
 
+from .capsule_kernels import capsule
 from .jit import kernel, parallel_kernel
 from .kernels import (
     BLOCK,
     _nearest,
-    _radius,
     _smallest_cap,
     _step_index,
+    anchor_of,
     first_frame,
     pack_direction,
     quantise,
@@ -151,10 +152,19 @@ def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, de
 
 @parallel_kernel
 def encode_directions(
-    points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
+    points: Any,
+    origin: Any,
+    slots: Any,
+    scale: Any,
+    top: float,
+    steps: Any,
+    promise: float,
+    end_scale: float,
+    tables: Any,
+    out: Any,
 ) -> None:
     """Try to code every slot with direction bytes, looking ahead; arguments as :func:`.kernels.encode_directions`."""
-    ok, shape, step_index, cap_index, radius, end, codes = out
+    ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise
     near = neighbours(tables[1])
@@ -198,4 +208,6 @@ def encode_directions(
                         codes[first + i] = trial[mine, i]
                     ok[slot] = 1 if _follow(true, n, step, used, tables[0], trial[mine], decoded) <= give_up else 0
             if ok[slot]:
-                radius[slot] = _radius(points, origin, scale, top, decoded, first, n, end[slot])
+                if not end[slot]:
+                    anchor_of(points, origin, first + n, scale, top, anchor)
+                radius[slot], end_words[slot] = capsule(decoded, 0, n, end[slot], anchor, end_scale)

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
-from .layout import DIRECTION, LATTICE8, MAX_POINTS, PAGE, WIDE, WIDE_HEADER, unpack
+from .capsules import capsule_ends
+from .layout import DIRECTION, END_BITS, LATTICE8, MAX_POINTS, PAGE, WIDE, WIDE_HEADER, unpack, unpack_ends
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
@@ -27,7 +28,7 @@ def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
 
 
 def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in memory") -> None:
-    """Check that records and pages agree with each other.
+    """Check that records and pages agree with each other, and that every fiblet lies within its capsule.
 
     Parameters
     ----------
@@ -64,15 +65,18 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
             ((unpack("kind", decoding) == WIDE) & ((width < 1) | (width > 4)), "codes of impossible width"),
             (np.append(False, begins[1:] != ends[:-1]), "begin and end marks that do not alternate"),
         ):
-            if bad.any():
-                fiblet = rows.start + int(np.flatnonzero(bad)[0])
-                raise FormatError(path, None, f"fiblet {fiblet} with {what}", "records as written: make the file again")
+            _refuse(path, rows.start, bad, what)
+        _check_capsules(fiblets, path, rows, counts, ranks, ends)
         point, rank = int(points[-1] + counts[-1]), int(ranks[-1])
+    if fiblets.ends.shape != (fiblets.n_ranks,) or (np.asarray(fiblets.ends) >> np.uint32(3 * END_BITS)).any():
+        raise FormatError(path, None, "end vectors that none would be", f"{fiblets.n_ranks} words of 30 bits")
     ids = fiblets.rank_to_id
-    if ids is not None and len(ids) and (ids[0] < 0 or ids[-1] >= fiblets.n_streamlines or (np.diff(ids) <= 0).any()):
-        raise FormatError(
-            path, None, "a rank_to_id that does not rise", f"streamlines 0..{fiblets.n_streamlines - 1} in order"
-        )
+    if ids is not None and len(ids):
+        rising = ids if fiblets.in_order else np.sort(ids)
+        if rising[0] < 0 or rising[-1] >= fiblets.n_streamlines or (np.diff(rising) == 0).any():
+            raise FormatError(
+                path, None, "a rank_to_id that names none or one twice", f"streamlines 0..{fiblets.n_streamlines - 1}"
+            )
     for name, members in fiblets.groups.items():
         if len(members) and not 0 <= int(np.min(members)) <= int(np.max(members)) < fiblets.n_streamlines:
             raise FormatError(path, None, f"group {name!r} with foreign streamlines", f"0..{fiblets.n_streamlines - 1}")
@@ -80,3 +84,44 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
         raise FormatError(
             path, None, f"records of {point} points, {rank + 1} streamlines", f"{fiblets.n_points}, {fiblets.n_ranks}"
         )
+
+
+def _refuse(path: str | PathLike[str], first: int, bad: npt.NDArray[np.bool_], what: str) -> None:
+    if bad.any():
+        fiblet = first + int(np.flatnonzero(bad)[0])
+        raise FormatError(path, None, f"fiblet {fiblet} with {what}", "records as written: make the file again")
+
+
+def _check_capsules(
+    fiblets: FibletSet,
+    path: str | PathLike[str],
+    rows: slice,
+    counts: npt.NDArray[np.int64],
+    ranks: npt.NDArray[np.int64],
+    ends: npt.NDArray[np.bool_],
+) -> None:
+    """Decode the fiblets of one page, and see that culling is told the truth about each."""
+    from .capsule_kernels import leaving
+    from .decompress import decode_fiblets
+
+    more = rows.stop < fiblets.n_fiblets  # the last chord ends at the next page's first anchor
+    which = np.arange(rows.start, rows.stop + more)
+    if more:
+        counts = np.append(counts, unpack("last", fiblets.decoding[rows.stop]).astype(np.int64) + 1)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    points = np.empty((int(starts[-1]), 3))
+    decode_fiblets(fiblets, which, starts[:-1], points)
+    points -= fiblets.origin  # away from the origin float64 would hold fewer digits of a chord than the encoder had
+    n = rows.stop - rows.start
+    anchors = points[starts[:n]]
+    owners = ranks[ends]
+    if owners.size and not 0 <= int(owners.min()) <= int(owners.max()) < len(fiblets.ends):
+        raise FormatError(path, None, f"end vectors of {len(fiblets.ends)} streamlines", f"of {int(owners.max()) + 1}")
+    vectors = unpack_ends(np.asarray(fiblets.ends[owners])) * fiblets.end_scale
+    chords = capsule_ends(anchors, ends, vectors, points[starts[n]] if more else None)
+    radius = np.asarray(fiblets.reach[rows]) * fiblets.reach_scale
+    slack = 8.0 * np.spacing(np.abs(points).max(initial=0.0) + np.abs(fiblets.origin).max())
+    _refuse(path, rows.start, leaving(points, starts[: n + 1], chords, radius + slack), "points outside its capsule")
+    spheres = 0.5 * np.sqrt(((chords - anchors) ** 2).sum(1)) + radius
+    too_large = spheres > fiblets.largest_radius + slack
+    _refuse(path, rows.start, too_large, "a capsule beyond the set's largest radius")

@@ -20,6 +20,7 @@ from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
+from .ordering import Order, check_order
 from .parameters import Parameters, survey
 from .quantised import QuantisedPoints
 from .resample import resample
@@ -35,6 +36,7 @@ def compress_file(
     step: float | Literal["auto"] = "auto",
     max_error: float | None = None,
     effort: Effort = "fast",
+    order: Order = "input",
     per_point: Sequence[str] = (),
     per_point_bits: int = 8,
     progress: bool = False,
@@ -51,6 +53,8 @@ def compress_file(
         A name ending in ``.fiblets``; it appears when it is whole.
     step, max_error, effort, per_point, per_point_bits
         As in :func:`pvfiblets.compress`.
+    order : {'input'}
+        Another order needs all streamlines at once, and is refused here.
     progress : bool
         Show a progress bar.
 
@@ -68,6 +72,12 @@ def compress_file(
         As :func:`pvfiblets.compress`.
     """
     started = time.perf_counter()
+    check_order(order)
+    if order != "input":
+        raise ValueError(
+            f"order is {order!r}, which needs all streamlines in memory; compress_file holds a part of them at a time: "
+            f"pvfiblets.compress(pvfiblets.read(source), order={order!r}).save(target) does it where memory suffices"
+        )
 
     def chunks() -> Iterator[Streamlines]:
         for chunk in formats.iter_chunks(source, CHUNK_POINTS):
@@ -82,7 +92,7 @@ def compress_file(
         whole = _Whole()
         for chunk in _shown(chunks(), found.n_points, "compressing", progress):
             records = encoder.add(chunk)
-            for name in ("anchors", "decoding", "reach", "codes", "anchors_low"):
+            for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
                 if getattr(records, name) is not None:
                     spool.add(f"{name}.npy", getattr(records, name))
             for name, values in quantise_chosen(chunk, found, per_point, per_point_bits).items():
@@ -103,6 +113,7 @@ def compress_file(
             decoding=np.empty((0, 3), np.uint32),
             reach=np.empty(0, np.uint16),
             codes=np.empty(0, np.uint8),
+            ends=np.empty(0, np.uint32),
             pages=pages,
             bounds=bounds_of(found),
             n_streamlines=encoder.n_streamlines,
@@ -253,6 +264,7 @@ class _Spool:
             ("decoding.npy", np.uint32, (0, 3)),
             ("reach.npy", np.uint16, (0,)),
             ("codes.npy", np.uint8, (0,)),
+            ("ends.npy", np.uint32, (0,)),
         ):
             if name not in self._shapes:
                 self.add(name, np.empty(shape, dtype))

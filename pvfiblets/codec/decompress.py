@@ -9,10 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
+from ..ragged import blocks
 from ..streamlines import Streamlines
 from . import decode_kernels
 from .archive import forget
 from .layout import MAX_POINTS, PAGE_BITS, unpack
+from .places import Places, places_of
 from .tables import quaternions
 
 if TYPE_CHECKING:
@@ -103,11 +105,12 @@ def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None 
 
 
 def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: np.dtype[Any]) -> Streamlines:
-    starts = fiblets.fiblet_points()
     meta: dict[str, Any] = {"affine": fiblets.affine, "space": dict(fiblets.space), "dropped": dict(fiblets.dropped)}
+    if chosen is None and not fiblets.in_order:
+        chosen = np.arange(fiblets.n_streamlines)
     if chosen is None:
         points = np.empty((fiblets.n_points, 3), kind)
-        decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), starts, points)
+        decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), fiblets.fiblet_points(), points)
         return Streamlines(
             points,
             fiblets.offsets(),
@@ -117,24 +120,29 @@ def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: 
             per_group={k: dict(v) for k, v in fiblets.per_group.items()},
             **meta,
         )
-    offsets = fiblets.offsets()
-    lengths = offsets[chosen + 1] - offsets[chosen]
+    return _take(fiblets, places_of(fiblets, chosen), chosen, kind, meta)
+
+
+def _take(
+    fiblets: FibletSet, places: Places, chosen: npt.NDArray[np.int64], kind: np.dtype[Any], meta: dict[str, Any]
+) -> Streamlines:
+    """Decode chosen streamlines, in the order given; ``places`` are theirs."""
+    lengths = places.points
     fresh = np.concatenate([[0], np.cumsum(lengths)])
     # Fiblets of the chosen streamlines, in their order: ranges of consecutive fiblets, laid end to end.
-    first = np.zeros(fiblets.n_streamlines + 1, np.int64)
-    first[1:] = np.cumsum(np.bincount(fiblets.fiblet_streamlines(), minlength=fiblets.n_streamlines))
-    n = first[chosen + 1] - first[chosen]
-    which = np.arange(n.sum()) + np.repeat(first[chosen] - (np.cumsum(n) - n), n)
-    shift = np.repeat(fresh[:-1] - offsets[chosen], n)
+    n = places.fiblets
+    which = np.arange(n.sum()) + np.repeat(places.fiblet - (np.cumsum(n) - n), n)
+    counts = unpack("last", fiblets.decoding[which]).astype(np.int64) + 1
     points = np.empty((int(fresh[-1]), 3), kind)
-    decode_fiblets(fiblets, which, starts[which] + shift, points)
-    rows = np.arange(int(fresh[-1])) + np.repeat(offsets[chosen] - fresh[:-1], lengths)
-    place = np.full(fiblets.n_streamlines, -1, np.int64)
-    place[chosen[::-1]] = np.arange(len(chosen))[::-1]
+    decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
+    rows = np.arange(int(fresh[-1])) + np.repeat(places.point - fresh[:-1], lengths)
     groups = {}
-    for name, members in fiblets.groups.items():
-        kept = place[np.asarray(members, np.int64)]
-        groups[name] = kept[kept >= 0]
+    if fiblets.groups:
+        place = np.full(fiblets.n_streamlines, -1, np.int64)
+        place[chosen[::-1]] = np.arange(len(chosen))[::-1]
+        for name, members in fiblets.groups.items():
+            kept = place[np.asarray(members, np.int64)]
+            groups[name] = kept[kept >= 0]
     return Streamlines(
         points,
         fresh,
@@ -167,7 +175,8 @@ def iter_chunks(
     """
     kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
     try:
-        yield from _iterate(fiblets, max_points, kind)
+        iterate = _iterate if fiblets.in_order else _iterate_out_of_order
+        yield from iterate(fiblets, max_points, kind)
     except (IndexError, ValueError):
         fiblets.verify()
         raise
@@ -212,6 +221,20 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         )
         _forget(fiblets, a, b, rows)
         a, first_id, first_point = b, stop, rows.stop
+
+
+def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:
+    """Streamlines in their own order, gathered from wherever they are coded."""
+    places = Places.of(fiblets)
+    for a, b in blocks(np.concatenate([[0], np.cumsum(places.points)]), max_points):
+        meta = {
+            "affine": fiblets.affine,
+            "space": dict(fiblets.space),
+            "dropped": dict(fiblets.dropped) if a == 0 else {},
+        }
+        chosen = np.arange(a, b)
+        yield _take(fiblets, places.at(chosen), chosen, kind, meta)
+        _forget(fiblets, 0, fiblets.n_fiblets - 1, slice(0, fiblets.n_points))
 
 
 def _forget(fiblets: FibletSet, a: int, b: int, rows: slice) -> None:

@@ -7,7 +7,7 @@ No point is ever dropped or moved by more than the promise.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Literal
 
@@ -17,8 +17,9 @@ import numpy.typing as npt
 
 from ..streamlines import Streamlines
 from . import beam_kernels, kernels, lattice_kernels, nearest
+from .capsules import capsule_ends
 from .jit import parallel_kernel
-from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack
+from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack, unpack_ends
 from .parameters import Parameters
 from .tables import cap_ratios, directions, quaternions
 
@@ -38,13 +39,14 @@ def search_tables() -> tuple[npt.NDArray[Any], ...]:
 
 @dataclass
 class FibletChunk:
-    """Records of consecutive fiblets, as the arrays of :mod:`.layout`."""
+    """Records of consecutive fiblets of whole streamlines, as the arrays of :mod:`.layout`."""
 
     anchors: npt.NDArray[np.uint32]
     anchors_low: npt.NDArray[np.uint16] | None
     decoding: npt.NDArray[np.uint32]
     reach: npt.NDArray[np.uint16]
     codes: npt.NDArray[np.uint8]
+    ends: npt.NDArray[np.uint32]
 
 
 @dataclass
@@ -54,7 +56,7 @@ class Encoder:
     Attributes
     ----------
     parameters : Parameters
-        Shared numbers of the file.
+        Shared numbers of the file; ``largest_radius`` grows as chunks are added.
     effort : {'fast', 'high'}
         Greedy, or looking ahead with a beam.
     pages : list of tuple of int
@@ -93,9 +95,11 @@ class Encoder:
         m = len(slots)
         ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
         cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(len(points), np.uint8)
+        end_words = np.zeros(m, np.uint32)
         encode = kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
-        out = (ok, shape, step, cap, radius, end, codes)
-        encode(points, origin, slots, scale, self.top, (p.step_lo, p.step_hi), p.budget, search_tables(), out)
+        out = (ok, shape, step, cap, radius, end, end_words, codes)
+        steps = (p.step_lo, p.step_hi)
+        encode(points, origin, slots, scale, self.top, steps, p.budget, p.end_scale, search_tables(), out)
 
         wanted = np.flatnonzero(ok == 0)
         pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
@@ -112,6 +116,7 @@ class Encoder:
         _gather(codes, slots, np.flatnonzero(ok), code_at, packed)
         rows = {name: _spread(total, fiblet_at, a) for name, a in (("shape", shape), ("step", step), ("cap", cap))}
         rows["kind"] = np.zeros(total, np.uint8)
+        rows["end_words"] = _spread(total, fiblet_at, end_words)
         counts, point_start = _spread(total, fiblet_at, slots[:, 1]), _spread(total, fiblet_at, slots[:, 0])
         code_start, radii = _spread(total, fiblet_at, code_at), _spread(total, fiblet_at, radius)
         if wanted.size:
@@ -126,9 +131,10 @@ class Encoder:
                 code_start,
                 point_start,
                 radii,
+                rows["end_words"],
             )
             lattice_kernels.encode_lattices(
-                points, origin, slots, wanted, scale, self.top, p.lattice, cuts, end, at, filled
+                points, origin, slots, wanted, scale, self.top, p.lattice, p.end_scale, cuts, end, at, filled
             )
         ranks = np.repeat(rank, pieces)
         begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
@@ -173,7 +179,9 @@ class Encoder:
         scale = np.array(p.anchor_scale)
         relative = points[point_start].astype(np.float64) - np.array(p.origin)
         grid = np.divide(relative, scale, out=np.zeros_like(relative), where=scale > 0.0)
-        grid = np.clip(np.rint(grid), 0.0, self.top).astype(np.uint64)
+        grid = np.clip(np.rint(grid), 0.0, self.top)
+        decoded = grid * scale
+        grid = grid.astype(np.uint64)
         low = None
         if p.anchor_bits == 32:
             low = (grid & np.uint64(0xFFFF)).astype(np.uint16)
@@ -188,8 +196,13 @@ class Encoder:
         )  # fmt: skip
         reach = np.zeros(total)
         if p.reach_scale > 0.0:
-            reach = np.ceil(radii / p.reach_scale * (1.0 + 1e-12))
-        return FibletChunk(anchors, low, decoding, np.minimum(reach, 65535.0).astype(np.uint16), codes)
+            reach = np.minimum(np.ceil(radii / p.reach_scale * (1.0 + 1e-12)), 65535.0)
+        end_words = rows["end_words"][ends]
+        if total:
+            chords = capsule_ends(decoded, ends, unpack_ends(end_words) * p.end_scale, None) - decoded
+            radius = float((0.5 * np.sqrt((chords**2).sum(1)) + reach * p.reach_scale).max())
+            self.parameters = replace(p, largest_radius=max(p.largest_radius, radius * (1.0 + 1e-12)))
+        return FibletChunk(anchors, low, decoding, reach.astype(np.uint16), codes, end_words)
 
     def page_table(self) -> npt.NDArray[np.int64]:
         """``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page starts; last row: the totals."""

@@ -33,9 +33,13 @@ class FibletSet:
     decoding : numpy.ndarray
         ``(n_fiblets, 3)`` uint32: what decoding reads.
     reach : numpy.ndarray
-        ``(n_fiblets,)`` uint16: radii of bounding spheres, in units of ``reach_scale``.
+        ``(n_fiblets,)`` uint16: radii of the capsules about the fiblets' chords, in units of ``reach_scale``
+        (:mod:`pvfiblets.codec.capsules`).
     codes : numpy.ndarray
         ``(n_bytes,)`` uint8.
+    ends : numpy.ndarray
+        ``(n_ranks,)`` uint32: the chord of each streamline's last fiblet, three signed 10-bit integers in units of
+        ``end_scale``.
     pages : numpy.ndarray
         ``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page of 16384 fiblets starts.
     bounds : tuple of float
@@ -45,9 +49,10 @@ class FibletSet:
     anchors_low : numpy.ndarray or None
         ``(n_fiblets, 3)`` uint16: lower halves of 32-bit anchors, only where the promise asks for them.
     rank_to_id : numpy.ndarray or None
-        Streamline of each rank where some streamlines have no points; else None, and both are the same.
+        ``(n_ranks,)`` int64: streamline of each rank where some streamlines have no points, or are coded in another
+        order than their own; else None, and both are the same.
     per_point : dict of str to QuantisedPoints
-        Values kept for every point.
+        Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
         As in :class:`~pvfiblets.Streamlines`, whole.
     affine : numpy.ndarray
@@ -63,6 +68,7 @@ class FibletSet:
     decoding: npt.NDArray[np.uint32]
     reach: npt.NDArray[np.uint16]
     codes: npt.NDArray[np.uint8]
+    ends: npt.NDArray[np.uint32]
     pages: npt.NDArray[np.int64]
     bounds: tuple[float, float, float, float, float, float]
     n_streamlines: int
@@ -138,6 +144,16 @@ class FibletSet:
         return self.parameters.reach_scale
 
     @property
+    def end_scale(self) -> float:
+        """Unit of ``ends``, mm."""
+        return self.parameters.end_scale
+
+    @property
+    def largest_radius(self) -> float:
+        """Radius of a sphere about the middle of a fiblet's chord that holds any fiblet, mm."""
+        return self.parameters.largest_radius
+
+    @property
     def promise(self) -> float:
         """No decoded point is farther than this from its original, mm."""
         return self.parameters.promise
@@ -151,6 +167,7 @@ class FibletSet:
             "decoding": self.decoding,
             "reach": self.reach,
             "codes": self.codes,
+            "ends": self.ends,
             "pages": self.pages,
             "rank_to_id": self.rank_to_id,
         }
@@ -178,6 +195,31 @@ class FibletSet:
         if len(ids) and not 0 <= int(ids.min()) <= int(ids.max()) < self.n_streamlines:
             raise IndexError(f"fiblets of streamlines {ids.min()} to {ids.max()}, in a set of {self.n_streamlines}")
         return ids
+
+    @property
+    def in_order(self) -> bool:
+        """Whether fiblets stand in the order of their streamlines."""
+        ids = self.rank_to_id
+        return ids is None or bool((np.diff(ids) >= 0).all())
+
+    def in_coded_order(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
+        """Values of all points, in the order in which points are coded.
+
+        Parameters
+        ----------
+        values : array_like
+            ``(n_points, ...)`` in the order of the streamlines.
+
+        Returns
+        -------
+        numpy.ndarray
+            The same rows as a per-point array of this set holds them.
+        """
+        if self.in_order:
+            return np.asarray(values)
+        from .places import coded_rows
+
+        return np.asarray(values)[coded_rows(self)]
 
     def fiblet_points(self) -> npt.NDArray[np.int64]:
         """``(n_fiblets,)`` index of each fiblet's first point among all points."""

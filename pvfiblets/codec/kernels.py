@@ -12,11 +12,12 @@ from typing import Any
 import numba
 import numpy as np
 
+from .capsule_kernels import capsule
 from .jit import kernel, parallel_kernel
 from .layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .nearest import CELLS, EXTENT
 
-__all__ = ["encode_directions", "first_frame", "pack_direction", "quantise", "scan", "take_points", "turn"]
+__all__ = ["anchor_of", "encode_directions", "first_frame", "pack_direction", "quantise", "scan", "take_points", "turn"]
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
@@ -24,10 +25,11 @@ _CELL = CELLS / (2.0 * EXTENT)
 
 @parallel_kernel
 def scan(points: Any, offsets: Any, found: Any) -> None:
-    """Bounds and longest squared segment, by thousands of streamlines.
+    """Bounds, longest squared segment and farthest last slot, by thousands of streamlines.
 
-    ``found`` is ``(ceil(n_streamlines / 1024), 7)`` float64: least x, y, z; greatest x, y, z; longest segment
-    squared. A coordinate that is not finite makes the row's bounds infinite.
+    ``found`` is ``(ceil(n_streamlines / 1024), 8)`` float64: least x, y, z; greatest x, y, z; longest segment
+    squared; largest distance along an axis from the last point of a streamline to one of its last slot. A coordinate
+    that is not finite makes the row's bounds infinite.
     """
     n = len(offsets) - 1
     for row in numba.prange(len(found)):
@@ -35,6 +37,7 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
             found[row, axis] = math.inf
             found[row, 3 + axis] = -math.inf
         found[row, 6] = 0.0
+        found[row, 7] = 0.0
         for s in range(row * 1024, min((row + 1) * 1024, n)):
             for i in range(offsets[s], offsets[s + 1]):
                 squares = 0.0
@@ -49,6 +52,12 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
                     if i > offsets[s]:
                         squares += (value - np.float64(points[i - 1, axis])) ** 2
                 found[row, 6] = max(found[row, 6], squares)
+            last = offsets[s + 1] - 1
+            if last >= offsets[s]:
+                for i in range(last - (last - offsets[s]) % MAX_POINTS, last):
+                    for axis in range(3):
+                        apart = abs(np.float64(points[last, axis]) - np.float64(points[i, axis]))
+                        found[row, 7] = max(found[row, 7], apart)
 
 
 @kernel
@@ -57,6 +66,13 @@ def quantise(value: float, scale: float, top: float) -> float:
     if scale <= 0.0:
         return 0.0
     return min(max(float(np.rint(value / scale)), 0.0), top)
+
+
+@kernel
+def anchor_of(points: Any, origin: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
+    """Point ``i`` as an anchor holds it, into ``anchor``, from the origin."""
+    for axis in range(3):
+        anchor[axis] = scale[axis] * quantise(np.float64(points[i, axis]) - origin[axis], scale[axis], top)
 
 
 @kernel
@@ -229,7 +245,16 @@ def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
 
 @parallel_kernel
 def encode_directions(
-    points: Any, origin: Any, slots: Any, scale: Any, top: float, steps: Any, promise: float, tables: Any, out: Any
+    points: Any,
+    origin: Any,
+    slots: Any,
+    scale: Any,
+    top: float,
+    steps: Any,
+    promise: float,
+    end_scale: float,
+    tables: Any,
+    out: Any,
 ) -> None:
     """Try to code every slot (at most 60 consecutive points) with direction bytes.
 
@@ -244,14 +269,16 @@ def encode_directions(
         Least and greatest step.
     promise : float
         Largest error accepted, mm.
+    end_scale : float
+        Unit of the end vectors, mm.
     tables : tuple
         Quaternions and directions as float64, ratios, candidate rows.
     out : tuple
         ``ok (m,) uint8``, ``shape (m,) uint32``, ``step (m,) uint16``, ``cap (m,) uint8``, ``radius (m,) float64``
-        (of the sphere that design states), ``end (m,) uint8`` (whether the slot ends its streamline; read), ``codes
-        (n,) uint8`` (a slot's codes stand where its points stand).
+        (of the capsule, mm), ``end (m,) uint8`` (whether the slot ends its streamline; read), ``end_words (m,) uint32``
+        (end vectors of those), ``codes (n,) uint8`` (a slot's codes stand where its points stand).
     """
-    ok, shape, step_index, cap_index, radius, end, codes = out
+    ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise
     retry = 0.25 * give_up  # half the promise: a wider cap is tried above it
@@ -260,6 +287,7 @@ def encode_directions(
         true = np.empty((MAX_POINTS, 3))
         decoded = np.empty((2, MAX_POINTS, 3))
         trial = np.empty((2, MAX_POINTS), np.uint8)
+        following = np.empty(3)
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)
@@ -298,21 +326,6 @@ def encode_directions(
                     codes[first + i] = trial[mine, i]
             ok[slot] = 1 if best <= give_up else 0
             if ok[slot]:
-                radius[slot] = _radius(points, origin, scale, top, decoded[mine], first, n, end[slot])
-
-
-@kernel
-def _radius(points: Any, origin: Any, scale: Any, top: float, decoded: Any, first: int, n: int, end: int) -> float:
-    """Radius of the sphere around the middle of this anchor and the next that holds all that the fiblet draws."""
-    cx, cy, cz = decoded[0, 0], decoded[0, 1], decoded[0, 2]
-    widest = 0.0
-    if not end:
-        nx = scale[0] * quantise(np.float64(points[first + n, 0]) - origin[0], scale[0], top)
-        ny = scale[1] * quantise(np.float64(points[first + n, 1]) - origin[1], scale[1], top)
-        nz = scale[2] * quantise(np.float64(points[first + n, 2]) - origin[2], scale[2], top)
-        cx, cy, cz = 0.5 * (cx + nx), 0.5 * (cy + ny), 0.5 * (cz + nz)
-        widest = (nx - cx) ** 2 + (ny - cy) ** 2 + (nz - cz) ** 2
-    for i in range(n):
-        dx, dy, dz = decoded[i, 0] - cx, decoded[i, 1] - cy, decoded[i, 2] - cz
-        widest = max(widest, dx * dx + dy * dy + dz * dz)
-    return math.sqrt(widest)
+                if not end[slot]:
+                    anchor_of(points, origin, first + n, scale, top, following)
+                radius[slot], end_words[slot] = capsule(decoded[mine], 0, n, end[slot], following, end_scale)

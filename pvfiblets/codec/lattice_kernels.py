@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numba
 import numpy as np
 
+from .capsule_kernels import capsule
 from .jit import kernel, parallel_kernel
 from .kernels import quantise, take_points
 from .layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
@@ -214,6 +214,7 @@ def encode_lattices(
     scale: Any,
     top: float,
     h: float,
+    end_scale: float,
     cuts: Any,
     end: Any,
     at: Any,
@@ -222,9 +223,10 @@ def encode_lattices(
     """Code the slots named in ``wanted`` as planned.
 
     ``at`` is ``(k, 2)``: first fiblet and first code byte of each slot in the arrays of ``out``: ``codes``, ``shape``,
-    ``step``, ``cap``, ``kind``, ``count``, ``code_start``, ``point_start``, ``radius``, one row a fiblet.
+    ``step``, ``cap``, ``kind``, ``count``, ``code_start``, ``point_start``, ``radius`` and ``end_words``, one row a
+    fiblet.
     """
-    codes, shape, step, cap, kind, counts, code_start, point_start, radius = out
+    codes, shape, step, cap, kind, counts, code_start, point_start, radius, end_words = out
     for w in numba.prange(len(wanted)):
         slot = wanted[w]
         first, n = slots[slot, 0], slots[slot, 1]
@@ -232,7 +234,7 @@ def encode_lattices(
         true = np.empty((MAX_POINTS + 1, 3))
         decoded = np.empty((MAX_POINTS + 1, 3))
         take_points(points, origin, first, n + more, true)
-        nxt = np.empty(3)
+        following = np.empty(3)
         fiblet, byte = at[w, 0], at[w, 1]
         a = 0
         while a < n:
@@ -243,15 +245,10 @@ def encode_lattices(
             counts[fiblet] = b - a
             code_start[fiblet] = byte
             point_start[fiblet] = first + a
-            c0, c1, c2 = decoded[a, 0], decoded[a, 1], decoded[a, 2]
-            widest = 0.0
-            if b < n + more:
-                _anchor(true, b, scale, top, nxt)
-                c0, c1, c2 = 0.5 * (c0 + nxt[0]), 0.5 * (c1 + nxt[1]), 0.5 * (c2 + nxt[2])
-                widest = (nxt[0] - c0) ** 2 + (nxt[1] - c1) ** 2 + (nxt[2] - c2) ** 2
-            for i in range(a, b):
-                widest = max(widest, (decoded[i, 0] - c0) ** 2 + (decoded[i, 1] - c1) ** 2 + (decoded[i, 2] - c2) ** 2)
-            radius[fiblet] = math.sqrt(widest)
+            ends = b == n + more
+            if not ends:
+                _anchor(true, b, scale, top, following)
+            radius[fiblet], end_words[fiblet] = capsule(decoded, a, b, ends, following, end_scale)
             fiblet += 1
             byte += used
             a = b

@@ -10,13 +10,14 @@ reads is kept apart from what decoding reads, so that a cull pass never drags co
 array          shape, dtype        read by
 =============  ==================  ============================================================================
 ``anchors``    (n, 2) uint32       culling: first point, streamline, begin and end flags
-``reach``      (n,) uint16         culling: radius of the bounding sphere
+``reach``      (n,) uint16         culling: radius of the capsule about the chord (:mod:`.capsules`)
+``ends``       (n_ranks,) uint32   culling: end vector of each streamline's last fiblet, where no next one has it
 ``decoding``   (n, 3) uint32       decoding: direction or lattice, step, where codes and points start, count, kind
 ``codes``      (n_bytes,) uint8    decoding: one byte a point (kind DIRECTION), or 1-4 bytes (lattice kinds)
 =============  ==================  ============================================================================
 
 Budget: 8 + 2 + 12 bytes of record and 58 codes for a full fiblet of 60 points (the anchor and the first direction stand
-for two of them) are 80 bytes, 1.33 bytes per point.
+for two of them) are 80 bytes, 1.33 bytes per point; each streamline adds the 4 bytes of its end vector.
 
 Indices in a record are relative to its *page* of ``PAGE`` consecutive fiblets. The largest stretch of codes that one
 fiblet can have is ``WIDE_HEADER + 59 * 4 = 256`` bytes, so a page holds at most 2**22 bytes of codes and 60 * 2**14 <
@@ -33,6 +34,8 @@ import numpy as np
 __all__ = [
     "CAPS",
     "DIRECTION",
+    "END_BITS",
+    "END_LEVELS",
     "FIELDS",
     "LATTICE8",
     "LATTICE16",
@@ -44,7 +47,9 @@ __all__ = [
     "Kind",
     "glsl_source",
     "pack",
+    "pack_ends",
     "unpack",
+    "unpack_ends",
 ]
 
 MAX_POINTS = 60
@@ -54,7 +59,8 @@ CAPS = 16
 DIRECTION_SCALE = 32767.0
 STEP_LEVELS = 1023
 WIDE_HEADER = 20
-
+END_BITS = 10
+END_LEVELS = (1 << (END_BITS - 1)) - 1
 
 DIRECTION = 0
 LATTICE8 = 1
@@ -163,6 +169,48 @@ def pack(array: str, **values: Any) -> np.ndarray[Any, Any]:
     return words
 
 
+def pack_ends(vectors: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Build the words of ``ends``.
+
+    Parameters
+    ----------
+    vectors : numpy.ndarray
+        ``(n, 3)`` whole numbers in units of ``end_scale``, each of -511 to 511.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n,)`` uint32: x in bits 0-9, y in bits 10-19, z in bits 20-29, two's complement; bits 30 and 31 are 0.
+
+    Raises
+    ------
+    ValueError
+        If a component does not fit.
+    """
+    levels = np.asarray(vectors, np.int64).reshape(-1, 3)
+    if levels.size and np.abs(levels).max() > END_LEVELS:
+        raise ValueError(f"an end vector holds -{END_LEVELS}..{END_LEVELS}, got {levels.min()}..{levels.max()}")
+    bits = (levels & ((1 << END_BITS) - 1)) << (END_BITS * np.arange(3))
+    return bits.sum(axis=1).astype(np.uint32)
+
+
+def unpack_ends(words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Undo :func:`pack_ends`.
+
+    Parameters
+    ----------
+    words : numpy.ndarray
+        ``(n,)`` uint32.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n, 3)`` int64 in units of ``end_scale``.
+    """
+    levels = (np.asarray(words, np.int64)[:, None] >> (END_BITS * np.arange(3))) & ((1 << END_BITS) - 1)
+    return np.where(levels > END_LEVELS, levels - (1 << END_BITS), levels)
+
+
 def glsl_source() -> str:
     """Write the record as GLSL: constants, and one function a field.
 
@@ -170,7 +218,8 @@ def glsl_source() -> str:
     -------
     str
         ``const`` declarations and ``uint fiblet_<field>(uvecN words)`` functions, to be included by shaders
-        (``uvec2`` for the fields of ``anchors``, ``uvec3`` for those of ``decoding``).
+        (``uvec2`` for the fields of ``anchors``, ``uvec3`` for those of ``decoding``), and ``ivec3
+        fiblet_end_vector(uint word)`` for the words of ``ends``.
     """
     lines = [
         f"const uint FIBLET_MAX_POINTS = {MAX_POINTS}u;",
@@ -187,4 +236,6 @@ def glsl_source() -> str:
             f"uint fiblet_{f.name}({vector} words) "
             f"{{ return bitfieldExtract(words.{'xyz'[f.word]}, {f.shift}, {f.width}); }}"
         )
+    parts = ", ".join(f"bitfieldExtract(int(word), {END_BITS * axis}, {END_BITS})" for axis in range(3))
+    lines.append(f"ivec3 fiblet_end_vector(uint word) {{ return ivec3({parts}); }}")
     return "\n".join(lines) + "\n"

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from .layout import MAX_POINTS
+from .layout import END_LEVELS, MAX_POINTS
 
 __all__ = ["DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
 
@@ -35,6 +35,8 @@ class Survey:
         ``(3,)`` true bounds, mm.
     longest : float
         Longest segment, mm.
+    widest_end : float
+        Largest component of a vector between a streamline's last point and another of the last (at most) 60, mm.
     sample : list of numpy.ndarray
         Segment lengths, mm: every ``stride``-th, so few that memory stays bounded.
     n_points, n_streamlines : int
@@ -44,6 +46,7 @@ class Survey:
     lower: Vector = field(default_factory=lambda: np.full(3, np.inf))
     upper: Vector = field(default_factory=lambda: np.full(3, -np.inf))
     longest: float = 0.0
+    widest_end: float = 0.0
     sample: list[npt.NDArray[np.float64]] = field(default_factory=list)
     stride: int = 1
     n_points: int = 0
@@ -72,7 +75,7 @@ class Survey:
             return
         from .kernels import scan  # numba loads only when something is compressed
 
-        rows = np.empty((-(-len(streamlines) // 1024), 7))
+        rows = np.empty((-(-len(streamlines) // 1024), 8))
         scan(points, streamlines.offsets, rows)
         lower, upper, longest = rows[:, :3].min(0), rows[:, 3:6].max(0), float(np.sqrt(rows[:, 6].max()))
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
@@ -87,6 +90,7 @@ class Survey:
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
+        self.widest_end = max(self.widest_end, float(rows[:, 7].max()))
         # The sample stays evenly taken: when it would overflow, every other length goes and half as many come then.
         while self.n_points > self.stride * SAMPLE:
             self.sample = [part[::2].copy() for part in self.sample]
@@ -129,9 +133,14 @@ class Parameters:
     lattice : float
         Edge of the lattice of the lattice kinds.
     reach_scale : float
-        Unit of the bounding radii.
+        Unit of the capsules' radii.
+    end_scale : float
+        Unit of the streamlines' end vectors; above 0.
     promise : float
         No decoded point is farther from its original.
+    largest_radius : float
+        Half the chord and the capsule's radius together are no larger for any fiblet: each lies within a sphere of this
+        radius about the middle of its chord.
     """
 
     origin: tuple[float, float, float]
@@ -142,7 +151,9 @@ class Parameters:
     step_hi: float
     lattice: float
     reach_scale: float
+    end_scale: float
     promise: float
+    largest_radius: float = 0.0
 
     @classmethod
     def choose(cls, found: Survey, max_error: float | None = None) -> Parameters:
@@ -193,6 +204,8 @@ class Parameters:
             # Rounding to a cubic lattice errs by at most half its diagonal.
             lattice=2.0 / math.sqrt(3.0) * promise * BUDGET,
             reach_scale=(MAX_POINTS * found.longest + 4.0 * promise) / 65535.0,
+            # Both ends of a decoded vector may be off by the promise.
+            end_scale=(found.widest_end + 2.0 * promise) / END_LEVELS * (1.0 + 1e-9),
             promise=promise,
         )
 

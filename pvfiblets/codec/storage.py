@@ -1,8 +1,9 @@
 """``.fiblets`` files: a FibletSet on disk, and the functions that the formats room calls for that suffix.
 
 The file is a stored zip (:mod:`.archive`): ``header.json``, then ``anchors.npy``, ``decoding.npy``, ``reach.npy``,
-``codes.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json`` names the
-members of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the file's size.
+``codes.npy``, ``ends.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json``
+names the members of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the
+file's size.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ from .quantised import QuantisedPoints
 
 __all__ = ["VERSION", "info", "iter_chunks", "make_header", "open_fiblets", "read", "save", "verify_file", "write"]
 
-VERSION = 1
-_CORE = ("anchors", "decoding", "reach", "codes", "pages")
+VERSION = 2
+_CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 _OPTIONAL = ("anchors_low", "rank_to_id")
 _SHAPES: dict[str, tuple[str, int]] = {
     "anchors": ("<u4", 2),
@@ -113,7 +114,7 @@ def open_fiblets(path: str | PathLike[str]) -> FibletSet:
     Raises
     ------
     FormatError
-        If the file is damaged, is something else, or was written by a newer version.
+        If the file is damaged, is something else, or was written by a newer or an older version.
     FileNotFoundError
         If there is no such file.
     """
@@ -122,10 +123,17 @@ def open_fiblets(path: str | PathLike[str]) -> FibletSet:
         raise FormatError(path, 0, f"format {header.get('format')!r} in header.json", "'fiblets'")
     version = header.get("version")
     if not isinstance(version, int) or version < 1:
-        raise FormatError(path, 0, f"version {version!r} in header.json", f"a version of 1 to {VERSION}")
+        raise FormatError(path, 0, f"version {version!r} in header.json", f"version {VERSION}")
     if version > VERSION:
         raise FormatError(
             path, 0, f"version {version} in header.json", f"at most {VERSION}: update pvfiblets to read this file"
+        )
+    if version < VERSION:
+        raise FormatError(
+            path,
+            0,
+            f"version {version} in header.json, written by an older pvfiblets",
+            f"version {VERSION}: compress the original again",
         )
     try:
         fiblets = _assemble(header, arrays)
@@ -145,9 +153,11 @@ def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> Fi
     }
     parameters = Parameters(**chosen)
     numbers = [*parameters.origin, *parameters.anchor_scale, *header["bounds"]]
-    numbers += [getattr(parameters, k) for k in ("step", "step_lo", "step_hi", "lattice", "reach_scale", "promise")]
-    if len(numbers) != 18 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
+    numbers += [v for k, v in asdict(parameters).items() if k not in ("origin", "anchor_scale", "anchor_bits")]
+    if len(numbers) != 20 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
         raise ValueError("parameters out of range")
+    if not (parameters.end_scale > 0.0 and parameters.largest_radius >= 0.0):
+        raise ValueError(f"end_scale {parameters.end_scale}, largest_radius {parameters.largest_radius}")
     b = [float(v) for v in header["bounds"]]
     plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in _CORE}
     plain |= {name: arrays.get(f"{name}.npy") for name in _OPTIONAL}
@@ -194,6 +204,7 @@ def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any
     expect(int(last[1]) == len(f.codes), f"{len(f.codes)} code bytes", f"the {last[1]} of the page table")
     expect(int(last[2]) == header["n_points"], f"{header['n_points']} points", f"the {last[2]} of the page table")
     ranks = int(last[0])
+    expect(f.ends.dtype == "<u4" and f.ends.shape == (ranks,), f"ends {f.ends.dtype}{f.ends.shape}", f"<u4({ranks},)")
     if f.rank_to_id is None:
         expect(ranks == f.n_streamlines, f"{f.n_streamlines} streamlines", f"the {ranks} of the page table")
     else:

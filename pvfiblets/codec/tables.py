@@ -13,11 +13,15 @@ within
   On real tracking this lowers the mean error by a quarter to a half at equal bytes.
 - **A set of cap angles.** Sixteen, from 1.5 to 178 degrees at equal ratios; each fiblet names its own.
 - **Frames.** The paper rebuilds a frame around each direction with a constant vector (equation 2). Here a code *is* the
-  smallest rotation that turns X to its direction, and frames are products of those: no special direction, no square
-  root while decoding, and a frame follows the streamline without twist.
+  smallest rotation that turns X to its direction, and frames are products of those: no special direction, and a frame
+  follows the streamline without twist.
 
-1 - cos alpha is computed as 2 sin^2(alpha / 2), which keeps its digits when alpha is small. Tables are rounded to
-float32 so that the GPU and the CPU read the very same numbers.
+1 - cos alpha is computed as 2 sin^2(alpha / 2), which keeps its digits when alpha is small.
+
+**What a code is decoded with.** A rotation without a part about X is two numbers, y and z; w follows from the unit
+length. Both are kept as 16-bit integers times a scale for each cap angle, so that all rotations are 16 KiB: what every
+driver gives to a uniform block, and what fits beside a GPU's other caches. CPU and GPU start from the same integers
+and take the same float32 operations, and the encoder searches among what they decode to: nothing is lost by rounding.
 """
 
 from __future__ import annotations
@@ -30,9 +34,10 @@ import numpy.typing as npt
 
 from .layout import CAPS
 
-__all__ = ["CAP_DEGREES", "CODES", "cap_ratios", "directions", "disc", "quaternions"]
+__all__ = ["CAP_DEGREES", "CODES", "cap_ratios", "directions", "disc", "packed", "packed_scales", "quaternions"]
 
 CODES = 256
+PACKED_LEVELS = 32767
 CAP_DEGREES = tuple(float(a) for a in np.round(1.5 * (178.0 / 1.5) ** (np.arange(CAPS) / (CAPS - 1)), 3))
 
 # cos and sin of the golden angle pi (3 - sqrt 5): products of these need no library function per code.
@@ -72,23 +77,65 @@ def disc() -> npt.NDArray[np.float64]:
 
 
 @cache
+def _lateral() -> npt.NDArray[np.float64]:
+    """Parts y, z of the unit quaternion of each code before rounding, ``(16, 256, 2)`` float64."""
+    points = disc()
+    parts = np.empty((CAPS, CODES, 2))
+    for cap, ratio in enumerate(cap_ratios()):
+        x = 1.0 - ratio * (points**2).sum(1)
+        lateral = points * np.sqrt(ratio * (1.0 + x))[:, None]  # y, z: length sqrt(1 - x^2) without cancellation
+        q = np.stack([1.0 + x, -lateral[:, 1], lateral[:, 0]], axis=1)
+        parts[cap] = (q / np.sqrt((q**2).sum(1))[:, None])[:, 1:]
+    return _frozen(parts)
+
+
+@cache
+def packed_scales() -> npt.NDArray[np.float32]:
+    """What one unit of a packed rotation's integers stands for.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(16,)`` float32 by cap index: the largest ``|y|`` or ``|z|`` of the cap, divided by 32767.
+    """
+    return _frozen((np.abs(_lateral()).max(axis=(1, 2)) / PACKED_LEVELS).astype(np.float32))
+
+
+@cache
+def packed() -> npt.NDArray[np.uint32]:
+    """The rotations as a GPU keeps them.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(16, 256)`` uint32 by cap index and code: y in the low 16 bits, z in the high 16, two's complement integers in
+        units of :func:`packed_scales`; ``x = 0`` and ``w = sqrt(1 - y^2 - z^2)``.
+    """
+    levels = np.rint(_lateral() / packed_scales().astype(np.float64)[:, None, None]).astype(np.int64)
+    levels = np.clip(levels, -PACKED_LEVELS, PACKED_LEVELS)
+    return _frozen(((levels[..., 0] & 0xFFFF) | (levels[..., 1] & 0xFFFF) << 16).astype(np.uint32))
+
+
+@cache
 def quaternions() -> npt.NDArray[np.float32]:
-    """The rotation that each code stands for.
+    """The rotation that each code stands for, unpacked from :func:`packed`.
 
     Returns
     -------
     numpy.ndarray
         ``(16, 256, 4)`` float32 unit quaternions ``(w, x, y, z)`` by cap index and code; each turns X = (1, 0, 0) by
-        the smallest rotation to the code's direction.
+        the smallest rotation to the code's direction. Code 0 is ``(1, 0, 0, 0)``: straight on.
+
+    Notes
+    -----
+    The float32 operations and their order are those of ``shaders/decode/words.glsl``.
     """
-    points = disc()
-    table = np.empty((CAPS, CODES, 4), np.float32)
-    for cap, ratio in enumerate(cap_ratios()):
-        x = 1.0 - ratio * (points**2).sum(1)
-        lateral = points * np.sqrt(ratio * (1.0 + x))[:, None]  # y, z: length sqrt(1 - x^2) without cancellation
-        q = np.stack([1.0 + x, np.zeros(CODES), -lateral[:, 1], lateral[:, 0]], axis=1)
-        table[cap] = q / np.sqrt((q**2).sum(1))[:, None]
-    return _frozen(table)
+    words = packed()
+    levels = np.stack([words & np.uint32(0xFFFF), words >> np.uint32(16)], axis=-1).astype(np.uint16).view(np.int16)
+    parts = levels.astype(np.float32) * packed_scales()[:, None, None]
+    y, z = parts[..., 0], parts[..., 1]
+    w = np.sqrt(np.float32(1.0) - y * y - z * z)
+    return _frozen(np.stack([w, np.zeros_like(w), y, z], axis=-1))
 
 
 @cache

@@ -12,9 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .view import View
+from .view import Style, View
 
-__all__ = ["frame_block", "local_frame", "reference_anchor", "segment_pixels"]
+__all__ = ["FRAME_BYTES", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
+
+FRAME_BYTES = 224
+FAR_SIZE = 4.0
+"""Pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4)."""
 
 Array = npt.NDArray[np.float64]
 
@@ -99,53 +103,66 @@ def segment_pixels(view: View, origin: Array, scale: Array, top: int, length: fl
     return min(max(length * across / nearest, 4.0), 100.0) if nearest > 0.0 else 100.0
 
 
-def frame_block(view: View, line_width: float, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:
+def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:
     """Pack the ``Frame`` uniform block (std140).
 
     Parameters
     ----------
     view : View
-    line_width : float
-        Pixels; 1 is a thin line.
+    style : Style
+        Its line width and tolerance.
     origin, scale, top
         As in :func:`reference_anchor`.
 
     Returns
     -------
     block : bytes
-        208 bytes.
+        :data:`FRAME_BYTES` of them.
     margin : float
         How far inside the view volume all anchors lie (mm); negative if some do not. A set whose spheres all have a
         smaller radius needs no clipping.
     """
     reference, _, local = local_frame(view, origin, scale, top)
-    size = np.array(view.size, np.float64)
-    half = 0.0 if line_width == 1.0 else line_width / 2.0
-    guard = 1.0 + 2.0 * half / size
+    width, height = view.size
+    half = 0.0 if style.line_width == 1.0 else style.line_width / 2.0
+    guard = 1.0 + 2.0 * half / np.array(view.size, np.float64)
     x, y, z, w = local
     planes = np.array([guard[0] * w + x, guard[0] * w - x, guard[1] * w + y, guard[1] * w - y, w + z, w - z])
     lengths = np.linalg.norm(planes[:, :3], axis=1)
     planes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
     # Three products and their sum in float32 err by no more than this share of the largest of them.
     planes[:, 3] += 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]))
+    slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]).max())
+    window = np.array([width / 2 * (x + w), height / 2 * (y + w), (z + w) / 2, w])
 
     block: npt.NDArray[Any] = np.zeros(
         (),
         [
-            ("clip_from_local", "<f4", (4, 4)),
+            ("window_from_local", "<f4", (4, 4)),
             ("planes", "<f4", (6, 4)),
             ("reference", "<u4", 4),
             ("viewport", "<f4", 4),
             ("guard", "<f4", 4),
+            ("detail", "<f4", 4),
         ],
     )
-    block["clip_from_local"] = local.T  # columns first
+    block["window_from_local"] = window.T  # columns first
     block["planes"] = planes
     block["reference"][:3] = reference
-    block["viewport"] = *size, half, 0.0
-    slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]).max())
-    block["guard"][:3] = *guard, 2.0 * slack
+    block["viewport"] = width, height, half, 0.0
+    block["guard"][2] = 2.0 * slack
+    block["detail"] = (*_pixels_per_length(window, view.size), style.tolerance, FAR_SIZE)
     # Distances to the planes are least at a corner of the anchors' box.
     corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
     least = float((corners @ planes[:, :3].T + planes[:, 3]).min())
     return block.tobytes(), least - 4.0 * slack
+
+
+def _pixels_per_length(window: Array, size: tuple[int, int]) -> tuple[float, float]:
+    """Return pixels times W that a mm takes at most anywhere in the picture, and the change of W per mm."""
+    across = [
+        float(np.linalg.norm(row[:3] - place * window[3, :3]))
+        for row, pixels in zip(window[:2], size, strict=True)
+        for place in (0.0, pixels)
+    ]
+    return max(across), float(np.linalg.norm(window[3, :3]))

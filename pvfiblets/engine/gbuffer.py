@@ -11,6 +11,9 @@ texture        format    content
 =============  ========  ======================================================================================
 
 ``ids`` and ``position`` are undefined where ``depth`` is empty.
+
+A float32 has room for fractions up to point 2^23 of a streamline, and for whole points up to 2^24, which is 1.7 km at
+0.1 mm. Beyond, places are rounded to every second point, from 2^25 on to every fourth, and so on.
 """
 
 from __future__ import annotations

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 import moderngl
 
 from .errors import EngineError
+from .opengl import OpenGL
 
-__all__ = ["Passes", "dispatch", "is_software"]
+__all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere"]
 
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast")
@@ -70,6 +71,24 @@ class Passes:
         """Forget all queries; OpenGL frees them with their Python objects."""
         self._queries.clear()
         self._ran.clear()
+
+
+GROUP_SIZE = 64
+"""Invocations of a compute work group, ``group_size`` to the sources."""
+
+
+@contextlib.contextmanager
+def nowhere(ctx: moderngl.Context, gl: OpenGL) -> Iterator[None]:
+    """Draw into a pixel that nobody looks at: no drawing call runs without a target, not even one that only counts."""
+    with gl.framebuffers_kept():
+        target = ctx.simple_framebuffer((1, 1))
+        try:
+            target.use()
+            yield
+        finally:
+            for attachment in target.color_attachments:
+                attachment.release()
+            target.release()
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:

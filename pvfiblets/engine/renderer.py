@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import moderngl
@@ -9,14 +10,20 @@ import numpy as np
 from tqdm import tqdm
 
 from ..codec import layout, tables
-from .chunks import Chunk, available_memory, plan_chunks, storage_buffer, upload_chunk
+from .capabilities import check_choices, choose
+from .census import Census
+from .chunks import Chunk
 from .clipping import BLOCK_BYTES, clip_planes_block
-from .errors import EngineError
-from .frame import frame_block, segment_pixels
+from .culling import Occlusion, make_occlusion
+from .errors import EngineError, GPUMemoryError
+from .fit import Fitted, Room
+from .frame import FRAME_BYTES, frame_block, segment_pixels
 from .gbuffer import GBuffer
+from .opengl import OpenGL
 from .passes import Passes
-from .pipelines.compute import CLIP_PLANES, CLIPPING, CONSTANTS, ComputePipeline
+from .pipelines import CONSTANTS, ComputePipeline, Job, Limits, Pipeline, make_measurer, make_pipeline
 from .shaders import Programs
+from .upload import upload_chunk
 from .values import ValueSources
 from .view import Style, View
 
@@ -24,8 +31,6 @@ if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
 __all__ = ["FibletRenderer"]
-
-REQUIRED_VERSION = 430
 
 
 class FibletRenderer:
@@ -37,18 +42,37 @@ class FibletRenderer:
     Parameters
     ----------
     ctx : moderngl.Context
-        OpenGL 4.3 or later.
+        OpenGL 3.3 or later.
     fiblets : FibletSet
         Copied to the GPU here; not kept in memory otherwise.
+    pipeline : str
+        ``'auto'`` takes the fastest that the context has; see :func:`pvfiblets.engine.capabilities.pipelines`.
+    culling : {'two-phase', 'coverage', None}
+        How fiblets behind others are found out. ``'two-phase'`` (also ``'auto'``) changes no pixel of the picture;
+        ``'coverage'`` is that of the paper (Schertzer et al. 2022, section 3.4), which may lose some for one frame
+        after the camera jumped; ``None`` draws all that is in the view volume.
+    fit : {None, 'sample'}
+        What to do where memory does not suffice: refuse, or draw an even share of the streamlines, always the same one
+        (:mod:`pvfiblets.engine.fit`).
     progress : bool
         Show a progress bar while copying.
     max_buffer_bytes, max_groups, max_total_bytes : int, optional
-        Limits below the driver's own: bytes of one buffer, work groups along one axis, bytes of all buffers.
+        Limits below the driver's own: bytes of one buffer of records, work groups along one axis, bytes of all buffers.
+
+    Attributes
+    ----------
+    pipeline : str
+        The one in use.
+    share : float
+        How many of the streamlines that have points are drawn: 1.0 but for ``fit='sample'``.
 
     Raises
     ------
     EngineError
-        If OpenGL is older than 4.3, or memory does not suffice; nothing stays behind on the GPU.
+        If OpenGL is older than the pipeline, or memory does not suffice, as far as can be known before anything is
+        allocated; nothing stays behind on the GPU.
+    ValueError
+        If there is no pipeline or fit of that name.
     """
 
     def __init__(
@@ -56,78 +80,93 @@ class FibletRenderer:
         ctx: moderngl.Context,
         fiblets: FibletSet,
         *,
+        pipeline: str = "auto",
+        culling: str | None = "two-phase",
+        fit: str | None = None,
         progress: bool = False,
         max_buffer_bytes: int | None = None,
         max_groups: int | None = None,
         max_total_bytes: int | None = None,
     ) -> None:
-        if ctx.version_code < REQUIRED_VERSION:
-            raise EngineError(
-                f"drawing fiblets needs OpenGL 4.3, found {ctx.version_code // 100}.{ctx.version_code % 100 // 10} "
-                f"({ctx.info['GL_RENDERER']}); a newer driver, or Mesa's software OpenGL, has it"
-            )
+        pipeline = choose(ctx, pipeline)
+        check_choices(fit=fit)
+        self.pipeline = pipeline
         self._ctx = ctx
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
         self._buffers: dict[str, moderngl.Buffer] = {}
-        self._pipeline: ComputePipeline | None = None
+        self._gl = OpenGL(ctx)
+        self._occlusion: Occlusion | None = None
+        self._pipeline: Pipeline | None = None
         self._target: GBuffer | None = None
         self._drawn: tuple[View, Style] | None = None
+        self._last: tuple[View, Style] | None = None
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
-        self._largest_reach = 0.0
         self._segment = 0.0
         self._features: list[str] = []
         self._values: ValueSources | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
-        limit = int(ctx.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
-        groups = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         try:
-            self._upload(min(limit, max_buffer_bytes or limit), max_total_bytes, progress)
-            groups = min(groups, max_groups or groups)
-            self._pipeline = ComputePipeline(ctx, self._programs, fiblets.n_fiblets, groups)
-            self._values = ValueSources(ctx, self._programs, fiblets, self._chunks, groups)
+            fitted = self._upload(Room.of(ctx, self._gl, limits, max_total_bytes), fit, progress)
+            self._fiblets = fiblets = fitted.kept()
+            self.share = fitted.share
+            self._make_shared()
+            self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
+            self._pipeline = make_pipeline(
+                pipeline, ctx, self._gl, self._programs, fiblets.n_fiblets, len(self._chunks), limits
+            )
+            self._census = Census(ctx, self._gl, self._programs, limits.groups)
+            measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
+            self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._forget_camera)
         except BaseException:
             self.release()
             raise
 
-    def _upload(self, max_buffer_bytes: int, max_total_bytes: int | None, progress: bool) -> None:
-        fiblets = self._fiblets
-        plans = plan_chunks(fiblets, max_buffer_bytes)
-        if fiblets.n_fiblets > max_buffer_bytes:  # the pipeline's marks: a byte for each, in one buffer
-            raise EngineError(
-                f"{fiblets.n_fiblets} fiblets are more than the {max_buffer_bytes} for which this OpenGL's largest "
-                "buffer keeps a byte each; draw fewer streamlines"
-            )
-        needed = sum(plan.nbytes for plan in plans)
-        limits = [n for n in (max_total_bytes, available_memory(self._ctx)) if n is not None]
-        if limits and needed > min(limits):
-            raise EngineError(
-                f"{fiblets.n_fiblets} fiblets need {needed / 1e6:.1f} MB of GPU memory, {min(limits) / 1e6:.1f} MB are "
-                "available; draw fewer streamlines"
-            )
-        self._buffers["directions"] = storage_buffer(self._ctx, _direction_table(), "direction table")
-        coding = np.zeros((2, 4), "<f4")
-        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
-        coding[1, :3] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice
-        self._buffers["coding"] = self._ctx.buffer(coding.tobytes())
-        self._buffers["frame"] = self._ctx.buffer(reserve=208)
-        with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
-            for plan in plans:
-                self._chunks.append(upload_chunk(self._ctx, fiblets, plan))
-                first, last = plan.fiblets
-                reach = float(np.max(fiblets.reach[first:last], initial=0)) * fiblets.reach_scale
-                self._largest_reach = max(self._largest_reach, reach)
-                bar.update(plan.nbytes)
+    def _upload(self, room: Room, fit: str | None, progress: bool) -> Fitted:
+        """Copy what fits."""
+        fitted = room.fitted(self._fiblets, fit)
+        while True:
+            needed = sum(plan.nbytes for plan in fitted.plans)
+            try:
+                with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
+                    for plan in fitted.plans:
+                        self._chunks.append(upload_chunk(self._ctx, fitted.fiblets, plan, bar.update))
+            except GPUMemoryError:
+                if fit != "sample":
+                    raise
+            else:
+                return fitted
+            # A driver that did not say how much memory is free says now that it was less.
+            self._release_chunks()
+            fitted = room.fitted(self._fiblets, fit, fitted.share / 2.0)
 
-    def render(self, view: View, style: Style | None = None) -> GBuffer:
+    def _make_shared(self) -> None:
+        """Make the uniform blocks that all chunks share."""
+        fiblets = self._fiblets
+        self._buffers["rotations"] = self._ctx.buffer(np.ascontiguousarray(tables.packed(), "<u4").tobytes())
+        coding = np.zeros((6, 4), "<f4")
+        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
+        coding[1] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice, fiblets.parameters.end_scale
+        coding[2:] = tables.packed_scales().reshape(4, 4)
+        self._buffers["coding"] = self._ctx.buffer(coding.tobytes())
+        self._buffers["frame"] = self._ctx.buffer(bytes(FRAME_BYTES))
+
+    def render(
+        self, view: View, style: Style | None = None, *, outside: moderngl.Texture | None = None
+    ) -> GBuffer:
         """Draw, unless the last picture was of the same view and style.
 
         Parameters
         ----------
         view : View
         style : Style, optional
+        outside : moderngl.Texture, optional
+            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. What they hide may be
+            missing from the picture, which therefore serves this one call only: the next one draws anew. Two-phase
+            culling alone looks at it.
 
         Returns
         -------
@@ -150,36 +189,65 @@ class FibletRenderer:
                 self._target = None
             self._target = GBuffer(self._ctx, view.size)
         self._bind_shared()
-        features = self._decoding_features()
-        source = values.activate(style.values, features)
-        features += ["WIDE_LINES"] if style.line_width > 1.0 else []
-        features += self._write_frame(view, style)
-        self._features = features + ([source] if source else [])
+        decoding = self._decoding_features()
+        source = values.activate(style.values, decoding)
+        clipping, planes = self._write_frame(view, style)
+        job = Job(
+            chunks=self._chunks,
+            target=self._target,
+            passes=self._passes,
+            decoding=tuple(decoding),
+            values=(source,) if source else (),
+            clipping=clipping or planes,
+            planes=("CLIP_PLANES",) if planes else (),
+            detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
+            line_width=style.line_width,
+            segment=self._segment,
+            occlusion=self._occlusion,
+        )
+        self._features = job.features
         self._passes.begin()
-        pipeline.draw(self._chunks, self._target, self._features, self._passes, style.line_width, self._segment)
+        if self._occlusion is not None:
+            self._occlusion.outside = outside
+            with self._passes.timed("last picture") if self._target.generation else nullcontext():
+                self._occlusion.before(self._target, view, style)
+        pipeline.draw(job)
+        if self._occlusion is not None:
+            self._occlusion.after(self._target, view, style)
         self._generation += 1
         self._target.generation = self._generation
-        self._drawn = (view, style)
+        if outside is None:
+            self._drawn = (view, style)
+        self._last = (view, style)
         return self._target
 
-    def _write_frame(self, view: View, style: Style) -> list[str]:
-        """Bring the uniform blocks of the camera up to date; return the features that the view asks for."""
+    def needs_outside(self, view: View, style: Style) -> bool:
+        """Say whether :meth:`render` would gain from the depth of other things in the scene.
+
+        Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
+        """
+        two_phase = self._occlusion is not None and self._occlusion.halfway
+        return two_phase and self._last != (view, style)
+
+    def _write_frame(self, view: View, style: Style) -> tuple[bool, bool]:
+        """Bring the uniform blocks of the camera up to date; say whether anything may cross the edges, or planes."""
         origin = np.asarray(self._fiblets.origin, np.float64)
         scale = np.asarray(self._fiblets.anchor_scale, np.float64)
         # Where steps vary, four times their mean stands for the longest.
         self._segment = segment_pixels(view, origin, scale, self._top, 4.0 * self._fiblets.step)
-        block, margin = frame_block(view, style.line_width, origin, scale, self._top)
+        block, margin = frame_block(view, style, origin, scale, self._top)
+        radius = self._fiblets.parameters.largest_radius
         self._buffers["frame"].write(block)
-        planes = clip_planes_block(view, style.line_width, origin, scale, self._top, self._largest_reach)
+        planes = clip_planes_block(view, style.line_width, origin, scale, self._top, radius)
         if planes is None:
             if "clip_planes" in self._buffers:
                 self._buffers.pop("clip_planes").release()
-            return list(CLIPPING) if margin < self._largest_reach else []
+            return margin < radius, False
         if "clip_planes" not in self._buffers:
             self._buffers["clip_planes"] = self._ctx.buffer(reserve=BLOCK_BYTES)
         self._buffers["clip_planes"].write(planes)
         self._buffers["clip_planes"].bind_to_uniform_block(3)
-        return [*CLIPPING, CLIP_PLANES]
+        return margin < radius, True
 
     def value_range(self, values: str) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.
@@ -203,7 +271,11 @@ class FibletRenderer:
         self._bind_shared()
         return sources.range(values, self._decoding_features())
 
-    def _alive(self) -> tuple[ComputePipeline, ValueSources]:
+    def _forget_camera(self) -> None:
+        """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
+        self._buffers["frame"].write(bytes(FRAME_BYTES))
+
+    def _alive(self) -> tuple[Pipeline, ValueSources]:
         if self._pipeline is None or self._values is None:
             raise EngineError("this renderer has been released; make a new one")
         return self._pipeline, self._values
@@ -211,7 +283,7 @@ class FibletRenderer:
     def _bind_shared(self) -> None:
         self._buffers["frame"].bind_to_uniform_block(0)
         self._buffers["coding"].bind_to_uniform_block(1)
-        self._buffers["directions"].bind_to_storage_buffer(3)
+        self._buffers["rotations"].bind_to_uniform_block(4)
 
     def _decoding_features(self) -> list[str]:
         kinds = frozenset().union(*(chunk.kinds for chunk in self._chunks))
@@ -224,13 +296,19 @@ class FibletRenderer:
         }
         return [name for name, on in wanted.items() if on]
 
-    def explain(self) -> dict[str, object]:
+    def explain(self, *, counts: bool = True) -> dict[str, object]:
         """Say what the last redraw was made of, and wait for it to end.
+
+        Parameters
+        ----------
+        counts : bool
+            Whether to count fiblets, which takes a pass over all of them and reads the picture back.
 
         Returns
         -------
         dict
-            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``fiblets_total``.
+            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``fiblets_total``, ``share``; ``fiblets``:
+            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.census`), None where not known.
         """
         buffers: dict[str, int] = {name: buffer.size for name, buffer in self._buffers.items()}
         for chunk in self._chunks:
@@ -238,6 +316,8 @@ class FibletRenderer:
                 buffers[name] = buffers.get(name, 0) + buffer.size
         if self._pipeline is not None:
             buffers |= {name: buffer.size for name, buffer in self._pipeline.buffers.items()}
+        if self._occlusion is not None:
+            buffers["occlusion"] = self._occlusion.nbytes
         if self._target is not None:
             buffers["gbuffer"] = self._target.nbytes
         return {
@@ -245,30 +325,49 @@ class FibletRenderer:
             "features": list(self._features),
             "buffers": [{"name": name, "bytes": size} for name, size in buffers.items()],
             "fiblets_total": int(self._fiblets.n_fiblets),
+            "fiblets": self._count() if counts else self._counts(),
+            "share": self.share,
         }
 
-    def release(self) -> None:
-        """Give back everything on the GPU; twice is harmless."""
+    def _counts(
+        self, in_frustum: int | None = None, drawn: int | None = None, visible: int | None = None
+    ) -> dict[str, int | None]:
+        total = int(self._fiblets.n_fiblets)
+        return {"total": total, "in_frustum": in_frustum, "drawn": drawn, "visible": visible}
+
+    def _count(self) -> dict[str, int | None]:
+        """Count fiblets of the last picture."""
+        if self._pipeline is None or self._target is None or self._last is None:
+            return self._counts()
+        self._bind_shared()
+        _, planes = self._write_frame(*self._last)
+        features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else [])]
+        marks = self._pipeline.buffers["marks"] if isinstance(self._pipeline, ComputePipeline) else None
+        in_frustum, drawn = self._census.count(self._chunks, features, marks)
+        if self._occlusion is None:
+            drawn = in_frustum
+        return self._counts(in_frustum, drawn, self._census.visible(self._target))
+
+    def _release_chunks(self) -> None:
         for chunk in self._chunks:
             chunk.release()
         self._chunks.clear()
+
+    def release(self) -> None:
+        """Give back everything on the GPU; twice is harmless."""
+        self._release_chunks()
         for buffer in self._buffers.values():
             buffer.release()
         self._buffers.clear()
         if self._pipeline is not None:
             self._pipeline.release()
             self._pipeline = self._values = None
+        if self._occlusion is not None:
+            self._occlusion.release()
+            self._occlusion = None
         if self._target is not None:
             self._target.release()
             self._target = None
         self._programs.release()
         self._passes.release()
         self._drawn = None
-
-
-def _direction_table() -> np.ndarray[tuple[int, ...], np.dtype[np.float32]]:
-    """Quaternions of all cap angles and codes as the shaders take them: (4096, 4), x y z w."""
-    table = np.roll(tables.quaternions().reshape(-1, 4), -1, axis=1)
-    if np.any(table[:, 0]):
-        raise EngineError("a direction code's rotation has an x component; shaders/decode/words.glsl leaves it out")
-    return np.ascontiguousarray(table, np.float32)

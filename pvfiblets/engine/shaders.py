@@ -16,17 +16,18 @@ composed source with its line numbers.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import moderngl
 
 from ..codec import layout
 from .errors import EngineError
 
-__all__ = ["FEATURES", "Programs", "assemble", "read_shader"]
+__all__ = ["BLOCKS", "EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader"]
 
 FEATURES: dict[str, str] = {
     "ANCHORS_LOW": "anchors of 32 bits per axis",
@@ -34,7 +35,17 @@ FEATURES: dict[str, str] = {
     "LATTICE": "fiblets of lattice codes",
     "WIDE_LATTICE": "lattice fiblets with their box in the code stream",
     "RANK_TO_ID": "streamlines without points among the others",
+    "TEXTURE_DATA": "data from buffer textures, where OpenGL has no storage buffers",
     "WIDE_LINES": "lines wider than one pixel",
+    "LEVEL_OF_DETAIL": "far fiblets as one segment, among others",
+    "ONE_SEGMENT": "far fiblets as one segment, none but these",
+    "CULL_PYRAMID": "fiblets hidden behind a depth pyramid",
+    "CULL_COVERAGE": "fiblets hidden behind a coverage buffer",
+    "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",
+    "SUBGROUPS": "counting across invocations by the driver's own operations",
+    "PER_PRIMITIVE": "segments handed to the fragments by a mesh stage",
+    "OUTSIDE": "other things in the scene hide fiblets too",
+    "SECOND_ROUND": "fiblets drawn over others that were drawn first, out of turn",
     "CLIPPING": "fiblets that cross the edges of the picture",
     "CLIPPING_DEPTH": "fiblets that cross the near or the far plane",
     "CLIP_PLANES": "fiblets that cross planes of the caller's",
@@ -44,6 +55,17 @@ FEATURES: dict[str, str] = {
 }
 """What a program can be made to do, by the name of its switch."""
 
+NEWEST = 430
+"""GLSL that sources are written for, unless they say otherwise."""
+
+EXTENDED = 450
+"""GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
+
+BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4}
+"""Bindings of the uniform blocks, as the sources state them."""
+
+_VERSION = re.compile(r"^#version \d+$", re.MULTILINE)
+_BINDING = re.compile(r",\s*binding\s*=\s*\d+")
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[ \t]*$', re.MULTILINE)
 _CONSTANT = re.compile(r"\{\{\s*(\w*)\s*\}\}")
 _FEATURE = re.compile(r"\bFEATURE_(\w+)")
@@ -79,6 +101,7 @@ def assemble(
     constants: Mapping[str, object] | None = None,
     *,
     source: str | None = None,
+    version: int = NEWEST,
 ) -> str:
     """Compose a program's source.
 
@@ -92,6 +115,9 @@ def assemble(
         Values of ``{{ name }}``.
     source : str, optional
         The stage's text, instead of a file; ``name`` then only serves messages.
+    version : int
+        Of GLSL: sources are written for 4.30 and the later ones that they name. Below 4.20 bindings are left out, for
+        the caller to make; below 4.00 ``shaders/data/glsl330.glsl`` supplies what is missing.
 
     Returns
     -------
@@ -130,15 +156,21 @@ def assemble(
         raise EngineError(
             f"{name} asks for features {sorted(unknown)}; there are {sorted(FEATURES)}\n{_numbered(text)}"
         )
-    head, version, body = text.partition("#version 430")
-    if not version:
+    if not (line := _VERSION.search(text)):
         raise EngineError(f"{name} has no line '#version 430'\n{_numbered(text)}")
+    head, body = text[: line.start()], text[line.end() :]
     switches = "".join(f"#define FEATURE_{feature} {int(feature in active)}\n" for feature in sorted(used))
-    return f"{version}\n{switches}{head}{body}"
+    if version < NEWEST:
+        if version < 420:
+            body = _BINDING.sub("", body)
+        if version < 400:
+            switches += read_shader("data/glsl330.glsl")
+        return f"#version {version}\n{switches}{head}{body}"
+    return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
 
 
 class Programs:
-    """Compute programs of one context, built when first asked for and kept.
+    """Programs of one context, built when first asked for and kept.
 
     Parameters
     ----------
@@ -152,6 +184,8 @@ class Programs:
         self._constants = dict(constants)
         self._programs: dict[str, moderngl.ComputeShader] = {}
         self._requests: dict[tuple[str, frozenset[str]], moderngl.ComputeShader] = {}
+        self._linked: dict[tuple[tuple[tuple[str, str], ...], frozenset[str]], moderngl.Program] = {}
+        self._screens: dict[tuple[str, frozenset[str]], tuple[moderngl.Program, moderngl.VertexArray]] = {}
 
     def compute(self, name: str, features: Iterable[str] = ()) -> moderngl.ComputeShader:
         """Return the program of a stage with some features on.
@@ -166,7 +200,8 @@ class Programs:
         request = name, frozenset(features)
         if request in self._requests:
             return self._requests[request]
-        source = assemble(name, request[1], self._constants)
+        version = EXTENDED if "INT64_ATOMICS" in request[1] else NEWEST
+        source = assemble(name, request[1], self._constants, version=version)
         if source not in self._programs:
             try:
                 self._programs[source] = self._ctx.compute_shader(source)
@@ -175,12 +210,68 @@ class Programs:
         self._requests[request] = self._programs[source]
         return self._programs[source]
 
+    def screen(self, name: str, features: Iterable[str] = ()) -> tuple[moderngl.Program, moderngl.VertexArray]:
+        """Return the program of a fragment stage that runs on every pixel, and what to render three vertices of.
+
+        Raises
+        ------
+        EngineError
+            If a stage does not compile; the message holds its source.
+        """
+        key = name, frozenset(features)
+        if key not in self._screens:
+            program = self.render({"vertex": "screen/triangle.vert", "fragment": name}, features)
+            self._screens[key] = program, self._ctx.vertex_array(program, [])
+        return self._screens[key]
+
+    def render(
+        self, stages: Mapping[str, str], features: Iterable[str] = (), varyings: Sequence[str] = ()
+    ) -> moderngl.Program:
+        """Return the program of several stages with some features on.
+
+        Parameters
+        ----------
+        stages : mapping
+            File of each stage, by moderngl's names: ``'vertex'``, ``'tess_control'``, ``'task'`` and so on.
+        features : iterable of str
+        varyings : sequence of str
+            What transform feedback takes back.
+
+        Raises
+        ------
+        EngineError
+            If a stage does not compile; the message holds all sources.
+        """
+        request = tuple(sorted(stages.items())), frozenset(features)
+        if request not in self._linked:
+            version = EXTENDED if "mesh" in stages else min(self._ctx.version_code, NEWEST)
+            sources: dict[str, Any] = {
+                f"{stage}_shader": assemble(name, request[1], self._constants, version=version)
+                for stage, name in stages.items()
+            }
+            try:
+                program = self._ctx.program(**sources, varyings=tuple(varyings))
+            except moderngl.Error as error:
+                shown = "\n\n".join(f"{stage}:\n{_numbered(source)}" for stage, source in sources.items())
+                raise EngineError(f"{', '.join(stages.values())} do not link: {error}\n{shown}") from error
+            for block, binding in BLOCKS.items():
+                if isinstance(member := program.get(block, None), moderngl.UniformBlock):
+                    member.binding = binding
+            self._linked[request] = program
+        return self._linked[request]
+
     def release(self) -> None:
         """Give all programs back; twice is harmless."""
-        for program in self._programs.values():
-            program.release()
+        for _, array in self._screens.values():
+            array.release()
+        self._screens.clear()
+        for computing in self._programs.values():
+            computing.release()
+        for drawing in self._linked.values():
+            drawing.release()
         self._programs.clear()
         self._requests.clear()
+        self._linked.clear()
 
 
 def _numbered(source: str) -> str:

@@ -15,7 +15,7 @@ step is a tenth of a radian per step.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,10 +24,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codec import layout
-from .chunks import Chunk, storage_buffer
+from .chunks import Chunk, padded, storage_buffer
 from .errors import EngineError
-from .passes import dispatch
-from .shaders import Programs
+from .measures import Measurer
+from .upload import fill_buffer, rows_of
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -35,16 +35,13 @@ if TYPE_CHECKING:
 __all__ = ["ValueSources"]
 
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
-BATCH = 1 << 16  # fiblets measured at a time: 3 MB
-MEASURE_BINDINGS = {"anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "anchors_low": 6}
-GROUP_SIZE = 64
 
 Floats = npt.NDArray[np.float64]
 
 
 @dataclass
 class _Measures:
-    """What ``measure.comp`` says of some consecutive fiblets, in float64."""
+    """What ``attributes/measure.glsl`` says of some consecutive fiblets, in float64."""
 
     begin: npt.NDArray[np.bool_]
     end: npt.NDArray[np.bool_]
@@ -64,26 +61,27 @@ class ValueSources:
     Parameters
     ----------
     ctx : moderngl.Context
-    programs : Programs
+    measurer : Measurer
     fiblets : FibletSet
     chunks : sequence of Chunk
         Gain and lose the buffers ``values`` and ``starts``.
-    max_groups : int
+    prepare : callable
+        Called before fiblets are measured; binds nothing.
     """
 
     def __init__(
         self,
         ctx: moderngl.Context,
-        programs: Programs,
+        measurer: Measurer,
         fiblets: FibletSet,
         chunks: Sequence[Chunk],
-        max_groups: int,
+        prepare: Callable[[], None],
     ) -> None:
         self._ctx = ctx
-        self._programs = programs
+        self._prepare = prepare
+        self._measurer = measurer
         self._fiblets = fiblets
         self._chunks = chunks
-        self._max_groups = max_groups
         self._active: str | None = None
         self._ranges: dict[str, tuple[float, float]] = {}
 
@@ -152,8 +150,9 @@ class ValueSources:
         for chunk in self._chunks:
             first, last = chunk.plan.points
             # One more point: the chunk's last fiblet may be joined to the next chunk's first.
-            codes = np.asarray(stored.codes[first : last + 1])
-            chunk.buffers["values"] = storage_buffer(self._ctx, codes, name)
+            last = min(last + 1, len(stored.codes))
+            size = padded((last - first) * stored.codes.dtype.itemsize)
+            chunk.buffers["values"] = fill_buffer(self._ctx, size, rows_of(stored.codes, first, last), name)
             chunk.buffers["chunk"].write(np.uint32(bits).tobytes(), offset=20)
             chunk.buffers["chunk"].write(np.array([stored.lo, scale], "<f4").tobytes(), offset=32)
 
@@ -169,6 +168,7 @@ class ValueSources:
         make = _arc_lengths if name == ARC_LENGTH else _curvatures
         carry: Any = None
         low, high = np.inf, -np.inf
+        self._prepare()
         for chunk in self._chunks:
             values, carry, extremes = make(self._measure(chunk, features), carry)
             low, high = min(low, extremes[0]), max(high, extremes[1])
@@ -176,31 +176,15 @@ class ValueSources:
         self._ranges[name] = (float(low), float(high)) if low <= high else (0.0, 0.0)
 
     def _measure(self, chunk: Chunk, features: Sequence[str]) -> _Measures:
-        program = self._programs.compute("compute/measure.comp", features)
-        chunk.buffers["chunk"].bind_to_uniform_block(2)
-        for key, binding in MEASURE_BINDINGS.items():
-            if key in chunk.buffers:
-                chunk.buffers[key].bind_to_storage_buffer(binding)
-        rows = np.empty((chunk.n_fiblets, 12), "<f4")
-        scratch = storage_buffer(self._ctx, bytes(min(BATCH, chunk.n_fiblets) * 48), "measures")
-        try:
-            scratch.bind_to_storage_buffer(5)
-            for first in range(0, chunk.n_fiblets, BATCH):
-                size = min(BATCH, chunk.n_fiblets - first)
-                program["batch_first"], program["batch_size"] = first, size
-                dispatch(program, -(-size // GROUP_SIZE), self._max_groups)
-                self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
-                batch = np.frombuffer(scratch.read(size * 48), "<f4").reshape(-1, 12)
-                rows[first : first + size] = batch
-        finally:
-            scratch.release()
+        rows = self._measurer.measure(chunk, features)
         begin, end = chunk.plan.fiblets
-        words = np.asarray(self._fiblets.anchors[begin:end])
-        m = rows.astype(np.float64)
+        fiblets, m = self._fiblets, rows.astype(np.float64)
+        anchors, decoding = rows_of(fiblets.anchors, begin, end), rows_of(fiblets.decoding, begin, end)
+        words = np.concatenate([layout.unpack("begin", a) | layout.unpack("end", a) << 1 for a in anchors])
         return _Measures(
-            begin=layout.unpack("begin", words) == 1,
-            end=layout.unpack("end", words) == 1,
-            single=layout.unpack("last", np.asarray(self._fiblets.decoding[begin:end])) == 0,
+            begin=words & 1 == 1,
+            end=words & 2 == 2,
+            single=np.concatenate([layout.unpack("last", d) == 0 for d in decoding]),
             first=m[:, 0:3],
             length=m[:, 3],
             joint=m[:, 4:7],

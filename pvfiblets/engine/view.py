@@ -82,16 +82,22 @@ class Style:
     values : str, optional
         The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
         streamline's first point), or the name of an array in ``FibletSet.per_point``. None costs nothing.
+    tolerance : float
+        Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
+        one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
 
     Raises
     ------
     ValueError
-        If the line width is below 1 or not finite.
+        If the line width is below 1, the tolerance below 0, or either not finite.
     """
 
     line_width: float = 1.0
     values: str | None = None
+    tolerance: float = 0.5
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.line_width) and self.line_width >= 1.0):
             raise ValueError(f"line_width is {self.line_width}; give a finite number of pixels, 1 or more")
+        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
+            raise ValueError(f"tolerance is {self.tolerance}; give a finite number of pixels, 0 or more")

@@ -66,12 +66,8 @@ class MappedFile:
 
         Without this a file streamed piece by piece ends up resident as a whole, however small the pieces.
         """
-        if isinstance(self.buffer, bytes) or not hasattr(mmap, "MADV_DONTNEED"):
-            return
-        first = -(-position // mmap.PAGESIZE) * mmap.PAGESIZE
-        length = (position + n_bytes) // mmap.PAGESIZE * mmap.PAGESIZE - first
-        if length > 0:
-            self.buffer.madvise(mmap.MADV_DONTNEED, first, length)
+        if not isinstance(self.buffer, bytes):
+            drop_pages(self.buffer, position, n_bytes)
 
     def check(self, position: int, n_bytes: int, what: str) -> None:
         """Raise FormatError unless the file holds `n_bytes` bytes from `position`."""
@@ -85,6 +81,16 @@ class MappedFile:
                 f"{what} up to byte {position + n_bytes} ({position + n_bytes - self.size} more): "
                 "the file is truncated or its header is damaged",
             )
+
+
+def drop_pages(mapped: mmap.mmap, position: int, n_bytes: int) -> None:
+    """Let go of whole pages of memory within some bytes of a map, where the system can; they stay readable."""
+    if not hasattr(mmap, "MADV_DONTNEED"):
+        return
+    first = -(-position // mmap.PAGESIZE) * mmap.PAGESIZE
+    length = (position + n_bytes) // mmap.PAGESIZE * mmap.PAGESIZE - first
+    if length > 0:
+        mapped.madvise(mmap.MADV_DONTNEED, first, length)
 
 
 @contextmanager

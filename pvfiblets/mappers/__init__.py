@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.mapper import FibletMapper
 
-__all__ = ["Colouring", "FibletMapper"]
+__all__ = ["Colouring", "EngineOptions", "FibletMapper"]

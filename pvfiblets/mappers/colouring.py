@@ -209,6 +209,22 @@ class Colouring:
         opaque = np.full((len(self.values), 1), 255, dtype=np.uint8)
         return np.hstack([self.values, opaque])
 
+    def check_count(self, n_streamlines: int) -> None:
+        """Raise unless values per streamline are as many as streamlines.
+
+        Raises
+        ------
+        ValueError
+            They are not.
+        """
+        if "colour_streamline" not in self.features or self.values is None:
+            return
+        if len(self.values) != n_streamlines:
+            raise ValueError(
+                f"{self.mode} has {len(self.values)} values for {n_streamlines} "
+                "streamlines; give one per streamline, empty ones included"
+            )
+
     def translucent(self) -> bool:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
         if self.mode == "streamline_rgb" and self.values is not None:

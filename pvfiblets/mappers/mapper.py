@@ -20,19 +20,13 @@ from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engines import EngineOptions, engine_renderer
 from pvfiblets.mappers.picking import Drawn, pick
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import Frame, frame_of, world_planes
+from pvfiblets.mappers.scene import Frame, frame_of, others_before, world_planes
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
-
-
-def engine_renderer(ctx: Any, fiblets: Any) -> Any:
-    """Make the engine's renderer; the default ``renderer_factory``."""
-    from pvfiblets.engine import FibletRenderer
-
-    return FibletRenderer(ctx, fiblets)
 
 
 class FibletMapper(vtkOpenGLPolyDataMapper):
@@ -50,8 +44,13 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         By orientation when left out.
     line_width : float, default 1.0
         Pixels of the window, at least 1.
+    options : EngineOptions, optional
+        Pipeline and culling; the defaults suit every machine.
     renderer_factory : callable, optional
-        Takes a moderngl context and the fiblets and returns a renderer as of `pvfiblets.engine`.
+        Takes a moderngl context, the fiblets, and as keywords those options that are not the defaults; returns a
+        renderer as of `pvfiblets.engine`.
+    progress : bool, default False
+        Show a progress bar while copying to the GPU.
 
     Notes
     -----
@@ -68,9 +67,13 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         *,
         colouring: Colouring | None = None,
         line_width: float = 1.0,
-        renderer_factory: Callable[[Any, Any], Any] = engine_renderer,
+        options: EngineOptions | None = None,
+        renderer_factory: Callable[..., Any] = engine_renderer,
+        progress: bool = False,
     ) -> None:
         self._factory = renderer_factory
+        self._options = EngineOptions() if options is None else options
+        self._progress = {"progress": True} if progress else {}
         self._actor = weak(None)
         self._property = weak(None)
         self._observer = 0
@@ -99,7 +102,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         ValueError
             The colouring has values for another number of streamlines.
         """
-        _check_count(self._colouring, fiblets)
+        self._colouring.check_count(fiblets.n_streamlines)
         self._fiblets = fiblets
         bounds = fiblets.bounds if fiblets.n_streamlines and fiblets.n_points else None
         self.SetInputData(proxy_polydata(bounds))
@@ -115,13 +118,23 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         self._actor_modified()
 
     @property
+    def options(self) -> EngineOptions:
+        """Pipeline and culling; set another `EngineOptions` to change them from the next frame on."""
+        return self._options
+
+    @options.setter
+    def options(self, options: EngineOptions) -> None:
+        self._options = options
+        self._actor_modified()
+
+    @property
     def colouring(self) -> Colouring:
         """Where the colours come from; set another `Colouring` to change them."""
         return self._colouring
 
     @colouring.setter
     def colouring(self, colouring: Colouring) -> None:
-        _check_count(colouring, self._fiblets)
+        colouring.check_count(self._fiblets.n_streamlines)
         self._colouring = colouring
         self._install()
         self._actor_modified()
@@ -226,7 +239,10 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
-            buffer = engine.render(view, style)
+            outside = None
+            if engine.needs_outside(view, style) and others_before(renderer, actor):
+                outside = slot.outside_depth(context.ctx).copy(viewport)
+            buffer = engine.render(view, style, outside=outside)
             textures = self._textures(context, slot, buffer)
             units = context.texture_units(len(textures))
             for unit, texture in zip(units, textures.values(), strict=True):
@@ -245,12 +261,12 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         return Style(line_width=width, values=self._colouring.point_source)
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
-        """Return the engine's renderer of a window, made anew for other fiblets."""
-        if slot.versions.get("fiblets") is not self._fiblets:
+        """Return the engine's renderer of a window, made anew for other fiblets and other options."""
+        if slot.versions.get("fiblets") is not self._fiblets or slot.versions.get("options") != self._options:
             slot.drop_renderer()
-            slot.versions["fiblets"] = self._fiblets
+            slot.versions |= {"fiblets": self._fiblets, "options": self._options}
         if slot.renderer is None:
-            slot.renderer = self._factory(context.ctx, self._fiblets)
+            slot.renderer = self._factory(context.ctx, self._fiblets, **self._options.changed(), **self._progress)
         return slot.renderer
 
     def _textures(self, context: WindowContext, slot: Slot, buffer: Any) -> dict[str, Any]:
@@ -319,6 +335,21 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
                     return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance)
         return None
 
+    @property
+    def pipeline_in_use(self) -> str | None:
+        """Name of the pipeline that drew the last picture; None before the first."""
+        return next((getattr(renderer, "pipeline", None) for renderer in self._renderers()), None)
+
+    @property
+    def share(self) -> float | None:
+        """Least share of the streamlines that a window draws: 1.0 but for ``fit='sample'``; None before the first."""
+        return min((getattr(renderer, "share", 1.0) for renderer in self._renderers()), default=None)
+
+    def _renderers(self) -> list[Any]:
+        """Return the engine's renderers of all windows."""
+        slots = [context.slots[self.GetAddressAsString("")] for context in contexts_with(self)]
+        return [slot.renderer for slot in slots if slot.renderer is not None]
+
     def explain(self) -> dict[str, Any]:
         """Return what is active: the engine's passes, features and buffers, and the resolve's.
 
@@ -328,12 +359,13 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
             shader; ``textures``: name and bytes of the mapper's own textures.
         """
-        windows = []
-        textures = []
+        windows, textures = [], []
         for context in contexts_with(self):
             slot = context.slots[self.GetAddressAsString("")]
-            if slot.renderer is not None:
-                windows.append(slot.renderer.explain())
+            if slot.renderer is not None and context.alive:
+                context.window.MakeCurrent()
+                with context.foreign():
+                    windows.append(slot.renderer.explain())
             textures += [
                 {"name": name, "bytes": texture.width * texture.height * texture.components}
                 for name, texture in slot.textures.items()
@@ -365,14 +397,3 @@ def _keep_surface(actor_property: Any, _event: str) -> None:
         actor_property.SetRepresentationToSurface()
     if actor_property.GetEdgeVisibility():
         actor_property.SetEdgeVisibility(False)
-
-
-def _check_count(colouring: Colouring, fiblets: Any) -> None:
-    """Raise unless per-streamline colours are as many as streamlines."""
-    if "colour_streamline" not in colouring.features or colouring.values is None:
-        return
-    if len(colouring.values) != fiblets.n_streamlines:
-        raise ValueError(
-            f"{colouring.mode} has {len(colouring.values)} values for {fiblets.n_streamlines} "
-            "streamlines; give one per streamline, empty ones included"
-        )

@@ -129,6 +129,23 @@ def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
             yield from renderers_of(consumer)
 
 
+def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
+    """Say whether VTK has drawn something opaque before an actor, whose depth may be looked at.
+
+    Not while VTK selects: what it draws then is not what the user sees.
+    """
+    if renderer.GetSelector() is not None:
+        return False
+    props = renderer.GetViewProps()
+    for index in range(props.GetNumberOfItems()):
+        prop = props.GetItemAsObject(index)
+        if prop is actor:
+            return False
+        if prop.GetVisibility() and prop.HasOpaqueGeometry():
+            return True
+    return False
+
+
 def world_planes(mapper: Any) -> Matrix:
     """Return the clipping planes of a mapper.
 

@@ -21,6 +21,7 @@ from vtkmodules.util.vtkConstants import VTK_UNSIGNED_CHAR
 from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
+from pvfiblets.mappers.outside import OutsideDepth
 from pvfiblets.mappers.scene import renderers_of
 
 GL_VIEWPORT = 0x0BA2
@@ -79,12 +80,22 @@ class Slot:
         self.textures: dict[str, Any] = {}
         self.versions: dict[str, Any] = {}
         self.drawn: dict[str, Any] = {}
+        self._outside: OutsideDepth | None = None
+
+    def outside_depth(self, ctx: Any) -> OutsideDepth:
+        """Return what copies the depth of other actors."""
+        if self._outside is None:
+            self._outside = OutsideDepth(ctx)
+        return self._outside
 
     def release(self) -> None:
         """Delete the GL objects. The window's context must be current."""
         if self.renderer is not None:
             self.renderer.release()
             self.renderer = None
+        if self._outside is not None:
+            self._outside.release()
+            self._outside = None
         for texture in self.textures.values():
             texture.release()
         self.textures.clear()
@@ -143,8 +154,9 @@ class WindowContext:
     def __init__(self, window: Any) -> None:
         self._window = weak(window)
         self.slots: dict[str, Slot] = {}
+        self.ctx: Any = None
         with self.foreign():
-            self.ctx: Any = _attach()
+            self.ctx = _attach()
             self._witness = vtkTextureObject()
             self._witness.SetContext(window)
             self._witness.Allocate2D(1, 1, 4, VTK_UNSIGNED_CHAR)
@@ -174,10 +186,17 @@ class WindowContext:
 
     @contextmanager
     def foreign(self) -> Iterator[None]:
-        """Keep VTK's record of the GL state true around GL calls that are not VTK's."""
+        """Keep VTK's record of the GL state true around GL calls that are not VTK's.
+
+        And moderngl's: it binds, whenever it has made a framebuffer, the one that it remembers, and what was bound
+        when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
+        """
         state = self.window.GetState()
         state.Reset()
         state.Push()
+        if self.ctx is not None:
+            self.ctx.fbo = self.ctx.screen
+            self.ctx.mglo.fbo = self.ctx.screen.mglo
         try:
             yield
         finally:
@@ -284,3 +303,23 @@ def contexts_with(mapper: Any) -> list[WindowContext]:
     """Return the contexts in which a mapper keeps something."""
     address = mapper.GetAddressAsString("")
     return [context for context in _contexts.values() if address in context.slots]
+
+
+@contextmanager
+def borrowed_context(window: Any) -> Iterator[Any]:
+    """Yield the moderngl context of a window that need not show any fiblets, current and free to be used.
+
+    Parameters
+    ----------
+    window : vtkOpenGLRenderWindow
+        Its OpenGL is started if that has not been done yet.
+    """
+    window.Initialize()
+    window.MakeCurrent()
+    context = context_of(window)
+    try:
+        with context.foreign():
+            yield context.ctx
+    finally:
+        if not context.slots:
+            context._close()  # noqa: SLF001  this module's own

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, FibletMapper
+from pvfiblets.mappers import Colouring, EngineOptions
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.mapper import PlottedMapper
+from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.scalars import Scalars, find_scalars
 from pvfiblets.plotting.sources import with_point_values
 
@@ -17,33 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from pvfiblets.codec.fibletset import FibletSet
-
-
-class PlottedMapper(FibletMapper):
-    """A fiblet mapper that shows PyVista's scalar bars the actor's own look-up table.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        What to draw.
-    """
-
-    @property
-    def lookup_table(self) -> pv.LookupTable:
-        """The table that colours both the picture and the scalar bar."""
-        return self._shown_by().lookup_table
-
-    @property
-    def scalar_range(self) -> tuple[float, float]:
-        """Values of the first and last colour; bars that several actors share set it."""
-        return self._shown_by().clim
-
-    @scalar_range.setter
-    def scalar_range(self, clim: tuple[float, float]) -> None:
-        self._shown_by().clim = clim
-
-    def _shown_by(self) -> FibletActor:
-        return cast("FibletActor", self.actor)
 
 
 class FibletActor(pv.Actor):
@@ -71,6 +46,10 @@ class FibletActor(pv.Actor):
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
+    options : EngineOptions, optional
+        Pipeline and culling.
+    progress : bool, default: False
+        Show a progress bar while copying to the GPU.
     """
 
     def __init__(
@@ -84,6 +63,8 @@ class FibletActor(pv.Actor):
         lighting: bool | None = None,
         name: str | None = None,
         theme: Any = None,
+        options: EngineOptions | None = None,
+        progress: bool = False,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
         self._theme = theme
@@ -93,7 +74,7 @@ class FibletActor(pv.Actor):
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
         self._bar_changed: Callable[[FibletActor], None] | None = None
-        mapper = PlottedMapper(fiblets)
+        mapper = PlottedMapper(fiblets, options=options, progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
@@ -104,7 +85,8 @@ class FibletActor(pv.Actor):
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
-        return f"<{type(self).__name__} {self.name!r}: {self._fiblets!r}, coloured by {colours}>"
+        share = "" if self.share in (None, 1.0) else f", {self.share:.1%} of the streamlines drawn"
+        return f"<{type(self).__name__} {self.name!r}: {self._fiblets!r}, coloured by {colours}{share}>"
 
     # Data ---------------------------------------------------------------------------------------
 
@@ -139,6 +121,7 @@ class FibletActor(pv.Actor):
             settings=replace(self._settings),
             line_width=self.line_width,
             theme=self._theme,
+            options=self._mapper.options,
         )
         twin.prop = self.prop.copy() if deep else self.prop
         twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
@@ -154,19 +137,16 @@ class FibletActor(pv.Actor):
         dict
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
-            their sum; ``fiblets_total``.
+            their sum; ``fiblets_total``; ``pipeline``; ``culling``; ``share``: how many of the
+            streamlines are drawn; ``fiblets``: of the last redraw ``total``, ``in_frustum``,
+            ``drawn`` and ``visible``, ``None`` where not known.
         """
-        report = self._mapper.explain()
-        windows = report["windows"]
-        buffers = [buffer for window in windows for buffer in window["buffers"]]
-        buffers += report["textures"]
-        features = {feature for window in windows for feature in window["features"]}
         return {
-            "passes": [item for window in windows for item in window["passes"]],
-            "features": sorted(features | set(report["features"])),
-            "buffers": buffers,
-            "gpu_bytes": sum(buffer["bytes"] for buffer in buffers),
+            **added_up(self._mapper.explain()),
             "fiblets_total": self._fiblets.n_fiblets,
+            "pipeline": self.pipeline_in_use,
+            "culling": self.culling,
+            "share": self.share,
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -322,6 +302,48 @@ class FibletActor(pv.Actor):
             raise ValueError(f"line_width is {width!r}; give pixels above 0 and up to 64")
         self.prop.line_width = float(width)
         self._mapper.line_width = float(width)
+
+    # How it is drawn ----------------------------------------------------------------------------
+
+    @property
+    def pipeline(self) -> str:
+        """How fiblets become pixels; ``plotter.fiblets.pipelines()`` lists the choices."""
+        return self._mapper.options.pipeline
+
+    @pipeline.setter
+    def pipeline(self, pipeline: str) -> None:
+        self._mapper.options = replace(self._mapper.options, pipeline=pipeline)
+
+    @property
+    def pipeline_in_use(self) -> str | None:
+        """The pipeline that drew the last picture; ``None`` before the first."""
+        return self._mapper.pipeline_in_use
+
+    @property
+    def share(self) -> float | None:
+        """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
+
+        Less only where ``fit`` is ``"sample"`` and memory does not suffice for all.
+        """
+        return self._mapper.share
+
+    @property
+    def culling(self) -> str | None:
+        """How fiblets behind others are found out: ``"two-phase"``, ``"coverage"`` or ``None``."""
+        return self._mapper.options.culling
+
+    @culling.setter
+    def culling(self, culling: str | None) -> None:
+        self._mapper.options = replace(self._mapper.options, culling=culling)
+
+    @property
+    def fit(self) -> str | None:
+        """What to do where memory does not suffice: ``None`` refuses, ``"sample"`` draws a share."""
+        return self._mapper.options.fit
+
+    @fit.setter
+    def fit(self, fit: str | None) -> None:
+        self._mapper.options = replace(self._mapper.options, fit=fit)
 
     def watch(self, bar_changed: Callable[[FibletActor], None] | None) -> None:
         """Call ``bar_changed(actor)`` whenever the actor comes to need another scalar bar."""

@@ -17,6 +17,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.engine.capabilities import PipelineTable, pipelines
+from pvfiblets.mappers import EngineOptions
+from pvfiblets.mappers.windows import borrowed_context
 from pvfiblets.plotting.actor import FibletActor
 from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.sources import as_fiblets
@@ -97,6 +100,9 @@ class FibletsComponent:
         per_point: Iterable[str] = (),
         max_error: float | None = None,
         progress: bool = False,
+        pipeline: str = "auto",
+        culling: str | None = "two-phase",
+        fit: str | None = None,
         **options: Any,
     ) -> FibletActor:
         """Add streamlines to the scene, compressed.
@@ -151,7 +157,17 @@ class FibletsComponent:
         max_error : float, optional
             Greatest distance (mm) of a drawn from a given point; a tenth of a step by default.
         progress : bool, default: False
-            Show a progress bar while reading and compressing.
+            Show a progress bar while reading, compressing, and copying to the GPU.
+        pipeline : str, default: "auto"
+            How fiblets become pixels; ``"auto"`` takes the fastest that the plotter's OpenGL has, and
+            :meth:`pipelines` lists all.
+        culling : {"two-phase", "coverage", None}, default: "two-phase"
+            How fiblets behind others are found out. ``"two-phase"`` changes no pixel;
+            ``"coverage"`` may lose some for a frame after the camera jumped; ``None`` draws all
+            that the camera may see.
+        fit : {None, "sample"}, optional
+            Where the fiblets need more GPU memory than there is: ``None`` refuses, ``"sample"``
+            draws a share of the streamlines.
         **options
             Further arguments of :func:`pvfiblets.codec.compress`, such as ``step`` or ``effort``.
 
@@ -178,6 +194,7 @@ class FibletsComponent:
         >>> actor.line_width = 2
         """
         theme = self._plotter.theme
+        engine = EngineOptions(pipeline=pipeline, culling=culling, fit=fit)  # before the slow part
         fiblets, scalars = as_fiblets(
             source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress, **options
         )
@@ -200,6 +217,8 @@ class FibletsComponent:
             opacity=opacity,
             lighting=lighting,
             theme=theme,
+            options=engine,
+            progress=progress,
         )
         if user_matrix is not None:
             actor.user_matrix = user_matrix
@@ -230,6 +249,33 @@ class FibletsComponent:
             One entry of :meth:`FibletActor.explain` per actor, with its ``name``.
         """
         return [{"name": actor.name, **actor.explain()} for actor in self]
+
+    def pipelines(self) -> PipelineTable:
+        """Return every pipeline: whether the plotter's OpenGL has it, or why not.
+
+        Returns
+        -------
+        PipelineTable
+            A list, the fastest first, that prints as a table; ``auto`` is the one that
+            ``pipeline="auto"`` takes. A plotter that has not been shown starts its OpenGL for it.
+
+        Raises
+        ------
+        RuntimeError
+            If the plotter is closed.
+
+        Examples
+        --------
+        >>> import pyvista as pv
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> [info.name for info in pl.fiblets.pipelines() if info.available]  # doctest: +SKIP
+        ['compute', 'tessellation', 'geometry']
+        """
+        window = self._plotter.render_window
+        if window is None:
+            raise RuntimeError("this plotter is closed and has no OpenGL; ask a new one")
+        with borrowed_context(window) as ctx:
+            return pipelines(ctx)
 
     # Life cycle ---------------------------------------------------------------------------------
 

@@ -119,7 +119,7 @@ def with_point_values(
     numbers = values.astype(np.float64)
     finite = numbers[np.isfinite(numbers)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    stored = {**fiblets.per_point, UNNAMED: quantise_values(numbers, low, high)}
+    stored = {**fiblets.per_point, UNNAMED: quantise_values(fiblets.in_coded_order(numbers), low, high)}
     return replace(fiblets, per_point=stored), UNNAMED
 
 

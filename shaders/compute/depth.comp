@@ -3,38 +3,57 @@
 // One invocation decodes a fiblet in registers and draws its short segments straight into the depth image with
 // imageAtomicMin. Losers are turned away by a plain load: what the image holds only ever falls, so a stale value can
 // cost an atomic but never a pixel. A fiblet that won or tied a pixel becomes a candidate for owning it.
+//
+// With atomics of 64 bits the fiblet goes along with its depth (compute/nearest.glsl), and split.comp finds the owners.
 
 #version 430
+#if FEATURE_INT64_ATOMICS
+#extension GL_ARB_gpu_shader_int64 : require
+#extension GL_NV_shader_atomic_int64 : require
+#endif
 layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
 
 #include "compute/marks.glsl"
 
+#if FEATURE_INT64_ATOMICS
+#include "compute/nearest.glsl"
+uint owner;
+#else
 layout(r32ui, binding = 0) coherent uniform uimage2D depth_image;
-
-uniform uint part;  // of the plan
-
-uint bits_of(uint word) { return marks[word * 8u + part]; }
+bool won;
+#endif
 
 #include "compute/bits.glsl"
 
-bool won;
+uint bits_of(uint word) { return mark_of(word, part + CLASSES * drawing); }
 
-void start_segment(uint segment, vec3 delta) {}
+void start_segment(uint segment, vec3 delta, float steps) {}
 
 void plot(ivec2 pixel, float z, float s, uint segment) {
+#if FEATURE_INT64_ATOMICS
+    uint at = pixel_index(pixel);
+    uint64_t word = nearest_word(depth_key(z), owner);
+    if (word < nearest[at]) atomicMin(nearest[at], word);
+#else
     uint key = depth_key(z), there = imageLoad(depth_image, pixel).x;
     if (key < there) there = imageAtomicMin(depth_image, pixel, key);
     if (key <= there) won = true;
+#endif
 }
 
 void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
+#if FEATURE_INT64_ATOMICS
+        owner = chunk.y + f;
+        draw_fiblet(f);
+#else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(marks[((chunk.y + f) >> 5) * 8u + CANDIDATES], 1u << (f & 31u));
+        if (won) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+#endif
     }
 }

@@ -74,7 +74,7 @@ void decode_together(uint f) {
 #if FEATURE_DIRECTION
         if (held && moves) {
             uint code = i >= 2u ? code_at(byte + i - 2u) : 0u;
-            vec4 r = i == 1u ? first_frame(fiblet_shape(words)) : table[(fiblet_cap(words) << 8u) + code];
+            vec4 r = i == 1u ? first_frame(fiblet_shape(words)) : rotation(fiblet_cap(words), code, rotation_scale(fiblet_cap(words)));
             prefix_frame[i] = r;
             prefix_point[i] = step_length(words) * rotated_x(r);
         }
@@ -114,7 +114,7 @@ void decode_together(uint f) {
     unit = steps.z * exp2(-float(fiblet_cap(words)));
 #endif
     vec3 anchor = anchor_local(f);
-    bool end = fiblet_end(anchors[f]) != 0u;
+    bool end = ends(f);
     for (uint i = thread; i < 2u * PREFIX_THREADS && thread < PREFIX_THREADS; i += PREFIX_THREADS) {
         vec3 point = anchor + prefix_point[i];
 #if FEATURE_LATTICE

@@ -20,7 +20,8 @@ struct Walk {
     uint last;     // index of the last point
     uint kind;
     uint byte;     // where the next code stands
-    uint table;    // first row of the cap angle's rotations
+    uint cap;      // cap angle, and the scale of its rotations
+    float scale;
     float step;    // mm; of the lattice: its edge
     uint width;    // bytes per lattice code
     uvec2 n;
@@ -43,7 +44,8 @@ void walk_begin(uint f) {
     walk.kind = fiblet_kind(words);
     walk.byte = first_code(f, words);
 #if FEATURE_DIRECTION
-    walk.table = fiblet_cap(words) << 8u;
+    walk.cap = fiblet_cap(words);
+    walk.scale = rotation_scale(walk.cap);
     walk.step = step_length(words);
     walk_frame = first_frame(fiblet_shape(words));
 #endif
@@ -83,7 +85,7 @@ void walk_next(uint i) {
 #endif
 #if FEATURE_DIRECTION
     if (i > 1u) {
-        walk_frame = turned(walk_frame, table[walk.table + code_at(walk.byte + i - 2u)]);
+        walk_frame = turned(walk_frame, rotation(walk.cap, code_at(walk.byte + i - 2u), walk.scale));
     }
     walk_delta = walk.step * rotated_x(walk_frame);
     walk_point += walk_delta;

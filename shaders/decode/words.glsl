@@ -5,26 +5,34 @@
 //   X            (1, 0, 0)
 //   q            frame as a unit quaternion (x, y, z, w): q turns X to the direction of the segment
 //   T[cap][code] the rotation that a code stands for: the smallest one that turns X to its direction, hence without
-//                an x component, which makes a product 12 multiplications instead of 16
+//                an x component, which makes a product 12 multiplications instead of 16. A word holds y and z as 16-bit
+//                integers times the cap angle's scale; w follows from the unit length
 
 #include "decode/record.glsl"
+#include "data/decoding.glsl"
 
-layout(std430, binding = 1) readonly buffer Decoding { uint decoding[]; };
-layout(std430, binding = 2) readonly buffer Codes { uint codes[]; };
-layout(std430, binding = 3) readonly buffer Table { vec4 table[]; };
-
-uvec3 decoding_words(uint f) { return uvec3(decoding[3u * f], decoding[3u * f + 1u], decoding[3u * f + 2u]); }
+uvec3 decoding_words(uint f) { return uvec3(decoding_word(3u * f), decoding_word(3u * f + 1u), decoding_word(3u * f + 2u)); }
 
 // First byte of a fiblet's codes, counted from the chunk's first.
-uint first_code(uint f, uvec3 words) { return pages[f >> FIBLET_PAGE_BITS].y + fiblet_code(words); }
+uint first_code(uint f, uvec3 words) { return page_words(f >> FIBLET_PAGE_BITS).y + fiblet_code(words); }
 
-uint code_at(uint byte) { return bitfieldExtract(codes[byte >> 2], int(byte & 3u) * 8, 8); }
+uint code_at(uint byte) { return bitfieldExtract(code_word(byte >> 2), int(byte & 3u) * 8, 8); }
 
 // Four bytes from any byte position, least significant first.
 uint codes_at(uint byte) {
     uint word = byte >> 2, shift = (byte & 3u) * 8u;
-    uint low = codes[word];
-    return shift == 0u ? low : (low >> shift) | (codes[word + 1u] << (32u - shift));
+    uint low = code_word(word);
+    return shift == 0u ? low : (low >> shift) | (code_word(word + 1u) << (32u - shift));
+}
+
+float rotation_scale(uint cap) { return rotation_scales[cap >> 2][cap & 3u]; }
+
+// T of a cap angle and a code, given the cap angle's scale.
+vec4 rotation(uint cap, uint code, float scale) {
+    int word = int(rotation_word((cap << 8u) + code));
+    precise vec2 t = scale * vec2(bitfieldExtract(word, 0, 16), bitfieldExtract(word, 16, 16));
+    precise float w = sqrt(1.0 - t.x * t.x - t.y * t.y);
+    return vec4(0.0, t, w);
 }
 
 float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }

@@ -29,11 +29,24 @@ float clip_height(vec3 p) {
 // Whether a line inside a sphere, its brush included, may reach across a plane.
 bool clip_touches(vec3 centre, float radius) {
     float margin = radius + 2.0 * clip_info.y;
-    float w = clip_from_local[0].w * centre.x + clip_from_local[1].w * centre.y + clip_from_local[2].w * centre.z;
-    w = max(w + clip_from_local[3].w + radius * clip_info.z, 0.0);
+    float w = window_from_local[0].w * centre.x + window_from_local[1].w * centre.y + window_from_local[2].w * centre.z;
+    w = max(w + window_from_local[3].w + radius * clip_info.z, 0.0);
     for (int plane = 0; plane < clip_count(); ++plane) {
         if (clip_height_of(plane, centre) < margin + w * clip_tilts[plane].z) return true;
     }
     return false;
+}
+
+// Narrows t to the part of the segment on the kept side of all planes, as clip_segment() of raster/project.glsl does for
+// the view volume.
+bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
+    for (int plane = 0; plane < clip_count(); ++plane) {
+        precise float ha = clip_height_of(plane, a), hb = clip_height_of(plane, b);
+        if (ha < 0.0 && hb < 0.0) return false;
+        precise float t = ha / (ha - hb);
+        if (ha < 0.0) t0 = max(t0, t);
+        else if (hb < 0.0) t1 = min(t1, t);
+    }
+    return t0 <= t1;
 }
 #endif

@@ -1,25 +1,39 @@
 // From local millimetres to pixels, and the part of a segment that the view volume holds.
 //
 // Symbols
-//   c            clip coordinates (x, y, z, w)
-//   s            window: x, y in pixels with the lower left corner at (0, 0); z is the depth in 0..1; w is clip w
-//   volume       |x| <= guard.x w, |y| <= guard.y w, |z| <= w: the caller's view volume, widened by half a line's width
+//   c            homogeneous window coordinates (X, Y, Z, W), see frame/blocks.glsl
+//   s            window: x, y in pixels with the lower left corner at (0, 0); z is the depth in 0..1; w is W
+//   volume       -h W <= X <= (width + h) W, likewise Y, and 0 <= Z <= W: the caller's view volume, widened by half a
+//                line's width h
 //
-// A point in the volume has w > 0, or it is the centre of projection itself, which to_window() keeps finite.
+// A point in the volume has W > 0, or it is the centre of projection itself, which to_window() keeps finite.
 
 #include "frame/blocks.glsl"
 
-vec4 to_clip(vec3 p) {
-    precise vec4 c = clip_from_local[0] * p.x + clip_from_local[1] * p.y + clip_from_local[2] * p.z + clip_from_local[3];
+vec4 to_homogeneous(vec3 p) {
+    precise vec4 c = window_from_local[0] * p.x + window_from_local[1] * p.y + window_from_local[2] * p.z
+                   + window_from_local[3];
     return c;
 }
 
-bool in_volume(vec4 c) { return all(lessThanEqual(abs(c.xyz), vec3(guard.xy, 1.0) * c.w)); }
+// Signed distances, times something positive, from the three lower and from the three upper planes of the volume.
+vec3 above_lower(vec4 c) {
+    precise vec3 d = c.xyz + vec3(viewport.zz, 0.0) * c.w;
+    return d;
+}
+
+vec3 below_upper(vec4 c) {
+    precise vec3 d = vec3(viewport.xy + viewport.z, 1.0) * c.w - c.xyz;
+    return d;
+}
+
+bool in_volume(vec4 c) {
+    return all(greaterThanEqual(above_lower(c), vec3(0.0))) && all(greaterThanEqual(below_upper(c), vec3(0.0)));
+}
 
 vec4 to_window(vec4 c) {
     precise float r = 1.0 / max(c.w, 1e-30);
-    precise vec3 s = c.xyz * r * 0.5 + 0.5;
-    precise vec4 window = vec4(s.xy * viewport.xy, s.z, c.w);
+    precise vec4 window = vec4(c.xyz * r, c.w);
     return window;
 }
 
@@ -27,14 +41,14 @@ vec4 to_window(vec4 c) {
 bool clip_segment(vec4 a, vec4 b, out float t0, out float t1) {
     t0 = 0.0;
     t1 = 1.0;
-    vec3 g = vec3(guard.xy, 1.0);
+    vec3 a_low = above_lower(a), a_high = below_upper(a), b_low = above_lower(b), b_high = below_upper(b);
     for (int side = 0; side < 6; ++side) {
         int axis = side >> 1;
-        float s = (side & 1) == 0 ? 1.0 : -1.0;
-        precise float da = g[axis] * a.w + s * a[axis], db = g[axis] * b.w + s * b[axis];
+        float da = (side & 1) == 0 ? a_low[axis] : a_high[axis], db = (side & 1) == 0 ? b_low[axis] : b_high[axis];
         if (da < 0.0 && db < 0.0) return false;
-        if (da < 0.0) t0 = max(t0, da / (da - db));
-        else if (db < 0.0) t1 = min(t1, da / (da - db));
+        precise float t = da / (da - db);
+        if (da < 0.0) t0 = max(t0, t);
+        else if (db < 0.0) t1 = min(t1, t);
     }
     return t0 <= t1;
 }
@@ -52,3 +66,6 @@ bool clip_window(vec2 a, vec2 b, out float t0, out float t1) {
 
 // Window depth as the G-buffer's fixed-point key. 2^32 (1 - 2^-23) is the largest drawn; all ones means empty.
 uint depth_key(float z) { return uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u; }
+
+// Thin lines run from pixel centre to pixel centre, moved by this: see raster/cells.glsl.
+const vec2 CELL_SHIFT = vec2(23.0, 23.0) / 256.0;

@@ -2,19 +2,11 @@
 //
 // The including pass defines
 //   void plot(ivec2 pixel, float z, float s, uint segment)
-//                z: window depth; s: position along the *clipped* segment in the window, 0..1 (along() corrects it)
-//   void start_segment(uint segment, vec3 delta)   called before the pixels of a segment
+//                z: window depth; s: position along the *clipped* segment in the window (along() corrects it)
+//   void start_segment(uint segment, vec3 delta, float steps)   called before the pixels of a segment; steps from point
+//                to point that it stands for: 1, or 0 for a single point, or all of a far fiblet's
 //
-// Thin lines (one pixel). Between the pixels of its two ends a segment takes n = max(|dx|, |dy|) samples at
-// s = 0, 1/n, .. (n-1)/n. Each sample lies on the segment, so every pixel drawn holds a point of the line. The pixel of
-// the far end is left to the next segment, which starts in it: joints are neither doubled nor open, whatever the
-// segments' length, and segments within one pixel cost nothing. Where nothing follows (the end of a streamline, or the
-// edge of the view volume) the far pixel is drawn, so that even a one-point streamline shows as a dot.
-//
-//       first segment        second
-//      # . . . . . . .      # drawn by the first
-//      . # # . . . . o      o drawn by the second, which begins in the last pixel of the first
-//      . . . # # o o .
+// Thin lines (one pixel): the pixels of raster/cells.glsl.
 //
 // Wide lines. All pixels whose centre is at most half the width from the segment: a capsule, whose round ends join
 // segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's.
@@ -33,10 +25,12 @@
 
 #include "decode/sequential.glsl"
 #include "raster/project.glsl"
+#include "raster/cells.glsl"
+#include "culling/bounds.glsl"
 #include "frame/clip_planes.glsl"
 
 void plot(ivec2 pixel, float z, float s, uint segment);
-void start_segment(uint segment, vec3 delta);
+void start_segment(uint segment, vec3 delta, float steps);
 
 // The segment being drawn, for along(): clip w at both ends, and what was left of it by clipping.
 vec4 clipped = vec4(1.0, 1.0, 0.0, 1.0);
@@ -51,20 +45,6 @@ float along(float s) {
 #endif
     return u;
 }
-
-#if FEATURE_CLIP_PLANES
-// Narrows t to the part of the segment on the kept side of all planes, as clip_segment() does for the view volume.
-bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
-    for (int plane = 0; plane < clip_count(); ++plane) {
-        precise float ha = clip_height_of(plane, a), hb = clip_height_of(plane, b);
-        if (ha < 0.0 && hb < 0.0) return false;
-        precise float t = ha / (ha - hb);
-        if (ha < 0.0) t0 = max(t0, t);
-        else if (hb < 0.0) t1 = min(t1, t);
-    }
-    return t0 <= t1;
-}
-#endif
 
 #if FEATURE_CLIP_PLANES && FEATURE_WIDE_LINES
 // h / w above every plane at both ends of the segment being drawn. It is linear in the window, so that no division is
@@ -127,29 +107,58 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
 }
 #else
 void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
-    // A point on the right or upper edge belongs to the last pixel; the margin outweighs the rounding of from + s run.
+#if FEATURE_CLIPPING
+    // A point on the right or upper edge belongs to the last pixel.
     vec2 top = viewport.xy - 0.01;
-    precise vec2 from = clamp(a.xy, vec2(0.0), top), run = clamp(b.xy, vec2(0.0), top) - from;
-    ivec2 cells = abs(ivec2(from + run) - ivec2(from));
-    int n = max(cells.x, cells.y), count = cap ? n + 1 : n;
-    float inverse = 1.0 / float(max(n, 1));
-    for (int i = 0; i < count; ++i) {
-        precise float s = float(i) * inverse;
-        precise vec2 at = from + s * run;
-        precise float z = a.z + (b.z - a.z) * s;
-        plot(ivec2(at), z, s, segment);
+    ivec2 p = ivec2(clamp(a.xy, vec2(0.0), top)), q = ivec2(clamp(b.xy, vec2(0.0), top));
+#else
+    ivec2 p = ivec2(a.xy), q = ivec2(b.xy);
+#endif
+    Cells cells = cells_between(p, q);
+    precise vec2 slope = cells.square * (b.z - a.z) * cells.run;
+    precise float base = a.z - dot(CELL_SHIFT, slope);
+    vec2 per = cells.run * cells.inverse, begin = 0.5 + CELL_SHIFT - cells.shift * per;
+    for (int i = 0; i < cells.count; ++i) {
+        precise vec2 at = floor(begin + float(i) * per);
+        precise float z = base + dot(at, slope);
+        plot(p + ivec2(at), z, dot(at - CELL_SHIFT, cells.run) * cells.square, segment);
     }
+    if (cap) plot(q, b.z, 1.0, segment);
 }
 #endif
 
-// Draws fiblet f and the segment that joins it to the next.
+// Steps from point to point of a fiblet and the segment that joins it to the next.
+float steps_of(uint f) { return float(fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u)); }
+
+// Draws fiblet f and the segment that joins it to the next. From far enough (is_one_segment() of culling/bounds.glsl) it is
+// one segment, numbered 0, between the ends of its capsule; FEATURE_ONE_SEGMENT: it is known that it is.
 void draw_fiblet(uint f) {
+#if FEATURE_ONE_SEGMENT || FEATURE_LEVEL_OF_DETAIL
+    Capsule capsule = capsule_of(f);
+#endif
+#if FEATURE_ONE_SEGMENT
+    bool begin = begins(f), end = ends(f);
+    uint count = 1u, last = 0u;
+    float steps = steps_of(f);
+    precise vec3 next = capsule.b;
+    walk_point = capsule.a;
+#else
     walk_begin(f);
-    bool begin = fiblet_begin(anchors[f]) != 0u, end = fiblet_end(anchors[f]) != 0u;
+    bool begin = begins(f), end = ends(f);
     precise vec3 next = anchor_local(end ? f : f + 1u);
-    precise vec4 c0 = to_clip(walk_point);
+    uint last = walk.last, count = last + (end && last > 0u ? 0u : 1u);  // a single point is a segment of no length
+    float steps = end && last == 0u ? 0.0 : 1.0;
+#if FEATURE_LEVEL_OF_DETAIL
+    if (is_one_segment(capsule)) {
+        next = capsule.b;
+        last = 0u;
+        count = 1u;
+        steps = steps_of(f);
+    }
+#endif
+#endif
+    precise vec4 c0 = to_homogeneous(walk_point);
     precise vec4 s0 = to_window(c0);
-    uint count = walk.last + (end && walk.last > 0u ? 0u : 1u);  // a single point is a segment of no length
 #if FEATURE_CLIPPING_DEPTH
     bool inside0 = in_volume(c0);
 #if FEATURE_CLIP_PLANES
@@ -158,16 +167,19 @@ void draw_fiblet(uint f) {
 #endif
     for (uint i = 1u; i <= count; ++i) {
         precise vec3 from = walk_point;
-        if (i <= walk.last) {
+#if !FEATURE_ONE_SEGMENT
+        if (i <= last) {
             walk_next(i);
-        } else {
+        } else
+#endif
+        {
             walk_point = next;
             walk_delta = next - from;
         }
-        precise vec4 c1 = to_clip(walk_point);
+        precise vec4 c1 = to_homogeneous(walk_point);
         precise vec4 s1 = to_window(c1);
         bool start = i == 1u && begin, cap = end && i == count;
-        start_segment(i - 1u, walk_delta);
+        start_segment(i - 1u, walk_delta, steps);
 #if FEATURE_CLIPPING_DEPTH
         bool inside1 = in_volume(c1);
 #if FEATURE_CLIP_PLANES

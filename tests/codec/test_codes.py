@@ -155,7 +155,10 @@ def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
 
 
 def test_figures_on_smooth_and_noisy_constant_steps() -> None:
-    """The issue's figures in steps (the paper: max 0.17, mean 0.05), at the bytes of a full fiblet."""
+    """The issue's figures in steps (the paper: max 0.17, mean 0.05), at the bytes of a full fiblet.
+
+    Each streamline adds the four bytes of its end vector, here to 240 points.
+    """
     for lines, effort, largest, mean in (
         (smooth(200, 240), "fast", 0.07, 0.012),
         (noisy(200, 240), "fast", 0.07, 0.02),
@@ -167,7 +170,8 @@ def test_figures_on_smooth_and_noisy_constant_steps() -> None:
         assert (unpack("kind", fiblets.decoding) == DIRECTION).all()
         assert error.max_steps <= largest
         assert error.mean_steps <= mean
-        assert (fiblets.nbytes - fiblets.pages.nbytes) / fiblets.n_points <= 1.34
+        assert (fiblets.nbytes - fiblets.pages.nbytes - fiblets.ends.nbytes) / fiblets.n_points <= 1.34
+        assert fiblets.ends.nbytes == 4 * len(lines)
 
 
 def test_figures_on_real_tracking(shared_data: Path) -> None:
@@ -197,23 +201,6 @@ def test_six_point_streamlines_stay_below_half_of_float32(make) -> None:
     assert fiblets.nbytes - fiblets.pages.nbytes < 0.5 * lines.n_points * 12
 
 
-def test_bounding_spheres_hold_all_that_a_fiblet_draws() -> None:
-    lines = Streamlines.concatenate([smooth(10, 130), wandering(10, 130)])
-    fiblets = pf.compress(lines)
-    points = fiblets.decompress(dtype=np.float64).points
-    starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
-    ends = unpack("end", fiblets.anchors)
-    for f in range(fiblets.n_fiblets):
-        mine = points[starts[f] : starts[f] + counts[f]]
-        centre = mine[0]
-        if not ends[f]:
-            following = points[starts[f + 1]]
-            centre = (mine[0] + following) / 2
-            mine = np.concatenate([mine, following[None]])
-        radius = fiblets.reach[f] * fiblets.reach_scale
-        assert np.linalg.norm(mine - centre, axis=1).max() <= radius * (1 + 1e-9) + 1e-9
-
-
 def test_many_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     """More than one page of fiblets, in several chunks that begin inside pages."""
     n = 40_000
@@ -224,7 +211,7 @@ def test_many_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pf.codec.compress.split_chunks, "__defaults__", (12_345,))
     pieces = pf.compress(lines)
     assert whole.pages.shape == (4, 3)
-    for name in ("anchors", "decoding", "reach", "codes", "pages"):
+    for name in ("anchors", "decoding", "reach", "codes", "ends", "pages"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(pieces, name))
     whole.verify()
     some = rng.permutation(n)[:100]

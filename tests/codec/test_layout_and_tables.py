@@ -54,11 +54,26 @@ def test_pack_refuses_what_does_not_fit() -> None:
         layout.pack("anchors", rank=1)
 
 
+@given(st.lists(st.tuples(*[st.integers(-511, 511)] * 3), max_size=5))
+def test_end_vectors_pack_and_unpack(vectors: list[tuple[int, int, int]]) -> None:
+    words = layout.pack_ends(np.array(vectors, int).reshape(-1, 3))
+    assert words.dtype == np.uint32
+    assert (words >> 30 == 0).all()
+    assert [tuple(v) for v in layout.unpack_ends(words).tolist()] == vectors
+
+
+def test_end_vectors_stand_where_they_are_said_to() -> None:
+    assert layout.pack_ends(np.array([[1, 2, 3], [-1, 0, 0], [0, 0, -511]])).tolist() == [3147777, 1023, 537919488]
+    with pytest.raises(ValueError, match=r"holds -511\.\.511, got 0\.\.512"):
+        layout.pack_ends(np.array([[512, 0, 0]]))
+
+
 def test_glsl_states_every_field() -> None:
     source = layout.glsl_source()
     for f in layout.FIELDS.values():
         assert f"uint fiblet_{f.name}(" in source
         assert f"{f.shift}, {f.width})" in source
+    assert "ivec3 fiblet_end_vector(uint word)" in source
 
 
 def test_codes_are_smallest_rotations_within_their_cap() -> None:
@@ -76,7 +91,31 @@ def test_codes_are_smallest_rotations_within_their_cap() -> None:
 
 def test_tables_are_the_same_everywhere() -> None:
     """Files hold codes, not directions: a table that changed would silently bend every file."""
-    assert zlib.crc32(tables.quaternions().astype("<f4").tobytes()) == 317683925
+    assert zlib.crc32(tables.packed().astype("<u4").tobytes()) == 983017696
+    assert zlib.crc32(tables.packed_scales().astype("<f4").tobytes()) == 3030463841
+    assert zlib.crc32(tables.quaternions().astype("<f4").tobytes()) == 3427054955
+
+
+def test_rotations_are_what_their_packed_words_say() -> None:
+    """Unpacked in float64 from the description, against the float32 that everything decodes with."""
+    q, words = tables.quaternions().astype(np.float64), tables.packed().astype(np.int64)
+    scale = tables.packed_scales().astype(np.float64)[:, None]
+    y, z = (((v & 0xFFFF) ^ 0x8000) - 0x8000 for v in (words, words >> 16))
+    assert max(np.abs(y).max(), np.abs(z).max()) <= 32767
+    np.testing.assert_allclose(q[..., 2], y * scale, rtol=6e-8)
+    np.testing.assert_allclose(q[..., 3], z * scale, rtol=6e-8)
+    np.testing.assert_allclose(q[..., 0], np.sqrt(1 - (y * scale) ** 2 - (z * scale) ** 2), atol=1e-6)
+    assert (q[:, 0] == [1, 0, 0, 0]).all(), "code 0 is exactly straight on"
+
+
+def test_packed_rotations_are_close_to_the_codes_directions() -> None:
+    """Rounding moves a direction by less than a five-thousandth of its cap angle."""
+    x = 1 - tables.cap_ratios()[:, None] * (tables.disc() ** 2).sum(1)
+    lateral = np.sqrt(np.maximum(1 - x * x, 0))
+    spin = tables.disc() / np.maximum(np.linalg.norm(tables.disc(), axis=1), 1e-300)[:, None]
+    wanted = np.concatenate([x[..., None], lateral[..., None] * spin], axis=-1)
+    moved = np.linalg.norm(tables.directions() - wanted, axis=-1).max(axis=1)
+    assert (moved < np.radians(tables.CAP_DEGREES) / 5000).all()
 
 
 def test_small_caps_keep_their_digits() -> None:

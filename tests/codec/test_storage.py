@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.codec import archive, storage
+from pvfiblets.codec import archive, layout, storage
 from pvfiblets.codec.convert import measure_file_error
 from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
@@ -44,7 +44,7 @@ def assert_equal_sets(a: pf.FibletSet, b: pf.FibletSet) -> None:
     assert a.bounds == b.bounds
     assert a.n_streamlines == b.n_streamlines
     assert a.dropped == b.dropped
-    for name in ("anchors", "decoding", "reach", "codes", "pages", "affine"):
+    for name in ("anchors", "decoding", "reach", "codes", "ends", "pages", "affine"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
     for name in ("anchors_low", "rank_to_id"):
         x, y = getattr(a, name), getattr(b, name)
@@ -169,6 +169,24 @@ def test_selection_keeps_everything_that_belongs() -> None:
         fiblets.decompress([1.5])
 
 
+def test_a_few_streamlines_are_found_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over several pages, with streamlines that cross from one into the next, and with empty ones."""
+    rng = np.random.default_rng(0)
+    counts = rng.integers(0, 40, 9000) * rng.integers(1, 30, 9000)
+    points = np.cumsum(rng.normal(size=(counts.sum(), 3)) * 0.05, axis=0)
+    lines = Streamlines(points, np.concatenate([[0], np.cumsum(counts)]))
+    fiblets = pf.compress(lines, max_error=0.5)
+    assert len(fiblets.pages) > 3
+    borders = fiblets.fiblet_streamlines()[:: layout.PAGE]
+    chosen = np.concatenate([rng.integers(0, 9000, 150), borders, borders[1:] - 1, [0, 8999]])
+    few = fiblets.decompress(chosen)
+    monkeypatch.setattr("pvfiblets.codec.places.FEW", 0)
+    many = fiblets.decompress(chosen)
+    np.testing.assert_array_equal(few.offsets, many.offsets)
+    np.testing.assert_array_equal(few.points, many.points)
+    np.testing.assert_array_equal(few.counts, lines.counts[chosen])
+
+
 @pytest.mark.parametrize("max_points", [1, 61, 100, 1000, 10**9])
 def test_chunks_put_together_are_the_whole(max_points: int) -> None:
     lines = rich()
@@ -254,8 +272,39 @@ def test_a_newer_version_is_refused(tmp_path: Path) -> None:
     archive.write_archive(
         tmp_path / "b.fiblets", header, {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
     )
-    with pytest.raises(FormatError, match=r"version 2 in header.json, expected at most 1: update pvfiblets"):
+    with pytest.raises(FormatError, match=r"version 3 in header.json, expected at most 2: update pvfiblets"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
+
+
+def test_an_older_version_is_refused(tmp_path: Path) -> None:
+    """Version 1 had spheres where capsules are now, and no end vectors."""
+    header, arrays = archive.open_archive(saved(tmp_path))
+    header["version"] = 1
+    del header["parameters"]["end_scale"], header["parameters"]["largest_radius"]
+    members = {k: archive.array_member(np.array(v)) for k, v in arrays.items() if k != "ends.npy"}
+    archive.write_archive(tmp_path / "b.fiblets", header, members)
+    with pytest.raises(FormatError, match="written by an older pvfiblets, expected version 2: compress the original"):
+        pf.FibletSet.open(tmp_path / "b.fiblets")
+
+
+@pytest.mark.parametrize("name", ["reach", "ends"])
+def test_verify_finds_bounds_that_do_not_hold(tmp_path: Path, name: str) -> None:
+    """Such a set would lose lines to culling; its checksums are right."""
+    header, arrays = archive.open_archive(saved(tmp_path))
+    arrays = {k: np.array(v) for k, v in arrays.items()}
+    arrays[f"{name}.npy"][5] = 0
+    archive.write_archive(tmp_path / "b.fiblets", header, {k: archive.array_member(v) for k, v in arrays.items()})
+    with pytest.raises(FormatError, match=r"fiblet \d+ with points outside its capsule"):
+        storage.verify_file(tmp_path / "b.fiblets")
+
+
+def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
+    header, arrays = archive.open_archive(saved(tmp_path))
+    header["parameters"]["largest_radius"] *= 0.99
+    members = {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
+    archive.write_archive(tmp_path / "b.fiblets", header, members)
+    with pytest.raises(FormatError, match="beyond the set's largest radius"):
+        storage.verify_file(tmp_path / "b.fiblets")
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:

@@ -9,6 +9,13 @@ import numpy as np
 from pvfiblets.codec import layout
 
 
+def distances(points, a, b):
+    """Distance of each point from the segment a b."""
+    run = b - a
+    t = ((points - a) @ run / max(run @ run, 1e-300)).clip(0.0, 1.0)
+    return np.linalg.norm(points - a - t[:, None] * run, axis=1)
+
+
 def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=None, rank_to_id=None):
     """Code polylines as lattice fiblets.
 
@@ -80,14 +87,18 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
         point_at += len(points)
         out[rank][a:b] = anchor + edge * k
         starts.append(a)
-    # second round: reach needs the next fiblet's decoded anchor
-    radii = []
+    # second round: a capsule needs the next fiblet's decoded anchor, or the streamline's rounded end
+    tails = np.array([out[rank][b - 1] - out[rank][a] for rank, a, b, n in pieces if b == n])
+    end_scale = max(np.abs(tails).max() / 511.0, 1e-12)
+    ends = np.rint(tails / end_scale).astype(np.int64)
+    radii, spheres = [], []
     for rank, a, b, n in pieces:
         points = out[rank][a : min(b + 1, n)]
-        centre = out[rank][a] if b == n else (out[rank][a] + out[rank][b]) / 2
-        radii.append(np.linalg.norm(points - centre, axis=1).max())
-    reach_scale = max(max(radii) / 65535 * 1.0001, 1e-12)
-    reaches = np.ceil(np.array(radii) / reach_scale).astype(np.uint16)
+        end = out[rank][a] + ends[rank] * end_scale if b == n else out[rank][b]
+        radii.append(distances(points, out[rank][a], end).max())
+        spheres.append(np.linalg.norm(end - out[rank][a]) / 2 + radii[-1])
+    reach_scale = max(max(radii) / 65534 * 1.0001, 1e-12)
+    reaches = np.ceil(np.array(radii) / reach_scale + 0.5).astype(np.uint16)
     n_pages = len(pages)
     pages.append((len(lines), code_at, point_at))
     assert n_pages == -(-len(pieces) // layout.PAGE)
@@ -95,6 +106,8 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
         anchors=np.concatenate(words),
         decoding=np.concatenate(decodings),
         reach=reaches,
+        ends=((ends & 1023) << [0, 10, 20]).sum(1).astype(np.uint32),
+        parameters=SimpleNamespace(end_scale=end_scale, largest_radius=1.001 * max(spheres) + 2 * reach_scale),
         codes=np.concatenate(codes) if codes else np.empty(0, np.uint8),
         pages=np.array(pages, np.int64),
         anchors_low=np.array(lows, np.uint16) if low else None,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import moderngl
 import numpy as np
 import pytest
 
@@ -12,9 +11,9 @@ from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.pipelines.compute import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
-SIZE = (320, 240)
-EMPTY = 0xFFFFFFFF
-GL_CLIP_DISTANCE0 = 0x3000
+from .gl_lines import gl_lines
+from .pictures import EMPTY, EVERY_POINT, SIZE, assert_same, differences, draw, near, read
+from .polylines import DEPTH_ROUNDING, assert_pixels_name_places, places, to_clip, to_window
 
 
 def box(half, centre=(0.0, 0.0, 0.0)):
@@ -26,20 +25,6 @@ def box(half, centre=(0.0, 0.0, 0.0)):
             normal[axis] = sign
             planes.append([*normal, half - normal @ centre])
     return planes
-
-
-def read(gbuffer):
-    w, h = gbuffer.size
-    get = lambda texture, dtype: np.frombuffer(texture.read(), dtype).reshape(h, w, -1)  # noqa: E731
-    return get(gbuffer.depth, "<u4")[..., 0], get(gbuffer.ids, "<u4"), get(gbuffer.position, "<f4")
-
-
-def draw(gl, fiblets, view, style=None):
-    renderer = FibletRenderer(gl, fiblets)
-    try:
-        return read(renderer.render(view, style or Style()))
-    finally:
-        renderer.release()
 
 
 def cut(lines, planes):
@@ -59,61 +44,10 @@ def cut(lines, planes):
     return pieces
 
 
-def gl_lines(gl, lines, planes, matrix, size):
-    """Mask and depth of GL_LINES with gl_ClipDistance."""
-    planes = np.asarray(planes, float).reshape(-1, 4)
-    centre = np.concatenate(lines).mean(0)
-    to_data = np.eye(4)
-    to_data[:3, 3] = centre
-    distances = "".join(f"gl_ClipDistance[{i}] = dot(planes[{i}], vec4(p, 1.0));" for i in range(len(planes)))
-    program = gl.program(
-        f"#version 430\nuniform mat4 m; uniform vec4 planes[{max(len(planes), 1)}]; in vec3 p;"
-        f"out gl_PerVertex {{ vec4 gl_Position; float gl_ClipDistance[{max(len(planes), 1)}]; }};"
-        f"void main() {{ gl_Position = m * vec4(p, 1.0); {distances} }}",
-        "#version 430\nout vec4 c; void main() { c = vec4(1.0); }",
-    )
-    program["m"].write((matrix @ to_data).T.astype("<f4").tobytes())
-    if len(planes):
-        rows = planes @ to_data
-        program["planes"].write(rows.astype("<f4").tobytes())
-    vertices = np.concatenate([np.repeat(line - centre, 2, axis=0)[1:-1] for line in lines])
-    buffer = gl.buffer(vertices.astype("<f4").tobytes())
-    array = gl.vertex_array(program, [(buffer, "3f", "p")])
-    colour, depth = gl.renderbuffer(size), gl.depth_texture(size)
-    target = gl.framebuffer([colour], depth)
-    before = gl.detect_framebuffer()
-    target.use()
-    gl.enable_only(moderngl.DEPTH_TEST)
-    target.clear(depth=1.0)
-    for i in range(len(planes)):
-        gl.enable_direct(GL_CLIP_DISTANCE0 + i)
-    array.render(moderngl.LINES)
-    for i in range(len(planes)):
-        gl.disable_direct(GL_CLIP_DISTANCE0 + i)
-    mask = np.frombuffer(target.read(components=1), np.uint8).reshape(size[1], size[0]) > 0
-    z = np.frombuffer(depth.read(), "<f4").reshape(size[1], size[0])
-    before.use()
-    for thing in (array, buffer, program, target, colour, depth):
-        thing.release()
-    return mask, z
-
-
-def near(mask):
-    """Pixels of a mask and their neighbours."""
-    padded = np.pad(mask, 1)
-    h, w = mask.shape
-    return np.any([padded[y : y + h, x : x + w] for y in range(3) for x in range(3)], axis=0)
-
-
 def shown_points(picture, lines):
     """The data position that every drawn pixel says it shows, with pixel rows and columns."""
-    depth, ids, position = picture
-    rows, columns = np.nonzero(depth != EMPTY)
-    points = np.empty((len(rows), 3))
-    for k, (row, column) in enumerate(zip(rows, columns, strict=True)):
-        line, p = lines[ids[row, column, 0]], float(position[row, column, 0])
-        i = min(int(p), max(len(line) - 2, 0))
-        points[k] = line[i] + (p - i) * (line[min(i + 1, len(line) - 1)] - line[i])
+    rows, columns = np.nonzero(picture.drawn)
+    points, _, _ = places(lines, picture.ids[rows, columns, 0], picture.position[rows, columns, 0].astype(float))
     return points, rows, columns
 
 
@@ -141,29 +75,26 @@ def test_planes_cut_as_opengl_and_numpy_cut(gl, fabricate, random_lines, camera,
     fiblets = fabricate([line for line in random_lines(400, seed=1) if len(line) > 1], kind=2)
     matrix = camera(SIZE, eye=(120, -200, 110), height=130 if parallel else None)
     picture = draw(gl, fiblets, View(SIZE, matrix, planes))
-    drawn = picture[0] != EMPTY
+    drawn = picture.drawn
     # OpenGL's own clipping. Its lines leave out an end pixel, which is all there is of very short pieces.
-    mask, z = gl_lines(gl, fiblets.lines, planes, matrix, SIZE)
+    mask, z = gl_lines(gl, fiblets.lines, matrix, SIZE, planes)
     assert near(drawn)[mask].mean() >= 0.99
     # NumPy's, sampled densely: all that is drawn is there, and all that is there is drawn.
     touched = np.zeros_like(drawn)
     for _, _, (a, b) in cut(fiblets.lines, planes):
         points = a + np.linspace(0, 1, 40)[:, None] * (b - a)
-        clip = np.c_[points, np.ones(len(points))] @ matrix.T
+        clip = to_clip(points, matrix)
         clip = clip[(np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)]
-        cells = ((clip[:, :2] / clip[:, 3:] + 1) / 2 * SIZE).astype(int).clip(0, np.array(SIZE) - 1)
+        cells = to_window(clip, SIZE)[:, :2].astype(int).clip(0, np.array(SIZE) - 1)
         touched[cells[:, 1], cells[:, 0]] = True
     assert near(touched)[drawn].mean() >= 0.999
     assert near(drawn)[touched].mean() >= 0.999
     both = drawn & mask
-    assert np.median(np.abs(picture[0][both] / 4294967295.0 - z[both])) < 1e-4
+    assert np.median(np.abs(picture.window_depth - z)[both]) < 2e-4  # a fraction of a pixel along
     # Nothing shown lies beyond a plane.
-    points, rows, columns = shown_points(picture, fiblets.lines)
+    points, _, _ = shown_points(picture, fiblets.lines)
     assert heights(planes, points).min() > -2e-3
-    clip = np.c_[points, np.ones(len(points))] @ matrix.T
-    window = (clip[:, :3] / clip[:, 3:] + 1) / 2
-    assert np.linalg.norm(window[:, :2] * SIZE - np.c_[columns, rows] - 0.5, axis=1).max() < 1.5
-    assert np.abs(window[:, 2] - picture[0][rows, columns] / 4294967295.0).max() < 2e-4
+    assert_pixels_name_places(picture, fiblets.lines, matrix, SIZE, cut=True)
 
 
 def test_what_is_behind_a_cut_shows_to_the_last_pixel(gl, fabricate, camera):
@@ -173,7 +104,7 @@ def test_what_is_behind_a_cut_shows_to_the_last_pixel(gl, fabricate, camera):
     fiblets = fabricate(lines, kind=3)
     matrix = camera(SIZE, eye=(0, -260, 0), height=100)
     planes = [(1, 1, 0, 0), (-1, 1, 0, 0)]  # a wedge that opens away from the viewer
-    depth, ids, _ = draw(gl, fiblets, View(SIZE, matrix, planes))
+    depth, ids, *_ = draw(gl, fiblets, View(SIZE, matrix, planes))
     columns = (np.arange(SIZE[0]) + 0.5 - SIZE[0] / 2) * 100 / SIZE[1]
     inside = np.abs(columns) < 19.5
     assert (depth[:, inside] != EMPTY).all()
@@ -190,7 +121,7 @@ def test_a_million_millimetres_away(gl, fabricate, random_lines, camera):
     planes = np.array(box(25.0))
     a = draw(gl, here, View(SIZE, camera(SIZE), planes))
     b = draw(gl, there, View(SIZE, camera(SIZE) @ shift, planes @ shift))
-    assert ((a[0] == EMPTY) == (b[0] == EMPTY)).mean() > 0.999
+    assert (a.drawn == b.drawn).mean() > 0.999
     assert heights(planes @ shift, shown_points(b, there.lines)[0]).min() > -2e-3
 
 
@@ -200,9 +131,9 @@ def test_scales(gl, fabricate, random_lines, camera, scale):
     matrix = camera(SIZE) @ np.diag([1 / scale, 1 / scale, 1 / scale, 1.0])
     planes = np.array([(1.0, 1.0, 0.1, 5.0 * scale), (-1e-3, 1e-3, 0.0, 5e-3 * scale)])
     picture = draw(gl, fiblets, View(SIZE, matrix, planes))
-    assert (picture[0] != EMPTY).sum() > 500
-    mask, _ = gl_lines(gl, fiblets.lines, planes, matrix, SIZE)
-    assert near(mask)[picture[0] != EMPTY].mean() > 0.98
+    assert picture.drawn.sum() > 500
+    mask, _ = gl_lines(gl, fiblets.lines, matrix, SIZE, planes)
+    assert near(mask)[picture.drawn].mean() > 0.98
     assert heights(planes, shown_points(picture, fiblets.lines)[0]).min() > -2e-3 * scale
 
 
@@ -212,14 +143,14 @@ def test_plane_through_the_camera_inside_the_data(gl, fabricate, random_lines, c
     matrix = camera(SIZE, eye=eye, target=(3, 10, 1), near=0.05, far=200.0, angle=80.0)
     planes = [(*normal, -float(np.dot(normal, eye)))]
     fiblets = fabricate([line for line in random_lines(150, seed=5) if len(line) > 1], kind=2)
-    for style in (Style(), Style(4.0)):
+    for style in (EVERY_POINT, Style(4.0, tolerance=0.0)):
         picture = draw(gl, fiblets, View(SIZE, matrix, planes), style)
         whole = draw(gl, fiblets, View(SIZE, matrix), style)
-        drawn = picture[0] != EMPTY
-        if normal[0] == 0.0:  # all that is in front of the camera is kept
-            assert (picture[0] == whole[0]).all()
+        if normal[0] == 0.0:  # all that is in front of the camera is kept; what crosses the plane is clipped once more
+            assert (picture.owner == whole.owner).all()
+            assert np.abs(picture.window_depth - whole.window_depth).max() < DEPTH_ROUNDING
         else:
-            assert 0.2 < drawn.sum() / (whole[0] != EMPTY).sum() < 0.95
+            assert 0.2 < picture.drawn.sum() / whole.drawn.sum() < 0.95
             assert heights(planes, shown_points(picture, fiblets.lines)[0]).min() > -2e-3
 
 
@@ -227,15 +158,15 @@ def test_plane_through_the_camera_inside_the_data(gl, fabricate, random_lines, c
 @pytest.mark.parametrize("width", [1.0, 5.0])
 def test_planes_that_leave_nothing(gl, fabricate, random_lines, camera, planes, width):
     fiblets = fabricate(random_lines(40), kind=2)
-    assert (draw(gl, fiblets, View(SIZE, camera(SIZE), planes), Style(width))[0] == EMPTY).all()
+    assert not draw(gl, fiblets, View(SIZE, camera(SIZE), planes), Style(width)).drawn.any()
 
 
 def test_one_point_streamlines_are_cut_too(gl, fabricate, camera):
     points = np.random.default_rng(3).uniform(-40, 40, (80, 3))
     fiblets = fabricate(points[:, None, :], kind=1)
-    _, ids, _ = picture = draw(gl, fiblets, View(SIZE, camera(SIZE), [(1, 0, 0, 0)]))
+    _, ids, *_ = picture = draw(gl, fiblets, View(SIZE, camera(SIZE), [(1, 0, 0, 0)]))
     kept = {i for i, line in enumerate(fiblets.lines) if line[0, 0] >= 0}
-    shown = set(ids[picture[0] != EMPTY][:, 0].tolist())
+    shown = set(ids[picture.drawn][:, 0].tolist())
     assert shown <= kept
     assert len(shown) > 0.9 * len(kept)
 
@@ -251,11 +182,11 @@ def test_planes_moved_live(gl, fabricate, random_lines, camera):
         target = renderer.render(view)
         assert target.generation == step
         assert renderer.render(View(SIZE, matrix, [(0, 1, 0, height)])).generation == step
-        fresh = draw(gl, fiblets, view)
-        assert (read(target)[0] == fresh[0]).all()
-        seen.append(fresh[0])
-    assert not (seen[0] == seen[1]).all()
-    assert (read(renderer.render(View(SIZE, matrix)))[0] == draw(gl, fiblets, View(SIZE, matrix))[0]).all()
+        fresh = draw(gl, fiblets, view, Style())
+        assert_same(read(target), fresh)
+        seen.append(fresh)
+    assert differences(seen[0], seen[1])
+    assert_same(read(renderer.render(View(SIZE, matrix))), draw(gl, fiblets, View(SIZE, matrix), Style()))
     renderer.release()
 
 
@@ -266,9 +197,9 @@ def test_wide_lines_show_nothing_beyond_a_plane(gl, fabricate, random_lines, cam
     planes = np.array(CUTS["two that face the viewer"] + [(0, 0, 1, 4)], float)
     fiblets = fabricate(random_lines(150, seed=6), kind=2)
     matrix = camera(SIZE, height=130 if parallel else None)
-    depth, *_ = draw(gl, fiblets, View(SIZE, matrix, planes), Style(width))
-    thin, *_ = draw(gl, fiblets, View(SIZE, matrix, planes))
-    assert near(depth != EMPTY)[thin != EMPTY].all()
+    depth, *_ = wide = draw(gl, fiblets, View(SIZE, matrix, planes), Style(width, tolerance=0.0))
+    thin = draw(gl, fiblets, View(SIZE, matrix, planes))
+    assert near(wide.drawn)[thin.drawn].all()
     rows, columns = np.nonzero(depth != EMPTY)
     ndc = np.c_[(columns + 0.5) / SIZE[0], (rows + 0.5) / SIZE[1], depth[rows, columns] / 4294967295.0] * 2 - 1
     places = np.c_[ndc, np.ones(len(ndc))] @ np.linalg.inv(matrix).T
@@ -281,12 +212,12 @@ def test_wide_lines_at_a_cut(gl, fabricate, camera):
     """A cut across a line is a straight edge; a line cut head-on shows its whole brush, however thin the slice."""
     across = fabricate([np.array([[-40.0, 0, 0.1], [40.0, 0, 0.1]])], kind=3)
     matrix = camera((200, 100), eye=(0, -260, 0), height=100.0)
-    drawn = draw(gl, across, View((200, 100), matrix, [(-1, 0, 0, 20)]), Style(9.0))[0] != EMPTY
+    drawn = draw(gl, across, View((200, 100), matrix, [(-1, 0, 0, 20)]), Style(9.0)).drawn
     ends = [np.flatnonzero(row)[-1] for row in drawn if row.any()]
     assert len(ends) == 9
     assert set(ends) == {119}
     towards = fabricate([np.array([[0.1, -40.0, 0.1], [0.1, 40.0, 0.1]])], kind=3)
-    disc = draw(gl, towards, View((200, 100), matrix, [(0, 1, 0, 0.1), (0, -1, 0, 0.1)]), Style(9.0))[0] != EMPTY
+    disc = draw(gl, towards, View((200, 100), matrix, [(0, 1, 0, 0.1), (0, -1, 0, 0.1)]), Style(9.0)).drawn
     assert disc.sum() == pytest.approx(np.pi * 4.5**2, rel=0.1)
 
 
@@ -307,15 +238,18 @@ def test_fiblets_apart_from_the_planes_are_drawn_as_ever(gl, fabricate, random_l
     again = read(renderer.render(view, style))
     assert "clip_planes" not in {b["name"] for b in renderer.explain()["buffers"]}
     renderer.release()
-    drawn = plain[0] != EMPTY
     for other in (away, again):
-        assert (other[0] == plain[0]).all()
-        assert (other[2][drawn] == plain[2][drawn]).all()
+        assert_same(other, plain)
     points, rows, columns = shown_points(plain, fiblets.lines)
     kept = points[:, 0] > 6.0 + style.line_width  # clear of the plane, brush included
     assert kept.sum() > 200
-    assert (touching[0][rows, columns] == plain[0][rows, columns])[kept].all()
-    assert (touching[2][rows, columns] == plain[2][rows, columns])[kept].all()
+    rows, columns = rows[kept], columns[kept]
+    assert (touching.depth[rows, columns] == plain.depth[rows, columns]).all()
+    assert (touching.ids[rows, columns] == plain.ids[rows, columns]).all()
+    place, value = (touching.position[rows, columns] - plain.position[rows, columns]).T
+    assert (place == 0.0).all()
+    # values are summed up in another program
+    assert np.abs(value).max() <= 4.0 * np.finfo(np.float32).eps * np.abs(plain.position[rows, columns, 1]).max()
 
 
 def compiled(source, features):
@@ -342,7 +276,7 @@ def compiled(source, features):
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("stage", ["clear", "cull", "depth", "own", "attributes"])
+@pytest.mark.parametrize("stage", ["clear", "cull", "depth", "own", "settle", "occlude", "refine"])
 def test_without_planes_no_word_of_them_is_compiled(stage):
     words = re.compile(r"clip_planes|ClipPlanes|clip_height|clip_tilts|clip_info|brush_kept")
     for features in (["DIRECTION"], ["WIDE_LINES"], ["CLIPPING", "CLIPPING_DEPTH"]):
@@ -351,4 +285,4 @@ def test_without_planes_no_word_of_them_is_compiled(stage):
         assert not words.search(body)
     features = ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES"]
     body = compiled(assemble(f"compute/{stage}.comp", features, CONSTANTS), features)
-    assert bool(words.search(body)) == (stage != "clear")
+    assert bool(words.search(body)) == (stage in ("cull", "depth", "own", "settle"))

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import moderngl
 import numpy as np
 import pytest
 
 from pvfiblets.codec import layout, reference
-from pvfiblets.engine import FibletRenderer, View
+from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.chunks import storage_buffer
 from pvfiblets.engine.shaders import assemble
 
 SEQUENTIAL = """
 #version 430
 layout(local_size_x = 64) in;
+#include "compute/groups.glsl"
 #include "decode/sequential.glsl"
 layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void put(uint f, uint i) { for (int a = 0; a < 3; ++a) points[(f * 64u + i) * 3u + a] = walk_point[a]; }
@@ -28,6 +31,7 @@ void main() {
 PARALLEL = """
 #version 430
 layout(local_size_x = 32) in;
+#include "compute/groups.glsl"
 #include "decode/parallel.glsl"
 layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void main() {
@@ -44,19 +48,15 @@ def decoded_by_shader(gl, fiblets, source, threads):
     """(n_fiblets, 64, 3) positions relative to the anchor integers' origin, by one of the two programs."""
     renderer = FibletRenderer(gl, fiblets)
     # A view whose reference is anchor 0, or close: what comes back is then relative to `origin` exactly.
-    renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])))
-    features = [f for f in renderer.explain()["features"] if f not in ("WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH")]
-    program = gl.compute_shader(assemble("test", features, source=source))
+    renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])), Style(tolerance=0.0))
+    program = gl.compute_shader(assemble("test", renderer._decoding_features(), source=source))
     out = storage_buffer(gl, np.zeros((fiblets.n_fiblets, 64, 3), np.float32), "points")
     block = np.frombuffer(renderer._buffers["frame"].read(), "<u4").copy()
     block[40:43] = 0
     renderer._buffers["frame"].write(block.tobytes())
     (chunk,) = renderer._chunks
-    for name, binding in {"anchors": 0, "decoding": 1, "codes": 2, "pages": 4, "anchors_low": 8}.items():
-        if name in chunk.buffers:
-            chunk.buffers[name].bind_to_storage_buffer(binding)
+    chunk.bind_storage()
     renderer._bind_shared()
-    chunk.buffers["chunk"].bind_to_uniform_block(2)
     out.bind_to_storage_buffer(5)
     program.run(-(-fiblets.n_fiblets // threads))
     gl.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -87,8 +87,6 @@ def decoded_by_reference(fiblets, f):
 
 def random_directions(n, rng):
     """Fiblets of random first directions and codes at every cap angle: nothing a tractogram would hold is gentler."""
-    from types import SimpleNamespace
-
     last = rng.integers(0, 60, n)
     last[: n // 2] = 59
     lengths = np.maximum(last - 1, 0)
@@ -106,6 +104,8 @@ def random_directions(n, rng):
         anchors=anchors,
         decoding=decoding,
         reach=np.full(n, 65535, np.uint16),
+        ends=np.zeros(n, np.uint32),
+        parameters=SimpleNamespace(end_scale=1.0, largest_radius=65535.0),
         codes=rng.integers(0, 256, int(lengths.sum()), np.uint8),
         pages=np.array([[0, 0, 0], [n, lengths.sum(), (last + 1).sum()]]),
         anchors_low=None,

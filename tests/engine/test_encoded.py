@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import moderngl
 import numpy as np
 import pytest
 
@@ -11,8 +10,11 @@ from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.synthetic import brain_streamlines
 
+from .gl_lines import gl_lines
+from .pictures import EMPTY, draw, near
+from .polylines import assert_pixels_name_places
+
 SIZE = (640, 480)
-EMPTY = 0xFFFFFFFF
 
 
 def fitted(camera, bounds):
@@ -23,64 +25,20 @@ def fitted(camera, bounds):
     return camera(SIZE, eye=eye, target=middle, near=2.8 * radius, far=5.0 * radius, angle=30.0)
 
 
-def gl_mask(gl, lines, matrix):
-    """What OpenGL draws of the polylines with GL_LINES."""
-    program = gl.program(
-        vertex_shader="#version 330\nin vec3 p; uniform mat4 m; void main() { gl_Position = m * vec4(p, 1.0); }",
-        fragment_shader="#version 330\nout vec4 c; void main() { c = vec4(1.0); }",
-    )
-    vertices = np.concatenate([np.repeat(line, 2, axis=0)[1:-1] for line in lines])
-    middle = vertices.mean(0)
-    shift = np.eye(4)
-    shift[:3, 3] = middle
-    program["m"].write((matrix @ shift).T.astype("<f4").tobytes())
-    buffer = gl.buffer((vertices - middle).astype("<f4").tobytes())
-    array = gl.vertex_array(program, [(buffer, "3f", "p")])
-    colour = gl.renderbuffer(SIZE)
-    target = gl.framebuffer([colour])
-    before = gl.detect_framebuffer()
-    target.use()
-    gl.enable_only(moderngl.NOTHING)
-    target.clear()
-    array.render(moderngl.LINES)
-    mask = np.frombuffer(target.read(components=1), np.uint8).reshape(SIZE[1], SIZE[0]) > 0
-    before.use()
-    for thing in (array, buffer, program, target, colour):
-        thing.release()
-    return mask
-
-
-def near(mask):
-    padded, grown = np.pad(mask, 1), np.zeros_like(mask)
-    for dy in range(3):
-        for dx in range(3):
-            grown |= padded[dy : dy + mask.shape[0], dx : dx + mask.shape[1]]
-    return grown
-
-
 def assert_drawn_as_decompressed(gl, camera, fiblets, **limits):
+    """Every point, against the decoded points; and as views show it by default, against that picture."""
     decoded = fiblets.decompress()
+    lines = decoded.to_list()
     matrix = fitted(camera, fiblets.bounds)
-    renderer = FibletRenderer(gl, fiblets, **limits)
-    gbuffer = renderer.render(View(SIZE, matrix), Style())
-    drawn = np.frombuffer(gbuffer.depth.read(), "<u4").reshape(SIZE[1], SIZE[0]) != EMPTY
-    ids = np.frombuffer(gbuffer.ids.read(), "<u4").reshape(SIZE[1], SIZE[0], 2)[..., 0]
-    place = np.frombuffer(gbuffer.position.read(), "<f4").reshape(SIZE[1], SIZE[0], 2)[..., 0]
-    renderer.release()
-    mask = gl_mask(gl, [line for line in decoded.to_list() if len(line) > 1], matrix)
-    assert drawn.sum() > 500
-    assert near(mask)[drawn].mean() >= 0.99
-    assert near(drawn)[mask].mean() >= 0.99
-    rows, columns = np.nonzero(drawn)
-    streamline, place = ids[rows, columns].astype(int), place[rows, columns].astype(float)
-    length = np.diff(decoded.offsets)[streamline]
-    first = np.minimum(place.astype(int), np.maximum(length - 2, 0))
-    a = decoded.points[decoded.offsets[streamline] + first].astype(float)
-    b = decoded.points[decoded.offsets[streamline] + np.minimum(first + 1, length - 1)].astype(float)
-    clip = np.concatenate([a + (place - first)[:, None] * (b - a), np.ones((len(a), 1))], axis=1) @ matrix.T
-    window = (clip[:, :2] / clip[:, 3:] + 1) / 2 * SIZE
-    away = np.abs(window - np.stack([columns, rows], axis=1) - 0.5).max(1)
-    assert away.max() < 1.0, "a pixel names a place that lies elsewhere"
+    picture = draw(gl, fiblets, View(SIZE, matrix), **limits)
+    assert picture.drawn.sum() > 500
+    mask, _ = gl_lines(gl, [line for line in lines if len(line) > 1], matrix, SIZE)
+    assert near(mask)[picture.drawn].mean() >= 0.99
+    assert near(picture.drawn)[mask].mean() >= 0.99
+    assert_pixels_name_places(picture, [line.astype(float) for line in lines], matrix, SIZE)
+    far = draw(gl, fiblets, View(SIZE, matrix), Style(), **limits)
+    assert near(picture.drawn)[far.drawn].mean() >= 0.99
+    assert near(far.drawn)[picture.drawn].mean() >= 0.99
 
 
 def test_a_made_up_brain(gl, camera):
@@ -116,7 +74,7 @@ def test_gpu_bytes_per_point(gl):
     renderer = FibletRenderer(gl, fiblets)
     buffers = {b["name"]: b["bytes"] for b in renderer.explain()["buffers"]}
     renderer.release()
-    assert (sum(buffers.values()) - buffers["directions"]) / fiblets.n_points <= 1.4
+    assert (sum(buffers.values()) - buffers["rotations"]) / fiblets.n_points <= 1.4
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, Style, View
 
-SIZE = (320, 240)
+from .pictures import SIZE, read
 
 
 def arc_length(line):
@@ -29,16 +29,15 @@ def curvature(line):
     return values
 
 
-def draw_values(gl, fiblets, matrix, name, **limits):
+def draw_values(gl, fiblets, matrix, name, *, tolerance=0.0, **limits):
     """Streamline, place and value of every drawn pixel, and the renderer's range."""
     renderer = FibletRenderer(gl, fiblets, **limits)
-    gbuffer = renderer.render(View(SIZE, matrix), Style(1.0, name))
-    drawn = np.frombuffer(gbuffer.depth.read(), "<u4") != 0xFFFFFFFF
-    ids = np.frombuffer(gbuffer.ids.read(), "<u4").reshape(-1, 2)[drawn]
-    position = np.frombuffer(gbuffer.position.read(), "<f4").reshape(-1, 2)[drawn]
-    limits = renderer.value_range(name)
+    picture = read(renderer.render(View(SIZE, matrix), Style(1.0, name, tolerance)))
+    found_range = renderer.value_range(name)
     renderer.release()
-    return ids[:, 0], position[:, 0].astype(float), position[:, 1], limits
+    drawn = picture.drawn
+    place, value = picture.position[drawn].astype(float).T
+    return picture.ids[drawn][:, 0], place, value, found_range
 
 
 def interpolated(values, place):
@@ -61,12 +60,13 @@ def test_built_in_values(gl, fabricate, random_lines, camera, name, truth, per_f
 
 
 @pytest.mark.parametrize("name", ["arc_length", "curvature"])
-def test_built_in_values_across_chunks(gl, fabricate, camera, name):
+@pytest.mark.parametrize("tolerance", [0.0, 0.5])
+def test_built_in_values_across_chunks(gl, fabricate, camera, name, tolerance):
     t = np.linspace(0, 60, 40000)
     line = np.stack([50 * np.cos(t), 50 * np.sin(t * 1.1), t - 30], axis=1)
     fiblets = fabricate([line], kind=2, per_fiblet=2)
-    whole = draw_values(gl, fiblets, camera(SIZE), name)
-    pieces = draw_values(gl, fiblets, camera(SIZE), name, max_buffer_bytes=12 * 16385)
+    whole = draw_values(gl, fiblets, camera(SIZE), name, tolerance=tolerance)
+    pieces = draw_values(gl, fiblets, camera(SIZE), name, tolerance=tolerance, max_buffer_bytes=12 * 16385)
     for a, b in zip(whole, pieces, strict=True):
         assert np.allclose(a, b, rtol=1e-5, atol=1e-4)
 

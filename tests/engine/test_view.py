@@ -41,6 +41,12 @@ def test_line_widths(width):
         Style(width)
 
 
+@pytest.mark.parametrize("tolerance", [-0.1, np.nan, np.inf])
+def test_tolerances(tolerance):
+    with pytest.raises(ValueError, match="tolerance"):
+        Style(tolerance=tolerance)
+
+
 def test_the_reference_is_what_the_camera_looks_at(camera):
     origin, scale, top = np.array([-100.0, -100.0, -100.0]), np.full(3, 200 / 65535), 65535
     inside = camera((100, 100), eye=(10, 20, 30), target=(50, 60, 70), near=0.01, far=1000.0)
@@ -58,7 +64,7 @@ def test_planes_are_signed_distances(camera):
     size = (200, 100)
     matrix = camera(size, eye=(0, 0, 0), target=(0, 1, 0), near=1.0, far=100.0, angle=60.0)
     origin, scale = np.array([-50.0, -50.0, -50.0]), np.full(3, 100 / 65535)
-    block = np.frombuffer(frame_block(View(size, matrix), 1.0, origin, scale, 65535)[0], "<f4")
+    block = np.frombuffer(frame_block(View(size, matrix), Style(), origin, scale, 65535)[0], "<f4")
     planes, reference = block[16:40].reshape(6, 4), block[40:43].view("<u4")
     point = np.array([3.0, 40.0, -7.0])
     local = point - origin - scale * reference

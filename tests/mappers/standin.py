@@ -40,7 +40,7 @@ void main()
 
 # A line's tangent is the same at both ends of a segment, so a geometry shader hands it over.
 GEOMETRY = """
-#version 400
+#version 330
 layout(lines) in;
 layout(line_strip, max_vertices = 2) out;
 uniform vec4 planes[8];
@@ -154,7 +154,10 @@ class LineRenderer:
         self._gbuffer: Any = None
         LineRenderer.made.append(self)
 
-    def render(self, view: Any, style: Any) -> Any:
+    def needs_outside(self, view: Any, style: Any) -> bool:
+        return False
+
+    def render(self, view: Any, style: Any, outside: Any = None) -> Any:
         key = (view, style)
         if key == self._key:
             return self._gbuffer

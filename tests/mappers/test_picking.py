@@ -8,6 +8,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCellPicker, vtkHardwareSelector, vtkPropPicker
 
+from pvfiblets.mappers import windows
+
 
 @pytest.fixture
 def scene(make_plotter, make_fibres, tools):
@@ -180,3 +182,23 @@ def test_pyvista_picking_survives_fiblets(scene, tools, picking):
             interactor.InvokeEvent("CharEvent")
         plotter.render()
         mapper.raise_pending()
+
+
+@pytest.mark.parametrize("change", ["size", "multisampling", "peeling"])
+def test_picking_leaves_no_error_when_vtk_has_other_framebuffers(make_plotter, lines, tools, change):
+    """moderngl must not bind again a framebuffer that VTK has deleted."""
+    mapper, actor = lines.actor()
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    tools.picture(plotter, mapper)
+    (context,) = windows._contexts.values()
+    if change == "size":
+        plotter.window_size = (310, 170)
+    elif change == "multisampling":
+        plotter.enable_anti_aliasing("msaa")
+    else:
+        plotter.enable_depth_peeling()
+        actor.GetProperty().SetOpacity(0.5)
+    tools.picture(plotter, mapper)
+    mapper.pick_at(100, 80, tolerance=50)
+    assert context.ctx.error == "GL_NO_ERROR"

@@ -3,16 +3,30 @@
 =============  =================================================================================================
 pass           what it does
 =============  =================================================================================================
-clear          empties depth and owners
-cull           plans the drawing: which fiblets can show, which were seen last time, which need clipping
-depth          draws depth with imageAtomicMin, first those seen last time; marks those that came nearest somewhere
-own            draws these candidates again: where depth was kept, the least fiblet index owns the pixel
-attributes     draws those with such pixels again and writes streamline, tangent and place of their pixels
+clear          empties depth, owners and lists
+cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
+               the last picture's depth, of which class they are
+seen           draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
+guessed        draws the depth of those that will probably show
+pyramid        makes the depth so far into a pyramid
+occlusion      tests the rest against it, as a whole, and refine in pieces
+depth          draws the depth of what is left
+own            draws those so marked again: where depth was kept, the least fiblet index owns the pixel and writes
+               streamline, tangent and place into it
+settle         writes the pixels that more than one fiblet took, by their owners
 =============  =================================================================================================
 
-Last time's fiblets only decide the order: the picture is the same whatever was seen before. Fiblets inside all planes
-of the view volume are drawn by programs without clipping; the others, if there are any, by two programs with it. The
-caller's planes concern the second of these alone, and the cull pass.
+Of these, guessed to refine belong to two-phase culling. Last time's fiblets and depth only decide the order: the
+picture is the same whatever was seen before. There is a program for each class of fiblets
+(``shaders/compute/cull.comp``): those inside all planes of the view volume need no clipping, those drawn as one segment
+no decoding.
+
+Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth passes keep depth and fiblet in one word
+(``shaders/compute/nearest.glsl``). A pass ``split`` makes depth and owners of the words, before the pyramid and at the
+end; then ``own`` draws the owners alone, by the program of ``settle``, which there is no more need of.
+
+Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
+calls whatever there is to draw.
 
 The sources are in ``shaders/compute``; what a program includes is decided by features.
 """
@@ -29,32 +43,28 @@ import numpy as np
 from ...codec.layout import MAX_POINTS
 from ..chunks import Chunk, storage_buffer
 from ..errors import EngineError
-from ..gbuffer import GBuffer
-from ..passes import Passes, dispatch, is_software
-from ..shaders import Programs
+from ..passes import GROUP_SIZE, dispatch, is_software
+from ..shaders import EXTENDED, Programs
 from ..view import MAX_CLIP_PLANES
+from .job import Job
 
-__all__ = ["CLIPPING", "CLIP_PLANES", "CONSTANTS", "ComputePipeline"]
+__all__ = ["CLASSES", "CONSTANTS", "ComputePipeline"]
 
-GROUP_SIZE = 64
 GROUP_WORDS = 8
-CONSTANTS = {"group_size": GROUP_SIZE, "group_words": GROUP_WORDS, "max_clip_planes": MAX_CLIP_PLANES}
-
-CLIPPING = ("CLIPPING", "CLIPPING_DEPTH")
-CLIP_PLANES = "CLIP_PLANES"
-
-BINDINGS = {
-    "anchors": 0,
-    "decoding": 1,
-    "codes": 2,
-    "pages": 4,
-    "reach": 2,
-    "anchors_low": 6,
-    "values": 7,
-    "starts": 7,
+MARK_WORDS = 15
+CONSTANTS = {
+    "group_size": GROUP_SIZE,
+    "group_words": GROUP_WORDS,
+    "mark_words": MARK_WORDS,
+    "max_clip_planes": MAX_CLIP_PLANES,
 }
-"""Storage bindings of a chunk's buffers; 3 is the direction table, 5 the pipeline's own. OpenGL promises eight: those
-that no pass reads together share a number."""
+
+CLASSES = 4
+ROUNDS = 6
+ARGUMENT_BYTES = 16
+SEEN, GUESSED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
+
+NEAREST_BINDING = 8
 
 SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
@@ -62,14 +72,6 @@ iterations in sum and says nothing."""
 
 WIDEST_IN_SOFTWARE = 100
 """Pixels of line width with which one segment of each fiblet stays within that."""
-
-_DECODING = frozenset({"anchors", "decoding", "codes", "pages", "anchors_low"})
-_READS = {
-    "cull": frozenset({"anchors", "pages", "reach", "anchors_low"}),
-    "depth": _DECODING,
-    "own": _DECODING,
-    "attributes": _DECODING | {"values", "starts"},
-}
 
 
 class ComputePipeline:
@@ -81,48 +83,37 @@ class ComputePipeline:
     programs : Programs
     n_fiblets : int
         In all chunks.
+    n_chunks : int
     max_groups : int
         Work groups per axis of a dispatch.
 
     Attributes
     ----------
     buffers : dict of str to moderngl.Buffer
-        ``marks``, eight bits per fiblet: see ``shaders/compute/marks.glsl``.
+        ``marks``: see ``shaders/compute/marks.glsl``; ``nearest``, with atomics of 64 bits: a word for each pixel.
     """
 
-    def __init__(self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, max_groups: int) -> None:
+    name = "compute"
+
+    def __init__(
+        self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, n_chunks: int, max_groups: int
+    ) -> None:
         self._ctx = ctx
         self._programs = programs
         self._max_groups = max_groups
         self._software = is_software(ctx)
+        self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
         self._shares = [(0, MAX_POINTS)]
-        words = -(-n_fiblets // 32)
+        self._words = -(-n_fiblets // 32)
+        self._round_arguments = n_chunks * CLASSES
+        self._list_base = self._words * MARK_WORDS
+        self._argument_base = self._list_base + self._words * CLASSES
+        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
         self.buffers: dict[str, moderngl.Buffer] = {}
-        self.buffers["marks"] = storage_buffer(ctx, np.zeros(words * 8, np.uint32), "marks")
+        self.buffers["marks"] = storage_buffer(ctx, np.zeros(size, np.uint32), "marks")
 
-    def draw(
-        self,
-        chunks: Sequence[Chunk],
-        target: GBuffer,
-        features: Sequence[str],
-        passes: Passes,
-        line_width: float,
-        segment: float,
-    ) -> None:
-        """Draw all chunks; the ``Frame`` and ``Coding`` blocks and the direction table are bound already.
-
-        Parameters
-        ----------
-        chunks : sequence of Chunk
-        target : GBuffer
-        features : sequence of str
-            Keys of :data:`pvfiblets.engine.shaders.FEATURES`.
-        passes : Passes
-            Takes the times.
-        line_width : float
-            Pixels; counts with the feature ``WIDE_LINES``.
-        segment : float
-            Pixels that the longest segments in the picture take, roughly.
+    def draw(self, job: Job) -> None:
+        """Draw all chunks; the uniform blocks are bound already.
 
         Raises
         ------
@@ -130,57 +121,159 @@ class ComputePipeline:
             If lines are so wide that software OpenGL would lose parts of them.
         """
         if self._software:
-            self._shares = _shares(line_width, segment)
+            self._shares = _shares(job.line_width, job.segment)
+        target, occlusion = job.target, job.occlusion
         for index, texture in enumerate((target.depth, target.owner, target.ids, target.position)):
             texture.bind_to_image(index, read=True, write=True)
         self.buffers["marks"].bind_to_storage_buffer(5)
-        plain = [feature for feature in features if feature not in (*CLIPPING, CLIP_PLANES)]
-        planes = [CLIP_PLANES] if CLIP_PLANES in features else []
-        # One program for each class of fiblets that cull.comp tells apart; without clipping there is only the first.
-        variants = [plain, [*plain, CLIPPING[0]], [*plain, *CLIPPING, *planes]] if CLIPPING[0] in features else [plain]
+        passes = job.passes
+        if self._int64:
+            self._bind_nearest(8 * target.size[0] * target.size[1])
         with passes.timed("clear"):
-            dispatch(self._program("clear", plain), target.size[1], self._max_groups)
+            clear = self._program("clear", self._int64)
+            self._set(clear, argument_base=self._argument_base)
+            self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
+            dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
-            self._run("cull", [*plain, *planes], chunks, 32 * GROUP_SIZE)
-        self._barrier()
+            features = [*job.decoding, *job.detail, *job.planes]
+            if occlusion is not None and occlusion.guesses:
+                features.append(occlusion.feature)
+                occlusion.bind(self._program("cull", features))
+            self._run("cull", features, job.chunks, 32 * GROUP_SIZE)
+            self._barrier()
+        if occlusion is not None and not occlusion.halfway:
+            with passes.timed("occlusion"):
+                self._test("occlude", job)
+        with passes.timed("seen"):
+            self._round("depth", SEEN, job)
+        if occlusion is not None and occlusion.halfway:
+            if occlusion.guesses:
+                with passes.timed("guessed"):
+                    self._round("depth", GUESSED, job)
+            self._split(job, marking=False)
+            with passes.timed("pyramid"):
+                occlusion.build(target)
+            with passes.timed("occlusion"):
+                self._test("occlude", job)
+            with passes.timed("refine"):
+                self._refine(job)
         with passes.timed("depth"):
-            for first in (0, len(CLIPPING) + 1):
-                self._run_classes("depth", variants, chunks, first)
-                self._barrier()
+            self._round("depth", REST, job)
+        self._split(job, marking=True)
         with passes.timed("own"):
-            self._run_classes("own", variants, chunks)
-        self._barrier()
-        with passes.timed("attributes"):
-            self._run_classes("attributes", variants, chunks)
+            self._round("settle" if self._int64 else "own", CANDIDATES, job)
+        if not self._int64:
+            with passes.timed("settle"):
+                self._round("settle", TIED, job)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+
+    def _bind_nearest(self, size: int) -> None:
+        held = self.buffers.get("nearest")
+        if held is None or held.size != size:
+            if held is not None:
+                self.buffers.pop("nearest").release()
+            try:
+                held = self.buffers["nearest"] = self._ctx.buffer(reserve=size)
+            except moderngl.Error as error:
+                raise EngineError(f"no GPU memory for {size} bytes of depths and owners") from error
+        held.bind_to_storage_buffer(NEAREST_BINDING)
+
+    def _split(self, job: Job, *, marking: bool) -> None:
+        """Make depth and owners of the words, if there are any; mark owners as seen, and to be drawn."""
+        if not self._int64:
+            return
+        with job.passes.timed("owners" if marking else "split"):
+            split = self._program("split", ())
+            self._set(split, marking=int(marking))
+            dispatch(split, job.target.size[1], self._max_groups)
+            self._barrier()
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
         return self._programs.compute(f"compute/{stage}.comp", features)
 
-    def _barrier(self) -> None:
-        self._ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT)
+    def _set(self, program: moderngl.ComputeShader, **uniforms: object) -> None:
+        """Set those uniforms that the compiler left in."""
+        for name, value in {
+            "list_base": self._list_base,
+            "list_length": self._words,
+            **uniforms,
+        }.items():
+            if name in program:
+                program[name] = value
 
-    def _run_classes(
-        self, stage: str, variants: Sequence[Sequence[str]], chunks: Sequence[Chunk], first: int = 0
-    ) -> None:
-        for part, features in enumerate(variants, first):
-            program = self._program(stage, features)
-            program["part"] = part
-            if "WIDE_LINES" not in features:
-                self._run(stage, features, chunks, 32 * GROUP_WORDS)
-                continue
-            for share in self._shares:
-                program["share"] = share
-                self._run(stage, features, chunks, 32 * GROUP_WORDS)
+    def _barrier(self) -> None:
+        self._ctx.memory_barrier(
+            moderngl.SHADER_STORAGE_BARRIER_BIT
+            | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT
+            | moderngl.COMMAND_BARRIER_BIT
+            | moderngl.TEXTURE_FETCH_BARRIER_BIT
+            | moderngl.FRAMEBUFFER_BARRIER_BIT
+        )
+
+    def _arguments(self, number: int, chunk: int) -> int:
+        """Word at which the dispatch arguments of a round and chunk start."""
+        return self._argument_base + (number * self._round_arguments + chunk * CLASSES) * ARGUMENT_BYTES // 4
+
+    def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
+        """List what a round has to draw."""
+        plan = self._program("plan", ())
+        self._set(plan, drawing=number, refined=int(refined))
+        for index, chunk in enumerate(chunks):
+            self._set(plan, argument_base=self._arguments(number, index))
+            chunk.buffers["chunk"].bind_to_uniform_block(2)
+            dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
+        self._barrier()
+        arguments = self._program("arguments", ())
+        self._set(arguments, argument_base=self._arguments(number, 0), list_count=self._round_arguments)
+        self._set(arguments, max_groups=self._max_groups)
+        arguments.run(1)
+        self._barrier()
+
+    def _round(self, stage: str, number: int, job: Job) -> None:
+        """Draw one round's fiblets, class by class."""
+        refined = number == REST and job.occlusion is not None and job.occlusion.halfway
+        self._plan(number, job.chunks, refined)
+        for part, features in job.classes:
+            for share in self._shares if job.line_width > 1.0 else self._shares[:1]:
+                program = self._program(stage, [*features, *self._int64])
+                self._set(program, drawing=number, part=part, share=share)
+                self._run_listed(program, number, part, job.chunks)
                 if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
                     self._barrier()
+        self._barrier()
+
+    def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, chunks: Sequence[Chunk]) -> None:
+        for index, chunk in enumerate(chunks):
+            at = self._arguments(number, index)
+            self._set(program, argument_base=at)
+            chunk.bind_storage()
+            program.run_indirect(self.buffers["marks"], 4 * at + ARGUMENT_BYTES * part)
+
+    def _test(self, stage: str, job: Job) -> None:
+        """Run a pass over all fiblets that looks at the occlusion's texture."""
+        self._run(stage, self._looking(stage, job), job.chunks, 32 * GROUP_SIZE)
+        self._barrier()
+
+    def _looking(self, stage: str, job: Job) -> Sequence[str]:
+        assert job.occlusion is not None
+        features = [*job.decoding, *job.detail, job.occlusion.feature]
+        job.occlusion.bind(self._program(stage, features))
+        return features
+
+    def _refine(self, job: Job) -> None:
+        """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
+        program = self._program("refine", self._looking("refine", job))
+        self._plan(TESTED, job.chunks)
+        for part, _ in job.classes:
+            self._set(program, part=part)
+            self._run_listed(program, TESTED, part, job.chunks)
+        self._barrier()
 
     def _run(self, stage: str, features: Sequence[str], chunks: Sequence[Chunk], per_group: int) -> None:
         program = self._program(stage, features)
+        self._set(program)
         for chunk in chunks:
-            chunk.buffers["chunk"].bind_to_uniform_block(2)
-            for name in _READS[stage] & chunk.buffers.keys():
-                chunk.buffers[name].bind_to_storage_buffer(BINDINGS[name])
+            chunk.bind_storage()
             dispatch(program, -(-chunk.n_fiblets // per_group), self._max_groups)
 
     def release(self) -> None:
@@ -188,6 +281,14 @@ class ComputePipeline:
         for buffer in self.buffers.values():
             buffer.release()
         self.buffers.clear()
+
+
+def _has_int64_atomics(ctx: moderngl.Context) -> bool:
+    """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
+    wanted = {"GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"}
+    if ctx.version_code < EXTENDED or not wanted <= set(ctx.extensions):
+        return False
+    return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > NEAREST_BINDING
 
 
 def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:

@@ -14,10 +14,10 @@ uint streamline_of(uint f) {
 }
 
 // First point of fiblet f, counted from the chunk's first.
-uint first_point_of(uint f) { return pages[f >> FIBLET_PAGE_BITS].z + fiblet_point(decoding_words(f)); }
+uint first_point_of(uint f) { return page_words(f >> FIBLET_PAGE_BITS).z + fiblet_point(decoding_words(f)); }
 
 uint points_before(uint f) {
-    if (fiblet_begin(anchors[f]) != 0u) return 0u;
+    if (begins(f)) return 0u;
     uint rank = rank_of(f), stride = 1u, high = f;  // `high` has this rank
     while (high > 0u) {
         uint low = high - min(stride, high);
@@ -32,6 +32,6 @@ uint points_before(uint f) {
             break;
         }
     }
-    uint before = fiblet_begin(anchors[high]) != 0u ? 0u : chunk.z;  // begun in an earlier chunk
+    uint before = begins(high) ? 0u : chunk.z;  // begun in an earlier chunk
     return first_point_of(f) - first_point_of(high) + before;
 }

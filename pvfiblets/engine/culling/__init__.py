@@ -1,0 +1,38 @@
+"""What hides what: depth pyramid and coverage buffer, each a texture that shaders test fiblets against."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..errors import EngineError
+from .coverage import CoverageBuffer
+from .occlusion import Occlusion
+from .pyramid import DepthPyramid
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from ...codec.fibletset import FibletSet
+    from ..opengl import OpenGL
+    from ..shaders import Programs
+
+__all__ = ["Occlusion", "make_occlusion"]
+
+
+def make_occlusion(
+    culling: str | None, ctx: moderngl.Context, gl: OpenGL, programs: Programs, fiblets: FibletSet
+) -> Occlusion | None:
+    """Return what a kind of culling tests against; None for none.
+
+    Raises
+    ------
+    EngineError
+        If there is no such kind.
+    """
+    if culling in (None, "none"):
+        return None
+    if culling in ("two-phase", "auto"):
+        return DepthPyramid(ctx, gl, programs)
+    if culling == "coverage":
+        return CoverageBuffer(ctx, gl, programs, fiblets)
+    raise EngineError(f"culling is {culling!r}; choose 'two-phase', 'coverage' or None")

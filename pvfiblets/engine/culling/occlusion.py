@@ -1,0 +1,71 @@
+"""What every kind of occlusion culling does for a pipeline."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from ..gbuffer import GBuffer
+from ..view import Style, View
+
+if TYPE_CHECKING:
+    import moderngl
+
+__all__ = ["LAST_UNIT", "OCCLUSION_UNIT", "OUTSIDE_UNIT", "Occlusion"]
+
+OCCLUSION_UNIT = 11
+"""Texture unit of what fiblets are tested against."""
+
+LAST_UNIT = 9
+"""Texture unit of the last picture's pyramid."""
+
+OUTSIDE_UNIT = 10
+"""Texture unit of the depth of other things in the scene."""
+
+
+class Occlusion(Protocol):
+    """A texture of depth that fiblets are tested against by ``hidden()`` of ``shaders/culling/occlusion.glsl``."""
+
+    feature: str
+    """Key of :data:`pvfiblets.engine.shaders.FEATURES` that a testing program needs."""
+
+    halfway: bool
+    """Whether it is made of the picture itself, by :meth:`build`, once what the last one showed is drawn; otherwise
+    it is there before the picture, and every fiblet is tested."""
+
+    outside: moderngl.Texture | None
+    """Depth of other things in the scene, as keys, that hides fiblets too; for one picture."""
+
+    guesses: bool
+    """Whether it can tell, by the last picture, what will probably show: ``shaders/compute/guess.comp``."""
+
+    def before(self, target: GBuffer, view: View, style: Style) -> None:
+        """Be told that a picture will be drawn; the target still holds what it held.
+
+        Parameters
+        ----------
+        target : GBuffer
+        view : View
+        style : Style
+        """
+        ...
+
+    def build(self, target: GBuffer) -> None:
+        """Make the texture of the depth drawn so far in this picture."""
+        ...
+
+    def after(self, target: GBuffer, view: View, style: Style) -> None:
+        """Be told that the picture is whole."""
+        ...
+
+    def bind(self, program: Any) -> None:
+        """Bind the texture and tell a program where it is."""
+        ...
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        ...
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        ...

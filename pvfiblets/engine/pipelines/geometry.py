@@ -1,0 +1,60 @@
+"""The geometry pipeline (OpenGL 3.3): a point a fiblet goes in, lines come out, decoded while they are emitted.
+
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
+
+Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
+components of ``shaders/raster/handed.glsl``, per-point values included:
+
+======================  ==========  ==============  ===========================================================
+drawn                   components  vertices        segments of a share
+======================  ==========  ==============  ===========================================================
+thin, uncut             16          1024 // 16: 64  60: all of them, by 61 vertices
+thin, may be cut        17          1024 // 17: 60  30: every segment may be a strip of its own
+wide                    20          1024 // 20: 51  12: four vertices each, 60 in five shares
+wide, caller's planes   26          1024 // 26: 39  9: four vertices each, 60 in seven shares
+======================  ==========  ==============  ===========================================================
+
+A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import moderngl
+
+from ...codec.layout import MAX_POINTS
+from .job import Job
+from .textured import TexturedPipeline
+
+__all__ = ["CONSTANTS", "GeometryPipeline"]
+
+SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
+VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
+CONSTANTS = {
+    **{f"{drawn}_share": share for drawn, share in SHARES.items()},
+    **{f"{drawn}_vertices": count for drawn, count in VERTICES.items()},
+}
+
+
+class GeometryPipeline(TexturedPipeline):
+    """Draws chunks through geometry stages; parameters as for :class:`RasterPipeline`."""
+
+    name = "geometry"
+    mode = moderngl.POINTS
+
+    def _stages(self, job: Job) -> Mapping[str, str]:
+        geometry, fragment = ("capsules", "capsule") if job.wide else ("lines", "line")
+        return {
+            "vertex": "raster/survivors.vert",
+            "geometry": f"geometry/{geometry}.geom",
+            "fragment": f"raster/{fragment}.frag",
+        }
+
+    def _shares(self, job: Job) -> int:
+        # The geometry stages choose by the same features.
+        if job.wide:
+            share = SHARES["cut_capsule" if job.planes else "capsule"]
+        else:
+            share = SHARES["cut_line" if job.clipping else "line"]
+        return -(-MAX_POINTS // share)

@@ -1,0 +1,112 @@
+"""What a pipeline is told to draw, and what every pipeline does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from ..chunks import Chunk
+from ..gbuffer import GBuffer
+from ..passes import Passes
+
+if TYPE_CHECKING:
+    from ..culling.occlusion import Occlusion
+
+__all__ = ["Job", "Pipeline", "Sized"]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One picture.
+
+    The uniform blocks ``Frame``, ``Coding``, ``ClipPlanes`` (if there are planes) and ``Rotations`` are bound to 0, 1,
+    3 and 4 already.
+
+    Attributes
+    ----------
+    chunks : sequence of Chunk
+    target : GBuffer
+    passes : Passes
+        Takes the times.
+    decoding : tuple of str
+        Features (keys of :data:`pvfiblets.engine.shaders.FEATURES`) that the fiblets' records ask for.
+    values : tuple of str
+        Feature of the per-point value.
+    clipping : bool
+        Whether any fiblet may cross the edges of the picture, the near or the far plane.
+    planes : tuple of str
+        ``CLIP_PLANES``, if planes of the caller's may touch anything.
+    detail : tuple of str
+        ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
+    line_width : float
+        Pixels.
+    segment : float
+        Pixels that the longest segments in the picture take, roughly.
+    occlusion : Occlusion, optional
+        Tests what earlier depth hides.
+    """
+
+    chunks: Sequence[Chunk]
+    target: GBuffer
+    passes: Passes
+    decoding: tuple[str, ...]
+    values: tuple[str, ...]
+    clipping: bool
+    planes: tuple[str, ...]
+    detail: tuple[str, ...]
+    line_width: float
+    segment: float
+    occlusion: Occlusion | None
+
+    @property
+    def wide(self) -> tuple[str, ...]:
+        """``WIDE_LINES``, if they are."""
+        return ("WIDE_LINES",) if self.line_width > 1.0 else ()
+
+    @property
+    def classes(self) -> list[tuple[int, tuple[str, ...]]]:
+        """Classes of fiblets (``shaders/compute/cull.comp``) that there can be, with the features of their programs."""
+        common = (*self.decoding, *self.values, *self.wide)
+        classes = [(0, common)]
+        if self.clipping:
+            classes.append((1, (*common, *self.detail, "CLIPPING")))
+            classes.append((2, (*common, *self.detail, *self.planes, "CLIPPING", "CLIPPING_DEPTH")))
+        if self.detail:
+            classes.append((3, (*common, "ONE_SEGMENT")))
+        return classes
+
+    @property
+    def features(self) -> list[str]:
+        """All of them, for reports."""
+        clipping = ("CLIPPING", "CLIPPING_DEPTH") if self.clipping else ()
+        culling = (self.occlusion.feature,) if self.occlusion is not None else ()
+        return [*self.decoding, *self.values, *self.wide, *self.detail, *clipping, *self.planes, *culling]
+
+
+class Sized(Protocol):
+    """Something on the GPU."""
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        ...
+
+
+class Pipeline(Protocol):
+    """How fiblets become pixels."""
+
+    name: str
+
+    @property
+    def buffers(self) -> Mapping[str, Sized]:
+        """What it keeps on the GPU of its own, by name."""
+        ...
+
+    def draw(self, job: Job) -> None:
+        """Fill the target."""
+        ...
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        ...

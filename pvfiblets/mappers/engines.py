@@ -1,0 +1,60 @@
+"""How a mapper's fiblets are drawn: what it asks of the engine, and which engine it asks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from pvfiblets.engine.capabilities import AUTO, check_choices
+
+
+@dataclass(frozen=True)
+class EngineOptions:
+    """What can be chosen about drawing that does not show in the picture.
+
+    Parameters
+    ----------
+    pipeline : str, default 'auto'
+        How fiblets become pixels: ``'auto'`` takes the fastest that the window's OpenGL has; see
+        `pvfiblets.engine.capabilities.pipelines`.
+    culling : {'two-phase', 'coverage', 'none', None}
+        How fiblets behind others are found out.
+    fit : {None, 'sample'}
+        What to do where memory does not suffice: refuse, or draw a share of the streamlines.
+
+    Raises
+    ------
+    ValueError
+        A value is unknown.
+    """
+
+    pipeline: str = AUTO
+    culling: str | None = "two-phase"
+    fit: str | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values, and let None stand for no culling."""
+        check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
+        if self.culling == "none":
+            object.__setattr__(self, "culling", None)
+
+    def changed(self) -> dict[str, Any]:
+        """Return those that are not the defaults, as keyword arguments of a renderer."""
+        return {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if getattr(self, field.name) != field.default
+        }
+
+
+def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
+    """Make the engine's renderer; the default ``renderer_factory``.
+
+    Raises
+    ------
+    EngineError
+        The window's OpenGL lacks the pipeline that is wanted; said before anything is copied to the GPU.
+    """
+    from pvfiblets.engine import FibletRenderer
+
+    return FibletRenderer(ctx, fiblets, **options)

@@ -1,0 +1,39 @@
+"""The mapper of an actor, as PyVista's scalar bars want to see it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import pyvista as pv
+
+from pvfiblets.mappers import FibletMapper
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.actor import FibletActor
+
+
+class PlottedMapper(FibletMapper):
+    """A fiblet mapper that shows PyVista's scalar bars the actor's own look-up table.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    """
+
+    @property
+    def lookup_table(self) -> pv.LookupTable:
+        """The table that colours both the picture and the scalar bar."""
+        return self._shown_by().lookup_table
+
+    @property
+    def scalar_range(self) -> tuple[float, float]:
+        """Values of the first and last colour; bars that several actors share set it."""
+        return self._shown_by().clim
+
+    @scalar_range.setter
+    def scalar_range(self, clim: tuple[float, float]) -> None:
+        self._shown_by().clim = clim
+
+    def _shown_by(self) -> FibletActor:
+        return cast("FibletActor", self.actor)

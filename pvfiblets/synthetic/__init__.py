@@ -1,0 +1,8 @@
+"""Made-up tractograms that look and measure like tracking on a whole brain: points, or compressed sets of any size."""
+
+from __future__ import annotations
+
+from .brain import brain
+from .tracking import BUNDLES, LENGTHS, SMALLEST_RADIUS, brain_streamlines, iter_brain_streamlines
+
+__all__ = ["BUNDLES", "LENGTHS", "SMALLEST_RADIUS", "brain", "brain_streamlines", "iter_brain_streamlines"]

@@ -1,0 +1,233 @@
+"""The mesh pipelines on OpenGL without mesh shaders: their stages as compute shaders that write to buffers.
+
+Task and mesh stage run with the very includes that the real ones are made of; ``mesh/outputs.glsl`` alone, a page of
+assignments to built-in arrays, gives way to writes into a buffer. A vertex stage then hands vertices, primitive by
+primitive, to the rasteriser and the pipeline's own fragment stage.
+"""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+
+from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.pipelines.mesh import TASK_FIBLETS, MeshPipeline
+from pvfiblets.engine.pipelines.raster import FIRST_ROUND_UNIT
+from pvfiblets.engine.shaders import assemble
+
+TASK_WORDS, VERTICES, INDICES, HANDED, MOST = 16, 480, 180, 24, 60
+MESH_WORDS = VERTICES + INDICES + HANDED * MOST + 4
+SHARES = {False: 1, True: 4}
+
+TASK = """
+#version 430
+layout(local_size_x = {{ mesh_threads }}) in;
+#include "mesh/cull.glsl"
+#include "mesh/shares.glsl"
+layout(std430, binding = 8) writeonly buffer Tasks { uint tasks[]; };
+void main() {
+    Survivors survivors;
+    uint count = cull(survivors), at = (first_group + gl_WorkGroupID.x) * 16u;
+    if (gl_LocalInvocationIndex != 0u) return;
+    tasks[at] = SHARES * count;
+    tasks[at + 1u] = survivors.first;
+    for (uint i = 0u; i < ROUNDS; ++i) tasks[at + 2u + i] = survivors.bits[i];
+}
+"""
+
+# Where the words of a mesh stand: vertices, indices, what primitives hand over, their number.
+LAYOUT = """
+const uint MESH_WORDS = 2104u, INDICES = 480u, HANDED_AT = 660u, COUNT = 2100u;
+"""
+
+MESH = """
+#version 430
+layout(local_size_x = THREADS_OF) in;
+#include "mesh/survivors.glsl"
+#include "mesh/segment.glsl"
+layout(std430, binding = 8) readonly buffer Tasks { uint tasks[]; };
+layout(std430, binding = 9) writeonly buffer Meshes { uint meshes[]; };
+LAYOUT
+#define HANDED
+#define TO(name) name
+#include "raster/hand_over.glsl"
+uint mesh;
+void put_vertex(uint vertex, vec4 at) {
+    for (uint a = 0u; a < 4u; ++a) meshes[mesh + 4u * vertex + a] = floatBitsToUint(at[a]);
+}
+void put_index(uint slot, uint vertex) { meshes[mesh + INDICES + slot] = vertex; }
+void put_count(uint primitives) { meshes[mesh + COUNT] = primitives; }
+void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) {
+    hand_over(handed, piece, from, to);
+    uint at = mesh + HANDED_AT + 24u * primitive;
+    for (uint a = 0u; a < 4u; ++a) meshes[at + a] = handed_ids[a];
+    meshes[at + 4u] = floatBitsToUint(handed_first);
+#if FEATURE_WIDE_LINES
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(handed_start[a]);
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(handed_end[a]);
+#else
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = handed_cells[a];
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(handed_depths[a]);
+    meshes[at + 9u] = floatBitsToUint(handed_ratio);
+#endif
+#if FEATURE_CLIPPING
+    meshes[at + 13u] = handed_part;
+#endif
+#if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(handed_from[a]);
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(handed_to[a]);
+#endif
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(handed_values[a]);
+#endif
+}
+#include "mesh/STAGE.glsl"
+void main() {
+    uint at = gl_WorkGroupID.y * 16u, k = gl_WorkGroupID.x;
+    mesh = (gl_WorkGroupID.y * gl_NumWorkGroups.x + k) * MESH_WORDS;
+    if (k >= tasks[at]) {
+        if (gl_LocalInvocationIndex == 0u) put_count(0u);
+        return;
+    }
+    Survivors survivors;
+    survivors.first = tasks[at + 1u];
+    for (uint i = 0u; i < ROUNDS; ++i) survivors.bits[i] = tasks[at + 2u + i];
+    draw_share(survivor(survivors, k / SHARES), k % SHARES);
+}
+"""
+
+VERTEX = """
+#version 430
+#include "raster/piece.glsl"
+#define HANDED flat out
+#include "raster/handed.glsl"
+layout(std430, binding = 9) readonly buffer Meshes { uint meshes[]; };
+LAYOUT
+float value(uint at) { return uintBitsToFloat(meshes[at]); }
+void main() {
+#if FEATURE_WIDE_LINES
+    const uint corners = 3u, most = 30u;
+#else
+    const uint corners = 2u, most = 60u;
+#endif
+    uint number = uint(gl_VertexID), corner = number % corners, primitive = number / corners % most;
+    uint mesh = number / corners / most * MESH_WORDS, at = mesh + HANDED_AT + 24u * primitive;
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    if (primitive >= meshes[mesh + COUNT]) return;
+    uint vertex = mesh + 4u * meshes[mesh + INDICES + corners * primitive + corner];
+    gl_Position = vec4(value(vertex), value(vertex + 1u), value(vertex + 2u), value(vertex + 3u));
+    handed_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
+    handed_first = value(at + 4u);
+#if FEATURE_WIDE_LINES
+    handed_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
+    handed_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
+#else
+    handed_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
+    handed_depths = vec2(value(at + 7u), value(at + 8u));
+    handed_ratio = value(at + 9u);
+#endif
+#if FEATURE_CLIPPING
+    handed_part = meshes[at + 13u];
+#endif
+#if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
+    handed_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
+    handed_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
+#endif
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+    handed_values = vec2(value(at + 20u), value(at + 21u));
+#endif
+}
+"""
+
+
+class EmulatedMesh(MeshPipeline):
+    """A mesh pipeline whose task and mesh stages are compute shaders; keeps what they wrote last.
+
+    ``tasks`` and ``meshes`` are lists, one item a round and chunk: ``(groups, 10)`` words, count, first fiblet and
+    bits; and ``(groups, meshes of a group, words)``.
+    """
+
+    max_tasks = 65535
+
+    def __init__(self, ctx, gl, programs, n_fiblets, *, serial=False):
+        super().__init__(ctx, gl, programs, n_fiblets, serial=serial)
+        self.kept = {}
+        self.tasks, self.meshes = [], []
+
+    def _most_tasks(self, wanted):
+        return self.max_tasks
+
+    def _has_ballots(self):
+        return False
+
+    def draw(self, job):
+        self.tasks, self.meshes = [], []
+        super().draw(job)
+
+    def _compiled(self, job, features):
+        every = frozenset([*self._features(job), *features]) - {"PER_PRIMITIVE"}
+        serial = self.name == "mesh-serial"
+        key = serial, bool(job.wide), every
+        if key not in self.kept:
+            stage, threads = ("serial", "1") if serial else ("together", "{{ mesh_threads }}")
+            mesh = MESH.replace("LAYOUT", LAYOUT).replace("STAGE", stage).replace("THREADS_OF", threads)
+            fragment = "raster/capsule.frag" if job.wide else "raster/line.frag"
+            program = self._ctx.program(
+                vertex_shader=assemble("vertex", every, CONSTANTS, source=VERTEX.replace("LAYOUT", LAYOUT)),
+                fragment_shader=assemble(fragment, every, CONSTANTS),
+            )
+            self.kept[key] = (
+                self._ctx.compute_shader(assemble("task", every, CONSTANTS, source=TASK)),
+                self._ctx.compute_shader(assemble("mesh", every, CONSTANTS, source=mesh)),
+                program,
+                self._ctx.vertex_array(program, []),
+            )
+        return self.kept[key]
+
+    def _round(self, job, features):
+        task, mesh, program, array = self._compiled(job, features)
+        ctx, wide = self._ctx, bool(job.wide)
+        for chunk in job.chunks:
+            chunk.bind_storage()
+            groups, each = -(-chunk.n_fiblets // TASK_FIBLETS), TASK_FIBLETS * SHARES[wide]
+            tasks = ctx.buffer(reserve=groups * TASK_WORDS * 4)
+            meshes = ctx.buffer(reserve=groups * each * MESH_WORDS * 4)
+            tasks.bind_to_storage_buffer(8)
+            meshes.bind_to_storage_buffer(9)
+            self._bind(task, job, features)
+            if "first_round" in program:
+                self._target.kept.use(FIRST_ROUND_UNIT)
+                program["first_round"] = FIRST_ROUND_UNIT
+            for first in range(0, groups, self._max_tasks):
+                task["first_group"] = first
+                task.run(min(self._max_tasks, groups - first))
+            ctx.memory_barrier()
+            mesh.run(each, groups)
+            ctx.memory_barrier()
+            ctx.enable_only(moderngl.DEPTH_TEST)
+            ctx.depth_func = "<"
+            primitives = groups * each * (30 if wide else MOST)
+            array.render(moderngl.TRIANGLES if wide else moderngl.LINES, vertices=primitives * (3 if wide else 2))
+            self.tasks.append(np.frombuffer(tasks.read(), "<u4").reshape(groups, TASK_WORDS)[:, :10])
+            self.meshes.append(np.frombuffer(meshes.read(), "<u4").reshape(groups, each, MESH_WORDS))
+            tasks.release()
+            meshes.release()
+
+    def release(self):
+        super().release()
+        for things in self.kept.values():
+            for thing in things:
+                thing.release()
+        self.kept.clear()
+
+
+def emulated_renderer(monkeypatch, gl, fiblets, *, serial=False, **options):
+    """Return a FibletRenderer that draws with an :class:`EmulatedMesh`."""
+    from pvfiblets.engine import FibletRenderer, renderer
+
+    def make(name, ctx, opengl, programs, n_fiblets, n_chunks, limits):
+        return EmulatedMesh(ctx, opengl, programs, n_fiblets, serial=serial)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(renderer, "make_pipeline", make)
+        return FibletRenderer(gl, fiblets, pipeline="compute", **options)

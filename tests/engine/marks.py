@@ -1,0 +1,42 @@
+"""What a picture's passes told each other about fiblets (``shaders/compute/marks.glsl``), read back afterwards."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.shaders import assemble
+
+CLASSES = 4
+
+
+def column(name):
+    """Number of a word of ``marks.glsl`` by its name there."""
+    return int(re.search(rf"\b{name} = (\d+)u", assemble("compute/clear.comp", (), CONSTANTS))[1])
+
+
+def marks(renderer):
+    """(n, words) of each 32 fiblets."""
+    buffer = renderer._pipeline.buffers["marks"]
+    words = CONSTANTS["mark_words"]
+    count = -(-renderer._fiblets.n_fiblets // 32)
+    return np.frombuffer(buffer.read(4 * words * count), "<u4").reshape(count, words)
+
+
+def bits(words, n_fiblets):
+    """(n_fiblets,) bool of one word for each 32."""
+    return np.unpackbits(np.ascontiguousarray(words).view(np.uint8), bitorder="little")[:n_fiblets].astype(bool)
+
+
+def planned(renderer, *, seen=True, unseen=True):
+    """(n_fiblets,) bool: drawn in the last picture, those seen in the one before and those not seen in it."""
+    words = marks(renderer)
+    columns = [*(range(CLASSES) if seen else ()), *(range(CLASSES, column("CANDIDATES")) if unseen else ())]
+    return bits(np.bitwise_or.reduce(words[:, columns], axis=1), renderer._fiblets.n_fiblets)
+
+
+def owning(renderer):
+    """(n_fiblets,) bool: may own a pixel of the last picture."""
+    return bits(marks(renderer)[:, column("SEEN")], renderer._fiblets.n_fiblets)

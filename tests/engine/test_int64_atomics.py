@@ -1,0 +1,153 @@
+"""Depth and owner in one 64-bit word, on a machine whose OpenGL has 64-bit integers but no atomics of them.
+
+The shaders are compiled off-line as they are. Then they draw: Mesa's software OpenGL on one thread stands in for the
+atomic, by a plain write; where lanes of one instruction overwrote each other, drawing again mends it, because a word
+only ever falls.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.pipelines.compute import _has_int64_atomics
+from pvfiblets.engine.shaders import EXTENDED, assemble
+
+ROOT = Path(__file__).resolve().parents[2]
+DRAWN = {
+    "inside": [],
+    "cut": ["CLIPPING", "CLIPPING_DEPTH", "LEVEL_OF_DETAIL"],
+    "planes": ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "WIDE_LINES"],
+    "far": ["ONE_SEGMENT"],
+}
+RECORDS = {"directions": ["DIRECTION"], "lattices": ["LATTICE", "WIDE_LATTICE", "ANCHORS_LOW", "RANK_TO_ID"]}
+CASES = [
+    *(("depth", drawn, records) for drawn, records in itertools.product(DRAWN, RECORDS)),
+    ("clear", "inside", "directions"),
+    ("split", "inside", "directions"),
+]
+
+
+@pytest.mark.parametrize(("stage", "drawn", "records"), CASES)
+def test_shaders_compile(tmp_path, stage, drawn, records):
+    tool = shutil.which("glslangValidator")
+    if tool is None:
+        pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
+    features = ["INT64_ATOMICS", *DRAWN[drawn], *RECORDS[records]]
+    source = assemble(f"compute/{stage}.comp", features, CONSTANTS, version=EXTENDED)
+    path = tmp_path / "stage.comp"
+    path.write_text(source)
+    done = subprocess.run([tool, path], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert ("atomicMin(nearest" in source) == (stage == "depth")
+
+
+@pytest.mark.parametrize(
+    ("extensions", "bindings", "expected"),
+    [
+        (["GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"], 96, True),
+        (["GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"], 8, False),
+        (["GL_NV_shader_atomic_int64"], 96, False),
+        (["GL_EXT_shader_image_int64", "GL_ARB_gpu_shader_int64"], 96, False),
+    ],
+)
+def test_used_where_storage_buffers_have_them(extensions, bindings, expected):
+    info = {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": bindings}
+    ctx = SimpleNamespace(extensions=set(extensions), info=info, version_code=460)
+    assert _has_int64_atomics(ctx) is expected
+    ctx.version_code = 440
+    assert not _has_int64_atomics(ctx)
+
+
+DRAW = """
+import sys
+import moderngl
+import numpy as np
+from pvfiblets import compress, synthetic
+from pvfiblets.engine import FibletRenderer, Style, View, shaders
+from pvfiblets.engine.pipelines import compute
+
+ctx = moderngl.create_context(standalone=True, backend="egl")
+if "GL_ARB_gpu_shader_int64" not in ctx.extensions:
+    sys.exit("no 64-bit integers")
+lines = synthetic.brain_streamlines(120, 0.5, seed=3)
+offsets = np.concatenate([lines.offsets, lines.offsets[1:] + lines.n_points])
+fiblets = compress(type(lines)(np.concatenate([lines.points] * 2), offsets))  # every streamline has a twin
+honest, once = shaders.read_shader, compute.ComputePipeline._run_listed
+
+
+def plain(name):
+    text = honest(name).replace("atomicMin(nearest[at], word)", "nearest[at] = word")
+    return text.replace("#extension GL_NV_shader_atomic_int64 : require", "")
+
+
+def again(self, program, number, *rest):
+    for _ in range(8 if number in (compute.SEEN, compute.GUESSED, compute.REST) else 1):
+        once(self, program, number, *rest)
+        self._barrier()
+
+
+def pictures(culling):
+    renderer = FibletRenderer(ctx, fiblets, pipeline="compute", culling=culling)
+    cut = [[1.0, 0.2, 0.1, 5.0]]
+    for turn, width, planes in ((0, 1.0, ()), (0.3, 1.0, ()), (60, 1.0, ()), (61, 4.0, ()), (61, 2.0, cut)):
+        a = np.radians(turn)
+        z = np.array([np.cos(a), np.sin(a), 0.3]) / np.hypot(1.0, 0.3)
+        x = np.cross([0, 0, 1], z) / np.linalg.norm(np.cross([0, 0, 1], z))
+        view = np.eye(4)
+        view[:3, :3] = x, np.cross(z, x), z
+        view[:3, 3] = -view[:3, :3] @ (np.array([0, -18, 8]) + 300 * z)
+        projection = np.zeros((4, 4))
+        projection[0, 0], projection[1, 1], projection[3, 2] = 2.4, 3.2, -1.0
+        projection[2, 2:] = -600 / 400, -2 * 500 * 100 / 400
+        gbuffer = renderer.render(View((200, 150), projection @ view, planes), Style(width, values="arc_length"))
+        yield [t.read() for t in (gbuffer.depth, gbuffer.owner)], [t.read() for t in (gbuffer.ids, gbuffer.position)]
+    names = [p["name"] for p in renderer.explain()["passes"]]
+    print(*names)
+    buffers = {b["name"]: b["bytes"] for b in renderer.explain()["buffers"]}
+    print(buffers.get("nearest"))
+    renderer.release()
+
+
+for culling in (None, "two-phase", "coverage"):
+    expected = list(pictures(culling))
+    with_words, compute._has_int64_atomics = compute._has_int64_atomics, lambda ctx: True
+    shaders.read_shader, compute.ComputePipeline._run_listed = plain, again
+    found = list(pictures(culling))
+    compute._has_int64_atomics, shaders.read_shader, compute.ComputePipeline._run_listed = with_words, honest, once
+    for (same, some), (same_too, some_too) in zip(expected, found, strict=True):
+        assert same == same_too
+        drawn = np.frombuffer(same[0], "<u4") != 0xFFFFFFFF
+        assert drawn.sum() > 500
+        for a, b in zip(some, some_too, strict=True):
+            a, b = (np.frombuffer(t, "<u4").reshape(-1, 2)[drawn] for t in (a, b))
+            assert (a == b).all()
+assert ctx.error == "GL_NO_ERROR"
+"""
+
+
+def test_pictures_are_the_same_bit_by_bit(tmp_path):
+    script = tmp_path / "draw.py"
+    script.write_text(DRAW)
+    environment = {**os.environ, "LP_NUM_THREADS": "0", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, script], env=environment, capture_output=True, text=True, check=False)
+    if done.stderr.strip() == "no 64-bit integers":
+        pytest.skip("this OpenGL has no 64-bit integers")
+    assert done.returncode == 0, done.stderr[-4000:]
+    lines = done.stdout.splitlines()
+    for plain, words in zip(lines[0::4], lines[2::4], strict=True):
+        assert "settle" in plain
+        assert "owners" not in plain
+        assert "owners" in words
+        assert "settle" not in words
+    assert "split" in lines[6]
+    assert lines[1] == "None"
+    assert lines[3] == str(8 * 200 * 150)

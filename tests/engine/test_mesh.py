@@ -1,0 +1,360 @@
+"""Mesh pipelines on a machine without mesh shaders: every stage compiled off-line, and run as compute shaders.
+
+The drivers' own part is what remains: that they link what glslang links, and draw what the stages wrote.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pvfiblets import compress, synthetic
+from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.pipelines.mesh import TASK_FIBLETS, MeshPipeline
+from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
+
+from .cells import SHIFT_256
+from .emulated import emulated_renderer
+from .marks import planned
+from .pictures import EVERY_POINT, SIZE, assert_same, differences, read
+from .polylines import to_clip, to_window
+
+RECORDS = {
+    "directions": ["DIRECTION"],
+    "lattices": ["LATTICE", "WIDE_LATTICE", "ANCHORS_LOW"],
+    "both": ["DIRECTION", "LATTICE", "WIDE_LATTICE", "ANCHORS_LOW", "RANK_TO_ID"],
+}
+DRAWN = {
+    "whole": [],
+    "cut": ["CLIPPING", "CLIPPING_DEPTH", "LEVEL_OF_DETAIL"],
+    "planes": ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES"],
+    "wide": ["WIDE_LINES", "LEVEL_OF_DETAIL"],
+    "wide-planes": ["WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "LEVEL_OF_DETAIL"],
+}
+CULLED = {
+    "none": [],
+    "first": ["CULL_PYRAMID"],
+    "second": ["CULL_PYRAMID", "SECOND_ROUND", "SUBGROUPS"],
+    "coverage": ["CULL_COVERAGE", "SUBGROUPS"],
+}
+VALUES = {
+    "plain": [],
+    "stored": ["VALUES_STORED"],
+    "length": ["VALUES_ARC_LENGTH"],
+    "curvature": ["VALUES_CURVATURE"],
+}
+
+
+def stages(kind, features):
+    """Sources by glslang's names of the stages."""
+    wide = "WIDE_LINES" in features
+    files = {
+        "task": "mesh/fiblets.task",
+        "mesh": f"mesh/{kind}.mesh",
+        "frag": "raster/capsule.frag" if wide else "raster/line.frag",
+    }
+    every = {*features, "PER_PRIMITIVE"}
+    return {stage: assemble(name, every, CONSTANTS, version=EXTENDED) for stage, name in files.items()}
+
+
+def glslang():
+    """Path of the compiler; the test is skipped where there is none."""
+    tool = shutil.which("glslangValidator")
+    if tool is None:
+        pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
+    return tool
+
+
+def link(folder, sources):
+    """Compile all stages and link them; return what glslang says."""
+    for stage, source in sources.items():
+        (folder / f"stage.{stage}").write_text(source)
+    paths = [str(folder / f"stage.{stage}") for stage in sources]
+    return subprocess.run([glslang(), "-l", *paths], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("culled", CULLED)
+@pytest.mark.parametrize("drawn", DRAWN)
+@pytest.mark.parametrize("records", RECORDS)
+@pytest.mark.parametrize("kind", ["together", "serial"])
+def test_stages_compile_and_link(tmp_path, kind, records, drawn, culled):
+    for value in VALUES.values() if culled in ("none", "second") else [[]]:
+        sources = stages(kind, [*RECORDS[records], *DRAWN[drawn], *CULLED[culled], *value])
+        done = link(tmp_path, sources)
+        assert done.returncode == 0, done.stdout
+        assert "ERROR" not in done.stdout
+        for source in sources.values():
+            bindings = [int(n) for n in re.findall(r"std430, binding = (\d+)", source)]
+            assert len(set(bindings)) <= 8, "OpenGL promises eight"
+
+
+def test_the_compiler_sees_every_stage(tmp_path):
+    sources = stages("together", ["DIRECTION"])
+    for stage in sources:
+        broken = {**sources, stage: sources[stage].replace("void main() {", "void main() { nonsense();")}
+        assert link(tmp_path, broken).returncode != 0
+    unmatched = {**sources, "frag": sources["frag"].replace("uvec4 handed_ids", "uvec3 handed_ids")}
+    assert link(tmp_path, unmatched).returncode != 0
+
+
+@pytest.mark.parametrize("kind", ["together", "serial"])
+@pytest.mark.parametrize("drawn", DRAWN)
+def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
+    """256 vertices, 512 primitives, 16 KiB of outputs and shared memory; as many as the shares need."""
+    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "VALUES_ARC_LENGTH", *DRAWN[drawn]]
+    source = tmp_path / "stage.mesh"
+    source.write_text(assemble(f"mesh/{kind}.mesh", features, CONSTANTS))
+    text = subprocess.run([glslang(), "-E", source], capture_output=True, text=True, check=True).stdout
+    vertices, primitives = (int(re.search(rf"max_{what} = (\d+)", text)[1]) for what in ("vertices", "primitives"))
+    share, shares = (int(n) for n in re.search(r"SHARE = (\d+)u, SHARES = (\d+)u", text).groups())
+    sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4, "ivec3": 3}
+    handed = sum(sizes[kind] for kind in re.findall(r"perprimitiveNV out (\w+) handed_", text))
+    shared = sum(sizes[kind] for kind in re.findall(r"shared (\w+) \w+ *\[ *2u \* PREFIX_THREADS *\]", text))
+    assert vertices <= 256
+    assert primitives <= 512
+    assert handed >= 12
+    assert shared == (0 if kind == "serial" else 4 + 3 + 3 + 1)
+    assert 16 * vertices + 4 * handed * primitives + 3 * primitives + 4 * 64 * shared <= 16384
+    assert share * shares >= 60
+    wide, cut = "WIDE_LINES" in features, "CLIPPING" in features
+    assert vertices == (4 * share if wide else 2 * share if cut else share + 1)
+    assert primitives == (2 * share if wide else share)
+
+
+@pytest.fixture(scope="module")
+def lines(random_lines):
+    return random_lines(60, seed=4)
+
+
+def pictures(gl, monkeypatch, fiblets, view, style, *, serial, other="compute", **options):
+    emulated = emulated_renderer(monkeypatch, gl, fiblets, serial=serial, **options)
+    real = FibletRenderer(gl, fiblets, pipeline=other, **options)
+    try:
+        return read(emulated.render(view, style)), read(real.render(view, style))
+    finally:
+        emulated.release()
+        real.release()
+
+
+def assert_alike(picture, expected):
+    """As near as float32 decoded in another order brings two pictures."""
+    both = picture.drawn & expected.drawn
+    assert both.sum() > 500
+    assert (picture.drawn ^ expected.drawn).sum() <= 2e-3 * both.sum()
+    same = (picture.ids[..., 0] == expected.ids[..., 0]) & both
+    assert same.sum() >= 0.995 * both.sum()
+    depth = np.abs(picture.window_depth - expected.window_depth)[same]
+    assert (depth < 1e-5).mean() > 0.999
+    place = np.abs(picture.position[..., 0] - expected.position[..., 0])[same]
+    assert (place < 1e-2).mean() > 0.995
+
+
+@pytest.mark.parametrize("width", [1.0, 3.0], ids=["thin", "wide"])
+@pytest.mark.parametrize("where", ["outside", "inside", "parallel", "planes", "far"])
+@pytest.mark.parametrize("kind", [1, 2, 3], ids=["lattice8", "lattice16", "wide-lattice"])
+def test_pictures_of_lattices(gl, monkeypatch, fabricate, lines, camera, kind, where, width):
+    fiblets = fabricate(lines, kind=kind, low=kind == 2)
+    cameras = {
+        "inside": {"eye": (3, -2, 1), "target": (30, 10, 0), "near": 0.05, "far": 200.0, "angle": 80.0},
+        "parallel": {"height": 120.0},
+        "far": {"eye": (0, -2500, 60), "near": 1000.0, "far": 4000.0, "angle": 4.0},
+    }
+    matrix = camera(SIZE, **cameras.get(where, {}))
+    planes = [[0.6, 0.5, -0.3, 10.0], [-1.0, 0.0, 0.0, 30.0]] if where == "planes" else []
+    view, style = View(SIZE, matrix, planes), Style(width, tolerance=0.5 if where == "far" else 0.0)
+    serial, expected = pictures(gl, monkeypatch, fiblets, view, style, serial=True, other="geometry")
+    different = differences(serial, expected)
+    assert not {"depth", "owner"} & set(different)
+    if width > 1.0:
+        assert not different
+    else:  # where a line folds back, its segments are drawn in another order
+        assert different.get("ids", 0) <= 1e-3 * serial.drawn.sum()
+    together, expected = pictures(gl, monkeypatch, fiblets, view, style, serial=False)
+    assert_alike(together, expected)
+
+
+@pytest.fixture(scope="module")
+def brain():
+    return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
+
+
+@pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
+@pytest.mark.parametrize("values", [None, "fa", "arc_length", "curvature"])
+@pytest.mark.parametrize("tolerance", [0.0, 3.0], ids=["near", "far"])
+def test_pictures_of_directions_and_their_values(gl, monkeypatch, brain, camera, serial, values, tolerance):
+    matrix = camera(SIZE, eye=(-250, 120, 90), target=(0, -18, 8), angle=35.0)
+    style = Style(1.0, values=values, tolerance=tolerance)
+    picture, expected = pictures(gl, monkeypatch, brain, View(SIZE, matrix), style, serial=serial)
+    assert_alike(picture, expected)
+    same = (picture.owner == expected.owner) & picture.drawn & expected.drawn
+    same &= np.abs(picture.position[..., 0] - expected.position[..., 0]) < 1e-3
+    ours, theirs = picture.position[same][:, 1], expected.position[same][:, 1]
+    scale = {None: 1.0, "fa": 1.0, "arc_length": 100.0, "curvature": 1.0}[values]
+    assert np.array_equal(np.isnan(ours), np.isnan(theirs))
+    assert np.nanmax(np.abs(ours - theirs)) < 2e-3 * scale
+
+
+@pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
+def test_meshes_against_float64(gl, monkeypatch, fabricate, lines, camera, serial):
+    """A vertex a point, in the middle of its pixel, and a line a segment, in their order; nothing more."""
+    fiblets = fabricate(lines, kind=2)
+    matrix = camera(SIZE, eye=(0, -1200, 60), far=3000.0, angle=45.0)
+    renderer = emulated_renderer(monkeypatch, gl, fiblets, serial=serial, culling=None)
+    renderer.render(View(SIZE, matrix), EVERY_POINT)
+    (meshes,), (tasks,) = renderer._pipeline.meshes, renderer._pipeline.tasks
+    renderer.release()
+    assert tasks[:, 0].sum() == fiblets.n_fiblets, "the whole set is in this view"
+    drawn, lasts = 0, np.cumsum([len(line) for line in fiblets.lines])
+    for f in range(fiblets.n_fiblets):
+        group, within = divmod(f, TASK_FIBLETS)
+        mesh = meshes[group, within]
+        rank = int(np.searchsorted(lasts, points_before(fiblets, f), "right"))
+        line, start = fiblets.lines[rank], fiblets.starts[f]
+        points = line[start : start + 61] if start + 60 < len(line) else line[start:]
+        ends = start + 60 >= len(line)
+        if len(points) == 1:
+            points = np.repeat(points, 2, axis=0)
+        count = len(points) - 1
+        assert mesh[2100] == count
+        assert mesh[480 : 480 + 2 * count].tolist() == [v for s in reversed(range(count)) for v in (s, s + 1)]
+        vertices = mesh[: 4 * (count + 1)].view("<f4").reshape(-1, 4)
+        window = to_window(to_clip(points, matrix), SIZE)
+        at = (vertices[:, :2] + 1.0) / 2.0 * SIZE - SHIFT_256 / 256.0 - 0.5
+        inner = slice(0, len(points) - 1 if ends else None)  # the last one of a streamline goes on for part of a pixel
+        sure = np.abs(window[:, :2] - np.rint(window[:, :2])).min(axis=1) > 1e-3
+        assert np.abs(at - np.floor(window[:, :2]))[inner][sure[inner]].max(initial=0.0) < 1e-3
+        if ends:
+            assert np.abs(at[-1] - np.floor(window[-1, :2])).max() < 0.7
+        assert (vertices[:, 2:] == [0.0, 1.0]).all()
+        handed = mesh[660 : 660 + 24 * count].reshape(count, 24)[::-1]
+        assert (handed[:, 0] == rank).all()
+        assert (handed[:, 2] == f).all()
+        assert (handed[:, 3] & 255).tolist() == list(range(count))
+        assert (handed[:, 4].copy().view("<f4") == start).all()
+        depths = handed[:, 7:9].copy().view("<f4")
+        assert np.abs(depths[:, 1] - window[1:, 2]).max() < 1e-5
+        drawn += count
+    assert drawn > 1000
+
+
+def points_before(fiblets, f):
+    """Points of all earlier fiblets."""
+    from pvfiblets.codec import layout
+
+    return int(np.sum(layout.unpack("last", fiblets.decoding[:f]) + 1))
+
+
+def survivors(tasks):
+    """Indices of fiblets that a round of task stages let through."""
+    found = []
+    for count, first, *words in tasks:
+        bits = np.unpackbits(np.array(words, "<u4").view(np.uint8), bitorder="little")
+        assert count == bits.sum()
+        found.append(first + np.flatnonzero(bits))
+    return np.concatenate(found)
+
+
+def test_tasks_keep_what_the_compute_pipeline_plans(gl, monkeypatch, fabricate, random_lines, camera):
+    fiblets = fabricate(random_lines(400, seed=9), kind=2, per_fiblet=12)
+    view = View(SIZE, camera(SIZE, eye=(20, -40, 10), target=(0, 30, 0), near=5.0, far=70.0))
+    renderer = emulated_renderer(monkeypatch, gl, fiblets, culling=None)
+    real = FibletRenderer(gl, fiblets, culling=None)
+    renderer.render(view, EVERY_POINT)
+    real.render(view, EVERY_POINT)
+    (tasks,), wanted = renderer._pipeline.tasks, planned(real)
+    renderer.release()
+    real.release()
+    kept = np.zeros(fiblets.n_fiblets, bool)
+    kept[survivors(tasks)] = True
+    assert len(tasks) > 4
+    assert 0.05 < kept.mean() < 0.9
+    assert np.array_equal(kept, wanted)
+
+
+@pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
+@pytest.mark.parametrize("culling", ["two-phase", "coverage"])
+def test_culling_in_the_task_stage(gl, monkeypatch, camera, serial, culling):
+    """Two-phase culling changes no bit after any jump; the coverage buffer none as long as the camera rests."""
+    fiblets = compress(synthetic.brain_streamlines(1500, 0.5, seed=2))
+    culled = emulated_renderer(monkeypatch, gl, fiblets, serial=serial, culling=culling)
+    whole = emulated_renderer(monkeypatch, gl, fiblets, serial=serial, culling=None)
+    places = [(-220, 60, 40), (-220, 60, 40), (-200, 90, 50), (200, -120, 30), (10, -20, 5)]
+    drawn = []
+    for i, eye in enumerate(places[: 2 if culling == "coverage" else None]):
+        matrix = camera((160, 120), eye=np.array(eye) + 1e-9 * i, target=(0, -18, 9), near=1.0, far=500.0, angle=30.0)
+        view = View((160, 120), matrix)
+        assert_same(read(culled.render(view)), read(whole.render(view)))
+        drawn.append(sum(int(tasks[:, 0].sum()) for tasks in culled._pipeline.tasks) / fiblets.n_fiblets)
+        rounds = [set(survivors(tasks).tolist()) for tasks in culled._pipeline.tasks]
+        assert len(rounds) == (2 if culling == "two-phase" else 1)
+        assert not set.intersection(*rounds) or len(rounds) == 1
+    culled.release()
+    whole.release()
+    assert drawn[1] < 0.98 or culling == "coverage"  # of which so small a picture has few texels
+
+
+def test_chunks_and_calls_of_limited_length(gl, monkeypatch, fabricate, random_lines, camera):
+    fiblets = fabricate(random_lines(900, seed=3), kind=1, per_fiblet=3)
+    assert fiblets.n_fiblets > 20_000
+    view = View(SIZE, camera(SIZE))
+    renderer = emulated_renderer(monkeypatch, gl, fiblets, culling=None, max_buffer_bytes=250_000)
+    assert len(renderer._chunks) > 1
+    renderer._pipeline._max_tasks = 7
+    picture = read(renderer.render(view, EVERY_POINT))
+    renderer.release()
+    expected = FibletRenderer(gl, fiblets, pipeline="compute", culling=None)
+    assert_alike(picture, read(expected.render(view, EVERY_POINT)))
+    expected.release()
+
+
+class Driver(SimpleNamespace):
+    """What a MeshPipeline asks of OpenGL when it is made."""
+
+    def get_integer(self, name):
+        return self.numbers[name]
+
+
+def made(extensions=(), **numbers):
+    ctx = SimpleNamespace(extensions=set(extensions), version_code=460)
+    known = {"GL_MAX_DRAW_MESH_TASKS_COUNT_NV": 65535, **{f"GL_SUBGROUP_{k}_KHR": v for k, v in numbers.items()}}
+    return MeshPipeline(ctx, Driver(numbers=known), None, 10)
+
+
+def test_ballots_are_used_where_they_cover_a_work_group():
+    khr = ["GL_KHR_shader_subgroup"]
+    assert "SUBGROUPS" not in made().features
+    assert "SUBGROUPS" in made(khr, SIZE=32, SUPPORTED_STAGES=0xFF, SUPPORTED_FEATURES=0xFF).features
+    assert "SUBGROUPS" not in made(khr, SIZE=64, SUPPORTED_STAGES=0xFF, SUPPORTED_FEATURES=0xFF).features
+    assert "SUBGROUPS" not in made(khr, SIZE=32, SUPPORTED_STAGES=0x20, SUPPORTED_FEATURES=0xFF).features
+    assert "SUBGROUPS" not in made(khr, SIZE=32, SUPPORTED_STAGES=0xFF, SUPPORTED_FEATURES=0x1).features
+
+
+def test_calls_are_as_long_as_the_driver_allows():
+    pipeline = made()
+    calls = []
+
+    class Program(dict):
+        def draw_mesh_tasks(self, first, count):
+            calls.append((self["first_group"], first, count))
+
+    chunk = SimpleNamespace(n_fiblets=90_000_000, bind_storage=lambda: None)
+    pipeline._draw(None, Program(), chunk, None)
+    groups = -(-90_000_000 // TASK_FIBLETS)
+    assert [first for first, _, _ in calls] == list(range(0, groups, 65535))
+    assert all(zero == 0 for _, zero, _ in calls)
+    assert sum(count for _, _, count in calls) == groups
+    assert len(calls) == 6
+    assert pipeline.name == "mesh"
+
+
+def test_emulation_replaces_one_page_only():
+    """What the tests above do not run is this: assignments, without a decision."""
+    source = read_shader("mesh/outputs.glsl")
+    for word in ("if", "for", "?"):
+        assert not re.search(rf"(?m)^[^/\n]*(?<!\w){re.escape(word)}(?!\w)", source.replace("#if", ""))

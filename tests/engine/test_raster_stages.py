@@ -1,0 +1,105 @@
+"""The stages of the pipelines that OpenGL's rasteriser draws for: they link, and keep to OpenGL's promises."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+import subprocess
+from types import SimpleNamespace
+
+import pytest
+
+from pvfiblets.engine import pipelines
+from pvfiblets.engine.shaders import Programs, assemble, read_shader
+
+STAGES = {
+    "geometry": ("raster/survivors.vert", None, None, "geometry/lines.geom", "raster/line.frag"),
+    "geometry, wide": ("raster/survivors.vert", None, None, "geometry/capsules.geom", "raster/capsule.frag"),
+    "tessellation": (
+        "raster/survivors.vert", "tessellation/decode.tesc", "tessellation/lines.tese", None, "raster/line.frag",
+    ),
+    "tessellation, wide": (
+        "raster/survivors.vert", "tessellation/decode.tesc", "tessellation/capsules.tese",
+        "tessellation/capsules.geom", "raster/capsule.frag",
+    ),
+    "marks": ("raster/seen.vert", None, None, None, "raster/seen.frag"),
+    "between": ("screen/triangle.vert", None, None, None, "raster/between.frag"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STAGES)
+@pytest.mark.parametrize("clipping", [(), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")])
+@pytest.mark.parametrize("culling", [("CULL_PYRAMID", "SECOND_ROUND"), ("CULL_COVERAGE",)])
+@pytest.mark.parametrize("values", ["STORED", "ARC_LENGTH", "CURVATURE"])
+def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
+    """With every kind of record, in the version of GLSL that the pipeline's OpenGL has."""
+    version = 410 if "tessellation" in name else 330
+    older = SimpleNamespace(version_code=version, program=gl.program)
+    every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "RANK_TO_ID", "LEVEL_OF_DETAIL", "TEXTURE_DATA"]
+    wide = ["WIDE_LINES"] if "wide" in name else []
+    stages = ("vertex", "tess_control", "tess_evaluation", "geometry", "fragment")
+    chosen = {stage: file for stage, file in zip(stages, STAGES[name], strict=True) if file}
+    programs = Programs(older, pipelines.CONSTANTS)
+    assert programs.render(chosen, [*every, *wide, *culling, *clipping, f"VALUES_{values}"]).glo
+    programs.release()
+
+
+@pytest.mark.parametrize("name", STAGES)
+@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_ARC_LENGTH",), ("VALUES_CURVATURE",)])
+def test_stages_link_for_the_reference_compiler(tmp_path, name, values):
+    """Mesa's compiler lets pass what others do not."""
+    tool = shutil.which("glslangValidator")
+    if tool is None:
+        pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
+    version = 410 if "tessellation" in name else 330
+    wide = ["WIDE_LINES"] if "wide" in name else []
+    every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "RANK_TO_ID", "LEVEL_OF_DETAIL", "TEXTURE_DATA"]
+    for clipping in ((), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")):
+        for culling in ((), ("CULL_PYRAMID", "SECOND_ROUND"), ("CULL_COVERAGE",)):
+            files = []
+            for stage, file in zip(("vert", "tesc", "tese", "geom", "frag"), STAGES[name], strict=True):
+                if file is not None:
+                    features = [*every, *wide, *values, *clipping, *culling]
+                    files.append(tmp_path / f"stage.{stage}")
+                    files[-1].write_text(assemble(file, features, pipelines.CONSTANTS, version=version))
+            done = subprocess.run([tool, "-l", *map(str, files)], capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stdout
+
+
+def switched(source, features):
+    """Lines of a source that are left when its features are decided."""
+    kept, stack = [], [True]
+    for line in source.splitlines():
+        if match := re.match(r"#(if|elif) (.*)", line):
+            text = re.sub(r"FEATURE_(\w+)", lambda m: str(m[1] in features), match[2])
+            value = all(any(ast.literal_eval(term.strip()) for term in part.split("||")) for part in text.split("&&"))
+            stack.append(value)
+        elif line.startswith("#ifndef"):
+            stack.append(True)
+        elif line.startswith("#else"):
+            stack[-1] = not stack[-1]
+        elif line.startswith("#endif"):
+            stack.pop()
+        elif all(stack):
+            kept.append(line)
+    return kept
+
+
+@pytest.mark.parametrize("wide", [False, True])
+@pytest.mark.parametrize("clipping", [(), ("CLIPPING",), ("CLIPPING", "CLIP_PLANES")])
+@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",)])
+def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, wide):
+    features = {*values, *clipping, *(("WIDE_LINES",) if wide else ())}
+    sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
+    declared = [
+        re.match(r"HANDED (\w+) handed", line) for line in switched(read_shader("raster/handed.glsl"), features)
+    ]
+    components = 4 + sum(sizes[match[1]] for match in declared if match)
+    geometry = "\n".join(switched(read_shader(f"geometry/{'capsules' if wide else 'lines'}.geom"), features))
+    vertices = pipelines.CONSTANTS[re.search(r"max_vertices = \{\{ (\w+) \}\}", geometry)[1]]
+    share = pipelines.CONSTANTS[re.search(r"SHARE = \{\{ (\w+) \}\}", geometry)[1]]
+    assert components > 10
+    assert vertices <= 256
+    assert vertices * components <= 1024
+    assert vertices >= (4 * share if wide else 2 * share if clipping else share + 1)
