@@ -49,9 +49,17 @@ FEATURES: dict[str, str] = {
     "CLIPPING": "fiblets that cross the edges of the picture",
     "CLIPPING_DEPTH": "fiblets that cross the near or the far plane",
     "CLIP_PLANES": "fiblets that cross planes of the caller's",
+    "CLIP_REGION": "fiblets cut at the edge of a region",
+    "REGION_FIELDS": "closed surfaces and labels in that region, by their distance fields",
+    "STREAMLINE_MASK": "some streamlines only",
+    "POINT_MASK": "some points only",
+    "PEEL": "what lies behind an earlier layer",
+    "TUBES": "lines of a width in millimetres, with a surface",
+    "ACROSS": "where across a wide line a pixel lies",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",
+    "VALUES_VOLUME": "a volume sampled along the streamline",
 }
 """What a program can be made to do, by the name of its switch."""
 
@@ -61,7 +69,7 @@ NEWEST = 430
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
 
-BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4}
+BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4, "Regions": 5, "Sampling": 6}
 """Bindings of the uniform blocks, as the sources state them."""
 
 _VERSION = re.compile(r"^#version \d+$", re.MULTILINE)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ..codec.query.shapes import Region
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View"]
 
@@ -30,6 +34,8 @@ class View:
         ``(k, 4)`` float64 planes (a, b, c, d) in data coordinates, k <= 8: of the fiblets only what lies where
         ax + by + cz + d >= 0 for all of them is there, and what lies behind a cut shows. They need not be
         normalised. None, or planes that nothing touches, cost nothing.
+    region : Region, optional
+        Of the fiblets only what lies in it is there (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
 
     Raises
     ------
@@ -41,7 +47,8 @@ class View:
     size: tuple[int, int]
     model_view_projection: npt.NDArray[np.float64]
     clip_planes: Sequence[Sequence[float]] | npt.NDArray[np.float64] = ()
-    _key: tuple[int, int, bytes, bytes] = field(init=False, repr=False)
+    region: Region | None = None
+    _key: tuple[object, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         width, height = (int(n) for n in self.size)
@@ -62,7 +69,7 @@ class View:
         object.__setattr__(self, "size", (width, height))
         object.__setattr__(self, "model_view_projection", matrix)
         object.__setattr__(self, "clip_planes", planes)
-        object.__setattr__(self, "_key", (width, height, matrix.tobytes(), planes.tobytes()))
+        object.__setattr__(self, "_key", (width, height, matrix.tobytes(), planes.tobytes(), self.region))
 
     def __eq__(self, other: object) -> bool:
         return self._key == other._key if isinstance(other, View) else NotImplemented

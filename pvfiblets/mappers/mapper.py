@@ -8,7 +8,7 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, cast
 
 from vtkmodules.util.misc import calldata_type
@@ -21,9 +21,11 @@ from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
+from pvfiblets.mappers.extras import Draw, Extra, prepare_extras, set_extra_uniforms, styled
 from pvfiblets.mappers.picking import Drawn, pick
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import Frame, frame_of, others_before, world_planes
+from pvfiblets.mappers.scene import frame_of, others_before, world_planes
+from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
@@ -79,6 +81,9 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         self._observer = 0
         self._active = ActiveRenderer()
         self._installed: tuple[resolve.Replacement, ...] = ()
+        self._extras: dict[str, Extra] = {}
+        self._filtering: Any = None
+        self._region: Any = None
         self._error: BaseException | None = None
         self._last_drawn: str | None = None
         self._colouring = Colouring() if colouring is None else colouring
@@ -139,6 +144,40 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         self._install()
         self._actor_modified()
 
+    @property
+    def filtering(self) -> Any:
+        """`pvfiblets.engine.filtering.Filter` of what is there to be drawn; None for everything."""
+        return self._filtering
+
+    @filtering.setter
+    def filtering(self, wanted: Any) -> None:
+        self._filtering = wanted
+        self._actor_modified()
+
+    @property
+    def region(self) -> Any:
+        """`pvfiblets.regions.Region` in world mm outside of which fiblets are cut away; None for none."""
+        return self._region
+
+    @region.setter
+    def region(self, region: Any) -> None:
+        self._region = region
+        self._actor_modified()
+
+    @property
+    def extras(self) -> Mapping[str, Extra]:
+        """Looks beside the colours, by name; see `set_extra`."""
+        return dict(self._extras)
+
+    def set_extra(self, name: str, extra: Extra | None) -> None:
+        """Set or, with None, take away one of the looks beside the colours (`pvfiblets.mappers.extras`)."""
+        if extra is None:
+            self._extras.pop(name, None)
+        else:
+            self._extras[name] = extra
+        self._install()
+        self._actor_modified()
+
     # The actor
 
     @property
@@ -182,7 +221,8 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
     @property
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader in use."""
-        return frozenset({"gbuffer", "normal"} | self._colouring.features)
+        extras = frozenset().union(*(extra.features for extra in self._extras.values()))
+        return frozenset({"gbuffer", "normal"} | self._colouring.features | extras)
 
     def _install(self) -> None:
         """Bring the actor's shader pieces and its translucency up to date."""
@@ -234,7 +274,8 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             )
         viewport = gl_viewport(context.window)
         frame = frame_of(renderer, actor, viewport)
-        view = View(viewport[2:], frame.model_view_projection, frame.planes_in_data(world_planes(self)))
+        planes = frame.planes_in_data(world_planes(self))
+        view = View(viewport[2:], frame.model_view_projection, planes, frame.region_in_data(self._region))
         style = self._style(renderer, viewport)
         slot = context.slot(self)
         with context.foreign():
@@ -243,13 +284,16 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             if engine.needs_outside(view, style) and others_before(renderer, actor):
                 outside = slot.outside_depth(context.ctx).copy(viewport)
             buffer = engine.render(view, style, outside=outside)
-            textures = self._textures(context, slot, buffer)
+            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer)
+            textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
+            textures |= prepare_extras(slot, self._extras, draw)
             units = context.texture_units(len(textures))
             for unit, texture in zip(units, textures.values(), strict=True):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
-        self._set_uniforms(program, frame, style)
+        set_uniforms(program, frame, style, self._fiblets, self._colouring)
+        set_extra_uniforms(slot, self._extras, program, draw)
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
@@ -258,7 +302,8 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
         """Return the style in pixels of the framebuffer, which supersampling makes larger than the window."""
         enlarged = viewport[2] / max(1, renderer.GetSize()[0])
         width = self._line_width * max(1.0, enlarged)
-        return Style(line_width=width, values=self._colouring.point_source)
+        style = Style(line_width=width, values=self._colouring.point_source)
+        return styled(style, self._extras.values())
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         """Return the engine's renderer of a window, made anew for other fiblets and other options."""
@@ -267,41 +312,10 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             slot.versions |= {"fiblets": self._fiblets, "options": self._options}
         if slot.renderer is None:
             slot.renderer = self._factory(context.ctx, self._fiblets, **self._options.changed(), **self._progress)
+            slot.versions.pop("filtering", None)
+        if slot.versions.get("filtering") is not self._filtering:
+            slot.renderer.filtering = slot.versions["filtering"] = self._filtering
         return slot.renderer
-
-    def _textures(self, context: WindowContext, slot: Slot, buffer: Any) -> dict[str, Any]:
-        """Return the textures of this draw by the names of their samplers."""
-        textures = {"fibletDepthMap": buffer.depth, "fibletIdMap": buffer.ids}
-        colouring = self._colouring
-        features = colouring.features
-        name = None
-        if "colour_streamline" in features:
-            name, pixels = "fibletStreamlineColours", colouring.streamline_colours
-        elif "colour_point_value" in features:
-            textures["fibletPositionMap"] = buffer.position
-            name, pixels = "fibletTable", colouring.table
-        for unused in set(slot.textures) - {name}:
-            slot.textures.pop(unused).release()
-        if name is not None:
-            textures[name] = slot.list_texture(name, colouring, pixels, context.ctx)
-        return textures
-
-    def _set_uniforms(self, program: Any, frame: Frame, style: Style) -> None:
-        x, y, width, height = frame.viewport
-        program.SetUniform2i("fibletOrigin", (x, y))
-        program.SetUniform2i("fibletSize", (width, height))
-        # Decoded points may lie outside the bounds, by as much as the promise.
-        rectangle = frame.rectangle(self._fiblets.bounds, self._fiblets.promise, style.line_width / 2.0 + 2.0)
-        program.SetUniform4f("fibletRectangle", rectangle)
-        # VTK takes matrices column by column here.
-        program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())
-        program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
-        colouring = self._colouring
-        if colouring.mode == "solid":
-            program.SetUniform3f("fibletColour", colouring.color)
-        if colouring.mode == "point_value" and colouring.lut is not None:
-            program.SetUniformi("fibletTableSize", len(colouring.lut))
-            program.SetUniform3f("fibletTableRange", colouring.scaled_range())
 
     # Questions
 

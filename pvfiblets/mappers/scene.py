@@ -97,6 +97,10 @@ class Frame:
         right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
         return float(left), float(lower), float(right), float(upper)
 
+    def region_in_data(self, region: Any) -> Any:
+        """Return a `pvfiblets.regions.Region` of world coordinates in data coordinates; None stays None."""
+        return None if region is None else region.moved(np.linalg.inv(self.model))
+
     def planes_in_data(self, planes: Matrix) -> Matrix:
         """Return (k, 4) world planes in data coordinates."""
         moved: Matrix = planes @ self.model

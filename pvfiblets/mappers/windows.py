@@ -72,6 +72,8 @@ class Slot:
         Name to the object the texture was made from.
     drawn : dict
         Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
+    extras : dict
+        Name of an extra to its class and what it keeps on the GPU (`pvfiblets.mappers.extras`).
     """
 
     def __init__(self, mapper: Any) -> None:
@@ -80,7 +82,14 @@ class Slot:
         self.textures: dict[str, Any] = {}
         self.versions: dict[str, Any] = {}
         self.drawn: dict[str, Any] = {}
+        self.extras: dict[str, tuple[type, Any]] = {}
         self._outside: OutsideDepth | None = None
+
+    def drop_extra(self, name: str) -> None:
+        """Delete what an extra keeps. The window's context must be current."""
+        kept = self.extras.pop(name)[1]
+        if kept is not None:
+            kept.release()
 
     def outside_depth(self, ctx: Any) -> OutsideDepth:
         """Return what copies the depth of other actors."""
@@ -96,6 +105,8 @@ class Slot:
         if self._outside is not None:
             self._outside.release()
             self._outside = None
+        for name in list(self.extras):
+            self.drop_extra(name)
         for texture in self.textures.values():
             texture.release()
         self.textures.clear()

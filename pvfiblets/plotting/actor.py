@@ -10,9 +10,12 @@ import pyvista as pv
 
 from pvfiblets.mappers import Colouring, EngineOptions
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.filtering import Filtering
 from pvfiblets.plotting.mapper import PlottedMapper
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.scalars import Scalars, find_scalars
+from pvfiblets.plotting.selecting import Selecting
+from pvfiblets.plotting.shading import Shading
 from pvfiblets.plotting.sources import with_point_values
 
 if TYPE_CHECKING:
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 
-class FibletActor(pv.Actor):
+class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,

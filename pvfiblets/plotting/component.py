@@ -22,7 +22,9 @@ from pvfiblets.mappers import EngineOptions
 from pvfiblets.mappers.windows import borrowed_context
 from pvfiblets.plotting.actor import FibletActor
 from pvfiblets.plotting.colours import ColourSettings
+from pvfiblets.plotting.picking import Picking
 from pvfiblets.plotting.sources import as_fiblets
+from pvfiblets.plotting.widgets import Widgets
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -43,7 +45,7 @@ class _Bar:
 
 
 @pv.register_plotter_component("fiblets")
-class FibletsComponent:
+class FibletsComponent(Picking, Widgets):
     """The fiblet actors of one plotter.
 
     Parameters
