@@ -238,6 +238,23 @@ class FibletSet:
         lengths = counts.astype(np.int64)  # float64 sums of whole numbers are exact below 2 ** 53
         return np.concatenate([[0], np.cumsum(lengths)])
 
+    # ------------------------------------------------------------------------------------------------- parts of a set
+
+    def __getitem__(self, ids: Any) -> FibletSet:
+        """Some streamlines as a set of their own: ``fiblets[5]``, ``fiblets[10:20]``, ``fiblets[mask]``.
+
+        See :meth:`extract`; one number gives a set of one streamline.
+        """
+        return self.extract(ids)
+
+    __iter__ = None  # indices would make it a sequence; iter_chunks() goes through the streamlines
+
+    def extract(self, ids: npt.ArrayLike | slice) -> FibletSet:
+        """Some streamlines as a set of their own, renumbered; see :func:`pvfiblets.codec.extract.extract`."""
+        from .extract import extract
+
+        return extract(self, ids)
+
     # ----------------------------------------------------------------------------------------------------- decoding
 
     def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
@@ -287,11 +304,39 @@ class FibletSet:
 
     # ---------------------------------------------------------------------------------------------------- to disk
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write a ``.fiblets`` file; see :func:`pvfiblets.codec.storage.save`."""
+    def save(self, path: str | PathLike[str]) -> list[str]:
+        """Write a ``.fiblets`` file, or, by the suffix, a file of another format (``.trk``, ``.tck``, ``.trx``, ...).
+
+        Parameters
+        ----------
+        path : str or PathLike
+            A name without the suffix of any format is one of a ``.fiblets`` file.
+
+        Returns
+        -------
+        list of str
+            What the format cannot hold and was left out, such as ``"groups"`` in a trk file.
+
+        Raises
+        ------
+        OSError
+            If the place cannot be written to.
+        UnknownFormatError
+            If the format can only be read, such as ``.trk.gz``.
+        """
+        from ..formats import registry
         from .storage import save
 
+        try:
+            suffix = registry.suffix_of(path)
+        except registry.UnknownFormatError:
+            suffix = ".fiblets"
+        if suffix != ".fiblets":
+            from .extract import save_as
+
+            return save_as(self, path)
         save(self, path)
+        return []
 
     @classmethod
     def open(cls, path: str | PathLike[str]) -> FibletSet:

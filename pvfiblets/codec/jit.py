@@ -2,7 +2,8 @@
 
 numba keeps compiled kernels beside their source and looks at that one file to see whether they are still good. A kernel
 that calls another module's kernel, or takes its constants, would be used on after that module changed, and might then
-read beyond arrays whose layout is another by now. So the kept kernels are keyed by all the codec's sources as well.
+read beyond arrays whose layout is another by now. So the kept kernels are keyed by all the codec's sources as well, and
+those of a folder of the codec by that folder's besides.
 """
 
 from __future__ import annotations
@@ -17,20 +18,24 @@ from numba.core.caching import FunctionCache
 
 __all__ = ["kernel", "parallel_kernel", "sources_digest"]
 
+HOME = Path(__file__).resolve().parent
+
 
 @cache
-def sources_digest() -> str:
-    """Digest of every source file of the codec."""
+def sources_digest(folder: Path = HOME) -> str:
+    """Digest of every source file of the codec, and of those in a folder of it."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.name.encode())
-        digest.update(path.read_bytes())
+    for home in sorted({HOME, folder}):
+        for path in sorted(home.glob("*.py")):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
 class _KeyedBySources(FunctionCache):
     def _index_key(self, sig: Any, codegen: Any) -> Any:
-        return (*super()._index_key(sig, codegen), sources_digest())
+        folder = Path(self._py_func.__code__.co_filename).resolve().parent
+        return (*super()._index_key(sig, codegen), sources_digest(folder))
 
 
 def _compiled(function: Any, parallel: bool) -> Any:

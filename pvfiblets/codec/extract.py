@@ -1,0 +1,132 @@
+"""Some streamlines of a set as a smaller set, renumbered from 0, without decompressing; and a set in another format.
+
+Records are copied as they are (:mod:`.restrict`), so that every point decodes to the same bits as in the whole. What
+changes is what goes by a streamline's number: :attr:`.FibletSet.rank_to_id`, rows of per-streamline arrays, and the
+members of groups. :func:`.restrict` is the other sort of part, whose streamlines keep their numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .decompress import iter_chunks, select_streamlines
+from .restrict import restrict
+
+if TYPE_CHECKING:
+    from .fibletset import FibletSet
+
+__all__ = ["exact_bounds", "extract", "save_as"]
+
+Ints = npt.NDArray[np.int64]
+Bounds = tuple[float, float, float, float, float, float]
+
+
+def extract(fiblets: FibletSet, ids: Any) -> FibletSet:
+    """Take some streamlines as a set of their own.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        In memory or mapped; of a mapped one only those pages are read that hold any of the streamlines.
+    ids : array_like
+        As for :meth:`.FibletSet.decompress`: numbers (negative ones count from the end), a boolean mask
+        ``(n_streamlines,)``, or a slice. They become streamlines 0, 1, ... in the order given; one that is named
+        again is taken once, where it stands first.
+
+    Returns
+    -------
+    FibletSet
+        In memory. Streamlines without points stay, without points; groups hold those of their members that were chosen,
+        and may be empty; parameters, affine, space and what the source dropped are those of the whole. None at all is a
+        set too, and can be saved. Its bounds are those of the decoded points, and so hold every point that is drawn;
+        an original may lie outside of them by the promise.
+
+    Raises
+    ------
+    IndexError
+        If a number is out of range or a mask has the wrong length.
+    FormatError
+        If the file is damaged.
+    """
+    chosen = _once(select_streamlines(fiblets.n_streamlines, ids))
+    part = restrict(fiblets, chosen)
+    number = np.full(fiblets.n_streamlines, -1, np.int64)
+    number[chosen] = np.arange(len(chosen))
+    # `restrict` names the ranks by the whole's numbers, unless it took every streamline in its own order.
+    old = np.arange(part.n_ranks) if part.rank_to_id is None else np.asarray(part.rank_to_id)
+    fresh = number[old]
+    plain = len(fresh) == len(chosen) and bool((fresh == np.arange(len(fresh))).all())
+    groups = {}
+    for name, members in fiblets.groups.items():
+        kept = number[np.asarray(members, np.int64)]
+        groups[name] = kept[kept >= 0]
+    part = replace(
+        part,
+        n_streamlines=len(chosen),
+        rank_to_id=None if plain else fresh,
+        per_streamline={name: np.asarray(rows)[chosen] for name, rows in fiblets.per_streamline.items()},
+        groups=groups,
+        per_group={name: dict(values) for name, values in fiblets.per_group.items()},
+        space=dict(fiblets.space),
+        dropped=dict(fiblets.dropped),
+    )
+    return replace(part, bounds=exact_bounds(part))
+
+
+def _once(ids: Ints) -> Ints:
+    """Each number where it stands first."""
+    if len(ids) < 2 or bool((np.diff(ids) > 0).all()):
+        return ids
+    first = np.unique(ids, return_index=True)[1]
+    return ids[np.sort(first)]
+
+
+def exact_bounds(fiblets: FibletSet) -> Bounds:
+    """Bounds of the decoded points, chunk by chunk.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+
+    Returns
+    -------
+    tuple of float
+        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm, of the float64 points; zeros where there is no point.
+    """
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    bare = replace(fiblets, per_point={}, per_streamline={}, groups={}, per_group={})
+    for chunk in iter_chunks(bare, dtype=np.float64):
+        if chunk.n_points:
+            low, high = np.minimum(low, chunk.points.min(axis=0)), np.maximum(high, chunk.points.max(axis=0))
+    if not (low <= high).all():
+        return (0.0,) * 6
+    b = np.stack([low, high], axis=1).ravel().tolist()
+    return (b[0], b[1], b[2], b[3], b[4], b[5])
+
+
+def save_as(fiblets: FibletSet, path: str | PathLike[str]) -> list[str]:
+    """Write a set to a file of any format that can be written, in bounded memory; see :meth:`.FibletSet.save`.
+
+    Returns
+    -------
+    list of str
+        As :func:`pvfiblets.write`: what the format cannot hold and was left out.
+
+    Raises
+    ------
+    UnknownFormatError
+        If the format can only be read.
+    """
+    from ..formats import registry, write
+    from ..formats.spool import gathered
+
+    registry.module_for(path, "write")  # before the decoding, not after
+    chunks = fiblets.iter_chunks() if len(fiblets) else iter([fiblets.decompress()])
+    with gathered(chunks, Path(path).resolve().parent) as streamlines:
+        return write(path, streamlines)
