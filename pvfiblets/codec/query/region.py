@@ -1,0 +1,247 @@
+"""Regions of space: expressions of shapes by ``&`` (both), ``|`` (either), ``~`` (not) and ``-`` (without).
+
+An expression is a postfix program over its leaves, which are shapes (:mod:`.shapes`): ``k >= 0`` pushes leaf k,
+:data:`AND` and :data:`OR` take two off the stack and push one, :data:`NOT` turns the top. The deeper operand always
+comes first (Sethi and Ullman 1970, "The generation of optimal code for arithmetic expressions"), so that the stack
+never holds more than `MAX_STACK`.
+
+A position with a coordinate that is not finite lies in no region, not in ``~region`` either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .placement import Bounds, affine, invert_affine
+
+if TYPE_CHECKING:
+    from .shapes import Shape
+
+__all__ = ["AND", "MAX_LEAVES", "MAX_OPS", "MAX_STACK", "NOT", "OR", "Region"]
+
+Array = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+AND, OR, NOT = -1, -2, -3
+
+MAX_LEAVES = 32
+"""On the GPU a uniform block holds the leaves: 32 of up to 256 bytes are half of the 16 KiB that OpenGL promises."""
+MAX_OPS = 64
+MAX_STACK = 6
+"""64 words push at most 32 leaves; a stack of depth d needs at least 2^(d-1) of them."""
+
+
+class Region:
+    """A part of space; see the module for what it is made of. Immutable; equal and hashed by content.
+
+    Surfaces and label volumes count as equal if they are the same object's data, placed alike.
+
+    Parameters
+    ----------
+    leaves : tuple of Shape
+        Each once.
+    program : tuple of int
+        As above, and right.
+
+    Raises
+    ------
+    ValueError
+        If there are more than 32 shapes or 64 operations.
+    """
+
+    def __init__(self, leaves: tuple[Shape, ...], program: tuple[int, ...]) -> None:
+        if len(leaves) > MAX_LEAVES or len(program) > MAX_OPS:
+            raise ValueError(
+                f"a region of {len(leaves)} shapes and {len(program)} operations is more than {MAX_LEAVES} and "
+                f"{MAX_OPS}; use fewer shapes, or one label volume for many"
+            )
+        self._leaves = leaves
+        self._program = program
+
+    @property
+    def leaves(self) -> tuple[Shape, ...]:
+        """The shapes, each once."""
+        return self._leaves
+
+    @property
+    def program(self) -> tuple[int, ...]:
+        """Postfix: leaf numbers, :data:`AND`, :data:`OR`, :data:`NOT`."""
+        return self._program
+
+    def __and__(self, other: Region) -> Region:
+        return _joined(self, other, AND) if isinstance(other, Region) else NotImplemented
+
+    def __or__(self, other: Region) -> Region:
+        return _joined(self, other, OR) if isinstance(other, Region) else NotImplemented
+
+    def __sub__(self, other: Region) -> Region:
+        return _joined(self, ~other, AND) if isinstance(other, Region) else NotImplemented
+
+    def __invert__(self) -> Region:
+        if self._program[-1] == NOT:
+            return _made(self._leaves, self._program[:-1])
+        return _made(self._leaves, (*self._program, NOT))
+
+    def __bool__(self) -> bool:
+        raise TypeError("a region is neither true nor false; combine regions with &, | and ~, not with and, or, not")
+
+    def contains(self, points: npt.ArrayLike) -> Flags:
+        """Say which positions lie in the region, in float64.
+
+        Parameters
+        ----------
+        points : array_like
+            ``(n, 3)`` mm, or one position ``(3,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n,)`` bool; False where a coordinate is not finite.
+
+        Raises
+        ------
+        ValueError
+            If the points are not three numbers each.
+        """
+        places = positions(points)
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = self._evaluate([leaf.holds(places) for leaf in self._leaves])
+        found &= np.isfinite(places).all(axis=1)
+        return found
+
+    def _evaluate(self, flags: Sequence[Flags]) -> Flags:
+        stack: list[Flags] = []
+        for op in self._program:
+            if op >= 0:
+                stack.append(flags[op].copy())
+            elif op == NOT:
+                np.logical_not(stack[-1], out=stack[-1])
+            else:
+                top = stack.pop()
+                (np.logical_and if op == AND else np.logical_or)(stack[-1], top, out=stack[-1])
+        return stack[0]
+
+    def distance(self, points: npt.ArrayLike) -> Array:
+        """Distances of positions from the region, 0 inside.
+
+        Parameters
+        ----------
+        points : array_like
+            ``(n, 3)`` mm, or one position ``(3,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n,)`` float64 mm; NaN where a coordinate is not finite. How exact it is, each shape says.
+
+        Raises
+        ------
+        NotImplementedError
+            For ``~`` and ``&``: the distance from those does not follow from the distances of their parts.
+        """
+        places = positions(points)
+        if any(op in (AND, NOT) for op in self._program):
+            raise NotImplementedError(
+                "no distance from a region made with &, - or ~: it does not follow from the distances of its parts; "
+                "ask for each part's distance, or join the parts with |"
+            )
+        finite = np.isfinite(places).all(axis=1)
+        found = np.full(len(places), np.nan)
+        some = places if finite.all() else places[finite]
+        found[finite] = np.minimum.reduce([leaf.apart(some) for leaf in self._leaves])
+        return found
+
+    def moved(self, matrix: npt.ArrayLike) -> Region:
+        """Return the region as placed by an invertible affine matrix.
+
+        Parameters
+        ----------
+        matrix : array_like
+            ``(4, 4)`` float64, column vectors: where a position of the region goes.
+
+        Raises
+        ------
+        ValueError
+            If the matrix is not a finite, invertible affine one.
+        """
+        given = affine(matrix, "matrix")
+        invert_affine(given, "matrix")
+        return _made(tuple(leaf.placed(given) for leaf in self._leaves), self._program)
+
+    @property
+    def bounds(self) -> Array:
+        """``(6,)`` xmin, xmax, ymin, ymax, zmin, zmax in mm, infinite where unbounded; 1, -1, … if surely empty.
+
+        An expression's bounds hold it, though not always tightly.
+        """
+        stack: list[tuple[Bounds, Bounds]] = []  # of the region, and of what lies outside of it
+        for op in self._program:
+            if op >= 0:
+                stack.append(self._leaves[op].extents())
+            elif op == NOT:
+                stack.append(stack.pop()[::-1])
+            else:
+                b, a = stack.pop(), stack.pop()
+                stack.append((a[0] & b[0], a[1] | b[1]) if op == AND else (a[0] | b[0], a[1] & b[1]))
+        return stack[0][0].flat()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Region):
+            return NotImplemented
+        return self._program == other._program and self._leaves == other._leaves
+
+    def __hash__(self) -> int:
+        return hash((self._program, self._leaves))
+
+    def __repr__(self) -> str:
+        stack: list[str] = []
+        for op in self._program:
+            if op >= 0:
+                stack.append(repr(self._leaves[op]))
+            elif op == NOT:
+                stack.append(f"~{stack.pop()}")
+            else:
+                b, a = stack.pop(), stack.pop()
+                stack.append(f"({a} {'&' if op == AND else '|'} {b})")
+        return stack[0]
+
+
+def positions(points: npt.ArrayLike) -> Array:
+    """Return `points` as ``(n, 3)`` float64; a ValueError unless they are three numbers each."""
+    found = np.asarray(points, np.float64)
+    if found.ndim == 1 and found.size == 3:
+        found = found[None]
+    if found.size == 0:
+        found = found.reshape(0, 3)
+    if found.ndim != 2 or found.shape[1] != 3:
+        raise ValueError(f"points have shape {found.shape}; give (n, 3): x, y, z in mm")
+    return found
+
+
+def _depth(program: tuple[int, ...]) -> int:
+    depth = deepest = 0
+    for op in program:
+        depth += 1 if op >= 0 else 0 if op == NOT else -1
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _joined(a: Region, b: Region, op: int) -> Region:
+    if _depth(b.program) > _depth(a.program):
+        a, b = b, a
+    leaves = list(a.leaves)
+    places = {leaf: i for i, leaf in enumerate(leaves)}
+    for leaf in b.leaves:
+        if leaf not in places:
+            places[leaf] = len(leaves)
+            leaves.append(leaf)
+    turned = tuple(places[b.leaves[word]] if word >= 0 else word for word in b.program)
+    return _made(tuple(leaves), (*a.program, *turned, op))
+
+
+def _made(leaves: tuple[Shape, ...], program: tuple[int, ...]) -> Region:
+    return leaves[0] if program == (0,) else Region(leaves, program)
