@@ -11,6 +11,7 @@ import moderngl
 
 from .chunks import Chunk
 from .opengl import BufferTexture, OpenGL
+from .volumes import VOLUME_UNIT
 
 __all__ = ["FIRST_UNIT", "SAMPLERS", "UNITS", "DataTextures", "set_data_samplers"]
 
@@ -79,3 +80,4 @@ def set_data_samplers(gl: OpenGL, program: moderngl.Program) -> None:
     """Tell a program where :meth:`DataTextures.bind` puts what it reads."""
     for name, (sampler, _) in SAMPLERS.items():
         gl.set_sampler(program, sampler, UNITS[name])
+    gl.set_sampler(program, "sampled_volume", VOLUME_UNIT)

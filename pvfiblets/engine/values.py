@@ -6,6 +6,7 @@ value                         what the GPU holds for it                   unit
 a name in ``per_point``       its codes, one or two bytes per point       the array's own
 ``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
 ``'curvature'``               a float32 per fiblet: the anchor's          1/mm
+a :class:`VolumeSource`       the volume                                  the volume's own
 ============================  ==========================================  ==============================
 
 Curvature at a point is the angle between the segments before and after it over half their joint length; the ends of a
@@ -28,6 +29,7 @@ from .chunks import Chunk, padded, storage_buffer
 from .errors import EngineError
 from .measures import Measurer
 from .upload import fill_buffer, rows_of
+from .volumes import VolumeSource, VolumeTexture
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -82,15 +84,16 @@ class ValueSources:
         self._measurer = measurer
         self._fiblets = fiblets
         self._chunks = chunks
-        self._active: str | None = None
+        self._active: str | VolumeSource | None = None
+        self._volume: VolumeTexture | None = None
         self._ranges: dict[str, tuple[float, float]] = {}
 
-    def activate(self, name: str | None, features: Sequence[str]) -> str | None:
+    def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> str | None:
         """Make the buffers of a value, and drop those of the last one.
 
         Parameters
         ----------
-        name : str, optional
+        name : str or VolumeSource, optional
             ``Style.values``.
         features : sequence of str
             What the fiblets need to be decoded.
@@ -105,21 +108,50 @@ class ValueSources:
         EngineError
             If there is no such array, or memory does not suffice.
         """
-        if name is not None:
+        if isinstance(name, str):
             self._check(name)
         if name != self._active:
             self._drop()
-            if name in (ARC_LENGTH, CURVATURE):
+            if isinstance(name, VolumeSource):
+                self._volume = VolumeTexture(self._ctx, name)
+            elif name in (ARC_LENGTH, CURVATURE):
                 self._make_starts(name, features)
             elif name is not None:
                 self._copy_stored(name)
             self._active = name
         if name is None:
             return None
+        if isinstance(name, VolumeSource):
+            return "VALUES_VOLUME"
         return {ARC_LENGTH: "VALUES_ARC_LENGTH", CURVATURE: "VALUES_CURVATURE"}.get(name, "VALUES_STORED")
 
-    def range(self, name: str, features: Sequence[str]) -> tuple[float, float]:
+    def locate(self, to_data: Floats) -> None:
+        """Bind the volume, if one is active, for a picture whose local coordinates lie here.
+
+        Parameters
+        ----------
+        to_data : numpy.ndarray
+            (4, 4) local mm to data mm (:func:`pvfiblets.engine.frame.local_frame`).
+        """
+        if self._volume is not None:
+            self._volume.bind(to_data)
+
+    @property
+    def buffers(self) -> dict[str, int]:
+        """Bytes on the GPU beside the chunks', by name."""
+        return {} if self._volume is None else {"volume": self._volume.nbytes}
+
+    def release(self) -> None:
+        """Give back what no chunk holds; twice is harmless."""
+        if self._volume is not None:
+            self._volume.release()
+            self._volume = None
+        self._active = None
+
+    def range(self, name: str | VolumeSource, features: Sequence[str]) -> tuple[float, float]:
         """Least and greatest value over all points; see :meth:`FibletRenderer.value_range`."""
+        if isinstance(name, VolumeSource):
+            return name.range
         self._check(name)
         if name not in (ARC_LENGTH, CURVATURE):
             stored = self._fiblets.per_point[name]
@@ -141,7 +173,7 @@ class ValueSources:
             for key in ("values", "starts"):
                 if key in chunk.buffers:
                     chunk.buffers.pop(key).release()
-        self._active = None
+        self.release()
 
     def _copy_stored(self, name: str) -> None:
         stored = self._fiblets.per_point[name]

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 if TYPE_CHECKING:
     from ..codec.query.shapes import Region
+    from .volumes import VolumeSource
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View"]
 
@@ -86,25 +87,51 @@ class Style:
     ----------
     line_width : float
         Pixels, at least 1. Exactly 1 draws thin lines as OpenGL does; more draws round brushes of that diameter.
-    values : str, optional
+    values : str or VolumeSource, optional
         The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
-        streamline's first point), or the name of an array in ``FibletSet.per_point``. None costs nothing.
+        streamline's first point), the name of an array in ``FibletSet.per_point``, or a volume to be sampled at the
+        points (:mod:`pvfiblets.engine.volumes`). None costs nothing.
     tolerance : float
         Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
         one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
+    across : bool
+        Whether to write where across a line each pixel lies, for shading it as if it were round (``GBuffer.across``).
+        Thin lines have nothing to write.
+    radius : float, optional
+        Millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each
+        pixel shows the nearest point of their surface. Where they are thinner than a pixel they are drawn a pixel wide.
+        ``line_width`` is then not looked at.
 
     Raises
     ------
     ValueError
-        If the line width is below 1, the tolerance below 0, or either not finite.
+        If the line width is below 1, the tolerance below 0, the radius not positive, or any of them not finite.
     """
 
     line_width: float = 1.0
-    values: str | None = None
+    values: str | VolumeSource | None = None
     tolerance: float = 0.5
+    across: bool = False
+    radius: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.line_width) and self.line_width >= 1.0):
             raise ValueError(f"line_width is {self.line_width}; give a finite number of pixels, 1 or more")
         if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
             raise ValueError(f"tolerance is {self.tolerance}; give a finite number of pixels, 0 or more")
+        if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 0.0):
+            raise ValueError(f"radius is {self.radius}; give a finite number of millimetres above 0, or None for lines")
+
+    @property
+    def half_width(self) -> float:
+        """Pixels that a line reaches to either side of its axis at least; 0 for thin lines."""
+        if self.radius is not None:
+            return 0.5
+        return 0.0 if self.line_width == 1.0 else self.line_width / 2.0
+
+    @property
+    def relief(self) -> str | None:
+        """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
+        if not self.across or self.half_width == 0.0:
+            return None
+        return "across" if self.radius is None else "normal"

@@ -4,6 +4,7 @@
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
 //   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
 //                anchor, because the segment before an anchor is another fiblet's
+//   volume       data/volume.glsl at every point, looked up for the pixels that are written
 //
 // `step` and `rest` are t in steps from point to point, where a segment stands for a whole fiblet (far views).
 // value_of_point(i) serves stages that hand values on with points: that of the point which start_values() came to last, but 0
@@ -104,6 +105,45 @@ float value_along(uint segment, float t, uint step, float rest) {
 float value_of_point(uint i) { return curvatures[i]; }
 
 vec2 values_at_ends(uint segment) { return vec2(curvatures[segment], curvatures[segment + 1u]); }
+
+#elif FEATURE_VALUES_VOLUME
+#include "data/volume.glsl"
+#include "culling/bounds.glsl"
+
+vec3 volume_from;
+vec3 volume_to;
+float volume_steps;
+float volume_value;  // at volume_to, where that is
+bool volume_known;
+
+void begin_values(uint f) {
+    volume_from = volume_to = anchor_local(f);
+    volume_known = false;
+}
+
+// The walk is at the segment's end.
+void start_values(uint segment, vec3 delta, float steps) {
+    volume_from = volume_to;
+    volume_to = walk_point;
+    volume_steps = steps;
+    volume_known = false;
+}
+
+float value_along(uint segment, float t, uint step, float rest) {
+    return volume_between(volume_from, volume_to, volume_steps, step, rest);
+}
+
+float value_of_point(uint i) {
+    if (!volume_known) volume_value = volume_at(volume_to);
+    volume_known = true;
+    return volume_value;
+}
+
+// Of a whole fiblet drawn as one segment, where fragments look it up.
+float value_along_capsule(uint f, float steps, uint step, float rest) {
+    Capsule capsule = capsule_of(f);
+    return volume_between(capsule.a, capsule.b, steps, step, rest);
+}
 
 #else
 void begin_values(uint f) {}

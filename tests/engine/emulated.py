@@ -77,7 +77,7 @@ void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) 
     for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(handed_from[a]);
     for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(handed_to[a]);
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
     for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(handed_values[a]);
 #endif
 }
@@ -133,7 +133,7 @@ void main() {
     handed_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
     handed_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
     handed_values = vec2(value(at + 20u), value(at + 21u));
 #endif
 }

@@ -48,6 +48,7 @@ VALUES = {
     "stored": ["VALUES_STORED"],
     "length": ["VALUES_ARC_LENGTH"],
     "curvature": ["VALUES_CURVATURE"],
+    "volume": ["VALUES_VOLUME"],
 }
 
 

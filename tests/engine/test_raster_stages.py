@@ -46,7 +46,7 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
 
 
 @pytest.mark.parametrize("name", STAGES)
-@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_ARC_LENGTH",), ("VALUES_CURVATURE",)])
+@pytest.mark.parametrize("values", [(), *((f"VALUES_{v}",) for v in ("STORED", "ARC_LENGTH", "CURVATURE", "VOLUME"))])
 def test_stages_link_for_the_reference_compiler(tmp_path, name, values):
     """Mesa's compiler lets pass what others do not."""
     tool = shutil.which("glslangValidator")
@@ -88,7 +88,7 @@ def switched(source, features):
 
 @pytest.mark.parametrize("wide", [False, True])
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING",), ("CLIPPING", "CLIP_PLANES")])
-@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",)])
+@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",), ("VALUES_VOLUME",)])
 def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, wide):
     features = {*values, *clipping, *(("WIDE_LINES",) if wide else ())}
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
