@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codec.query.shapes import LABELS, MAX_LEAVES, MAX_OPS
-from .errors import EngineError, GPUMemoryError
+from .errors import GPUMemoryError
 
 if TYPE_CHECKING:
     from ..codec.query.fields import Field
@@ -162,10 +162,8 @@ class FieldTextures:
 
         Raises
         ------
-        EngineError
-            If they do not fit into one texture.
         GPUMemoryError
-            If memory does not suffice.
+            If they do not fit into one texture, or memory does not suffice.
         """
         if len(fields) == len(self._fields) and all(a is b for a, b in zip(fields, self._fields, strict=True)):
             return
@@ -211,7 +209,7 @@ def _stacked(shapes: Sequence[tuple[int, ...]], largest: int) -> tuple[list[Corn
         height, depth = max(height, ny), max(depth, z)
     size = x + across, height, depth
     if max(size) > largest:
-        raise EngineError(
+        raise GPUMemoryError(
             f"the region's distance fields of {' + '.join(map(str, shapes))} texels need a texture of {size}; this OpenGL "
             f"has at most {largest} along each axis: use fewer or smaller label volumes"
         )
@@ -257,7 +255,7 @@ class RegionBlock:
 
         Raises
         ------
-        EngineError
+        GPUMemoryError
             If the fields do not fit into one texture, or memory does not suffice.
         """
         self._textures.update(_fields_of(region))
@@ -275,7 +273,7 @@ class RegionBlock:
         if self._buffer is not None:
             self._buffer.bind_to_uniform_block(REGIONS_BINDING)
         self._textures.bind()
-        if program is not None:
+        if program is not None and "REGION_FIELDS" in self.features:
             self._gl.set_sampler(program, "region_fields", FIELDS_UNIT)
 
     def release(self) -> None:
