@@ -13,6 +13,7 @@ count          what it says
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
@@ -23,6 +24,9 @@ from .gbuffer import EMPTY, GBuffer
 from .opengl import OpenGL
 from .passes import GROUP_SIZE, dispatch, nowhere
 from .shaders import Programs
+
+if TYPE_CHECKING:
+    from .kept import Kept
 
 __all__ = ["Census"]
 
@@ -48,7 +52,7 @@ class Census:
         self._max_groups = max_groups
 
     def count(
-        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None
+        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Kept
     ) -> tuple[int, int | None]:
         """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already.
 
@@ -59,21 +63,24 @@ class Census:
             What the fiblets need to be decoded, and ``CLIP_PLANES``.
         marks : moderngl.Buffer, optional
             Of the compute pipeline.
+        kept : Kept
+            What of the set is there to be drawn.
         """
         if self._max_groups:
-            return self._by_compute(chunks, features, marks)
-        return self._by_query(chunks, features), None
+            return self._by_compute(chunks, features, marks, kept)
+        return self._by_query(chunks, features, kept), None
 
     def _by_compute(
-        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None
+        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Kept
     ) -> tuple[int, int | None]:
         program = self._programs.compute("compute/count.comp", features)
         counts = storage_buffer(self._ctx, np.zeros(2, np.uint32), "counts")
         program["marked"] = marks is not None
         if marks is not None:
             marks.bind_to_storage_buffer(_MARKS)
-        for chunk in chunks:
+        for index, chunk in enumerate(chunks):
             chunk.bind_storage()
+            kept.bind(program, index)
             counts.bind_to_storage_buffer(_COUNTS)  # in the place of per-point values
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -81,7 +88,7 @@ class Census:
         counts.release()
         return in_view, drawn if marks is not None else None
 
-    def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str]) -> int:
+    def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str], kept: Kept) -> int:
         program = self._programs.render(
             {"vertex": "raster/count.vert", "fragment": "raster/count.frag"}, [*features, "TEXTURE_DATA"]
         )
@@ -91,7 +98,8 @@ class Census:
         with nowhere(self._ctx, self._gl):
             self._ctx.enable_only(moderngl.NOTHING)
             self._ctx.point_size = 1.0
-            for chunk in chunks:
+            for index, chunk in enumerate(chunks):
+                kept.bind(program, index)
                 data, query = DataTextures(self._gl, chunk), self._ctx.query(samples=True)
                 data.bind()
                 chunk.buffers["chunk"].bind_to_uniform_block(2)

@@ -124,7 +124,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     """
     reference, _, local = local_frame(view, origin, scale, top)
     width, height = view.size
-    half = 0.0 if style.line_width == 1.0 else style.line_width / 2.0
+    half = style.half_width
     guard = 1.0 + 2.0 * half / np.array(view.size, np.float64)
     x, y, z, w = local
     planes = np.array([guard[0] * w + x, guard[0] * w - x, guard[1] * w + y, guard[1] * w - y, w + z, w - z])
@@ -133,6 +133,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     # Three products and their sum in float32 err by no more than this share of the largest of them.
     planes[:, 3] += 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]))
     slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]).max())
+    planes[:, 3] += style.radius or 0.0
     window = np.array([width / 2 * (x + w), height / 2 * (y + w), (z + w) / 2, w])
 
     block: npt.NDArray[Any] = np.zeros(
@@ -150,12 +151,23 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     block["planes"] = planes
     block["reference"][:3] = reference
     block["viewport"] = width, height, half, 0.0
+    block["guard"][0] = half * _length_per_pixel(local, view.size)
     block["guard"][2] = 2.0 * slack
     block["detail"] = (*_pixels_per_length(window, view.size), style.tolerance, FAR_SIZE)
     # Distances to the planes are least at a corner of the anchors' box.
     corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
     least = float((corners @ planes[:, :3].T + planes[:, 3]).min())
     return block.tobytes(), least - 4.0 * slack
+
+
+def _length_per_pixel(local: Array, size: tuple[int, int]) -> float:
+    """Return mm that a pixel takes at constant depth, over W; 0 for a matrix that shows no depth."""
+    try:
+        inverse = np.linalg.inv(local)
+    except np.linalg.LinAlgError:
+        return 0.0
+    across, up = inverse[:3, :2].T * (2.0 / np.array(size, np.float64))[:, None]
+    return float(np.linalg.norm(across) + np.linalg.norm(up))
 
 
 def _pixels_per_length(window: Array, size: tuple[int, int]) -> tuple[float, float]:

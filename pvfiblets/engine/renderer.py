@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 from tqdm import tqdm
 
 from ..codec import layout, tables
@@ -16,19 +17,26 @@ from .chunks import Chunk
 from .clipping import BLOCK_BYTES, clip_planes_block
 from .culling import Occlusion, make_occlusion
 from .errors import EngineError, GPUMemoryError
+from .filtering import Filter
 from .fit import Fitted, Room
-from .frame import FRAME_BYTES, frame_block, segment_pixels
+from .frame import FRAME_BYTES, frame_block, local_frame, segment_pixels
 from .gbuffer import GBuffer
+from .kept import Kept
 from .opengl import OpenGL
 from .passes import Passes
-from .pipelines import CONSTANTS, ComputePipeline, Job, Limits, Pipeline, make_measurer, make_pipeline
-from .shaders import Programs
+from .pipelines import CONSTANTS, Job, Limits, Pipeline, make_measurer, make_pipeline
+from .reporting import buffer_sizes, count_fiblets, no_counts
+from .shaders import BLOCKS, Programs
+from .tubes import TUBES_BYTES, tubes_block
 from .upload import upload_chunk
 from .values import ValueSources
 from .view import Style, View
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
+    from ..codec.query.region import Region
+    from .querying import RegionQuery
+    from .volumes import VolumeSource
 
 __all__ = ["FibletRenderer"]
 
@@ -107,17 +115,22 @@ class FibletRenderer:
         self._segment = 0.0
         self._features: list[str] = []
         self._values: ValueSources | None = None
+        self._kept: Kept | None = None
+        self._query: RegionQuery | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         try:
+            whole = fiblets
             fitted = self._upload(Room.of(ctx, self._gl, limits, max_total_bytes), fit, progress)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
             self._make_shared()
+            self._kept = Kept(ctx, self._gl, self._programs, whole, fiblets, self._chunks)
             self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
             self._pipeline = make_pipeline(
                 pipeline, ctx, self._gl, self._programs, fiblets.n_fiblets, len(self._chunks), limits
             )
+            self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
             measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
             self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._forget_camera)
@@ -179,7 +192,7 @@ class FibletRenderer:
             After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
         """
         style = style or Style()
-        pipeline, values = self._alive()
+        pipeline, values, kept = self._alive()
         if self._target is not None and self._drawn == (view, style):
             return self._target
         self._drawn = None
@@ -188,22 +201,28 @@ class FibletRenderer:
                 self._target.release()
                 self._target = None
             self._target = GBuffer(self._ctx, view.size)
+        self._target.want_relief(self._ctx, style.relief)
         self._bind_shared()
         decoding = self._decoding_features()
         source = values.activate(style.values, decoding)
         clipping, planes = self._write_frame(view, style)
+        kept.update(view, *self._place(), self._top)
+        values.locate(local_frame(view, *self._place(), self._top)[1])
         job = Job(
             chunks=self._chunks,
             target=self._target,
             passes=self._passes,
             decoding=tuple(decoding),
             values=(source,) if source else (),
-            clipping=clipping or planes,
+            clipping=clipping or planes or bool(kept.cutting),
             planes=("CLIP_PLANES",) if planes else (),
             detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
             line_width=style.line_width,
             segment=self._segment,
             occlusion=self._occlusion,
+            kept=kept,
+            tubes=("TUBES",) if style.radius is not None else (),
+            across=("ACROSS",) if style.relief is not None else (),
         )
         self._features = job.features
         self._passes.begin()
@@ -229,16 +248,28 @@ class FibletRenderer:
         two_phase = self._occlusion is not None and self._occlusion.halfway
         return two_phase and self._last != (view, style)
 
+    def _place(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Where anchors count from, and mm per anchor integer."""
+        return np.asarray(self._fiblets.origin, np.float64), np.asarray(self._fiblets.anchor_scale, np.float64)
+
     def _write_frame(self, view: View, style: Style) -> tuple[bool, bool]:
         """Bring the uniform blocks of the camera up to date; say whether anything may cross the edges, or planes."""
-        origin = np.asarray(self._fiblets.origin, np.float64)
-        scale = np.asarray(self._fiblets.anchor_scale, np.float64)
+        origin, scale = self._place()
         # Where steps vary, four times their mean stands for the longest.
         self._segment = segment_pixels(view, origin, scale, self._top, 4.0 * self._fiblets.step)
         block, margin = frame_block(view, style, origin, scale, self._top)
         radius = self._fiblets.parameters.largest_radius
         self._buffers["frame"].write(block)
-        planes = clip_planes_block(view, style.line_width, origin, scale, self._top, radius)
+        if style.radius is None:
+            if "tubes" in self._buffers:
+                self._buffers.pop("tubes").release()
+        else:
+            if "tubes" not in self._buffers:
+                self._buffers["tubes"] = self._ctx.buffer(reserve=TUBES_BYTES)
+            self._buffers["tubes"].write(tubes_block(view, style.radius, origin, scale, self._top))
+            self._buffers["tubes"].bind_to_uniform_block(BLOCKS["Tubes"])
+            radius += style.radius
+        planes = clip_planes_block(view, 2.0 * style.half_width or 1.0, origin, scale, self._top, radius)
         if planes is None:
             if "clip_planes" in self._buffers:
                 self._buffers.pop("clip_planes").release()
@@ -249,18 +280,18 @@ class FibletRenderer:
         self._buffers["clip_planes"].bind_to_uniform_block(3)
         return margin < radius, True
 
-    def value_range(self, values: str) -> tuple[float, float]:
+    def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.
 
         Parameters
         ----------
-        values : str
+        values : str or VolumeSource
             As in :class:`Style`. Arc length and curvature are measured on the GPU, once.
 
         Returns
         -------
         tuple of float
-            Of a stored array: the range that its codes span.
+            Of a stored array: the range that its codes span; of a volume: that of its finite voxels.
 
         Raises
         ------
@@ -275,10 +306,57 @@ class FibletRenderer:
         """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
         self._buffers["frame"].write(bytes(FRAME_BYTES))
 
-    def _alive(self) -> tuple[Pipeline, ValueSources]:
-        if self._pipeline is None or self._values is None:
+    @property
+    def filtering(self) -> Filter | None:
+        """What is there to be drawn; None for everything. Setting it takes effect with the next picture.
+
+        Raises
+        ------
+        ValueError
+            On setting one that is for another set.
+        EngineError
+            After :meth:`release`, or if memory does not suffice.
+        """
+        return self._alive()[2].filtering
+
+    @filtering.setter
+    def filtering(self, wanted: Filter | None) -> None:
+        self._alive()[2].filtering = wanted
+        self._drawn = None
+        if self._occlusion is not None:
+            self._occlusion.forget()
+
+    def query(self, region: Region, sampling: float | None = None) -> npt.NDArray[np.uint8]:
+        """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
+
+        On the GPU where it can (:attr:`.RegionQuery.available`), and equal to what the CPU says.
+
+        Parameters
+        ----------
+        region, sampling
+            As in :func:`pvfiblets.codec.query.passing.region_flags`, which also says what is returned and raised.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, or if memory does not suffice.
+        """
+        from .querying import RegionQuery
+
+        self._alive()
+        if self._query is None:
+            self._query = RegionQuery(
+                self._ctx, self._gl, self._programs, self._whole, self._chunks, self._max_groups
+            )
+        self._bind_shared()
+        found = self._query.flags(self._decoding_features(), region, sampling)
+        self._bind_shared()
+        return found
+
+    def _alive(self) -> tuple[Pipeline, ValueSources, Kept]:
+        if self._pipeline is None or self._values is None or self._kept is None:
             raise EngineError("this renderer has been released; make a new one")
-        return self._pipeline, self._values
+        return self._pipeline, self._values, self._kept
 
     def _bind_shared(self) -> None:
         self._buffers["frame"].bind_to_uniform_block(0)
@@ -310,43 +388,28 @@ class FibletRenderer:
             ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``fiblets_total``, ``share``; ``fiblets``:
             ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.census`), None where not known.
         """
-        buffers: dict[str, int] = {name: buffer.size for name, buffer in self._buffers.items()}
-        for chunk in self._chunks:
-            for name, buffer in chunk.buffers.items():
-                buffers[name] = buffers.get(name, 0) + buffer.size
-        if self._pipeline is not None:
-            buffers |= {name: buffer.size for name, buffer in self._pipeline.buffers.items()}
-        if self._occlusion is not None:
-            buffers["occlusion"] = self._occlusion.nbytes
-        if self._target is not None:
-            buffers["gbuffer"] = self._target.nbytes
         return {
             "passes": self._passes.report(),
             "features": list(self._features),
-            "buffers": [{"name": name, "bytes": size} for name, size in buffers.items()],
+            "buffers": buffer_sizes(
+                self._buffers, self._chunks, self._pipeline, self._occlusion, self._target, self._kept, self._values
+            ),
             "fiblets_total": int(self._fiblets.n_fiblets),
-            "fiblets": self._count() if counts else self._counts(),
+            "fiblets": self._count() if counts else no_counts(int(self._fiblets.n_fiblets)),
             "share": self.share,
         }
 
-    def _counts(
-        self, in_frustum: int | None = None, drawn: int | None = None, visible: int | None = None
-    ) -> dict[str, int | None]:
-        total = int(self._fiblets.n_fiblets)
-        return {"total": total, "in_frustum": in_frustum, "drawn": drawn, "visible": visible}
-
     def _count(self) -> dict[str, int | None]:
         """Count fiblets of the last picture."""
-        if self._pipeline is None or self._target is None or self._last is None:
-            return self._counts()
+        total = int(self._fiblets.n_fiblets)
+        if self._target is None or self._last is None:
+            return no_counts(total)
+        pipeline, _, kept = self._alive()
         self._bind_shared()
         _, planes = self._write_frame(*self._last)
         features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else [])]
-        marks = self._pipeline.buffers["marks"] if isinstance(self._pipeline, ComputePipeline) else None
-        in_frustum, drawn = self._census.count(self._chunks, features, marks)
-        if self._occlusion is None:
-            drawn = in_frustum
-        return self._counts(in_frustum, drawn, self._census.visible(self._target))
+        culled = self._occlusion is not None
+        return count_fiblets(self._census, total, self._chunks, features, pipeline, self._target, kept, culled)
 
     def _release_chunks(self) -> None:
         for chunk in self._chunks:
@@ -361,7 +424,16 @@ class FibletRenderer:
         self._buffers.clear()
         if self._pipeline is not None:
             self._pipeline.release()
-            self._pipeline = self._values = None
+            self._pipeline = None
+        if self._values is not None:
+            self._values.release()
+            self._values = None
+        if self._kept is not None:
+            self._kept.release()
+            self._kept = None
+        if self._query is not None:
+            self._query.release()
+            self._query = None
         if self._occlusion is not None:
             self._occlusion.release()
             self._occlusion = None

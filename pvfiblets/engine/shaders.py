@@ -69,7 +69,7 @@ NEWEST = 430
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
 
-BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4, "Regions": 5, "Sampling": 6}
+BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4, "Regions": 5, "Sampling": 6, "Tubes": 7}
 """Bindings of the uniform blocks, as the sources state them."""
 
 _VERSION = re.compile(r"^#version \d+$", re.MULTILINE)

@@ -19,7 +19,7 @@ void main() {
     uint first = word * 32u;
     if (first >= chunk.x) return;
     uint inside = 0u, these = 0u, count = min(32u, chunk.x - first);
-    for (uint i = 0u; i < count; ++i) inside += outside_view(capsule_of(first + i)) ? 0u : 1u;
+    for (uint i = 0u; i < count; ++i) inside += outside_view(first + i, capsule_of(first + i)) ? 0u : 1u;
     if (marked) {
         for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk.y >> 5u) + word, which)));
     }

@@ -4,7 +4,7 @@
 //   - No fiblet is culled of which one pixel would be drawn.
 //   - A fiblet of class 0 lies inside all planes, by `guard.z` and its radius: its segments need no clipping. One of
 //     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, and
-//     those that the caller's planes may touch. Class 3 are those of class 0 that are drawn as one segment.
+//     those that the caller's planes or region may touch, or some points of which are not to be shown. Class 3 are those of class 0 that are drawn as one segment.
 //
 // One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), which others will probably show
@@ -27,13 +27,10 @@ void main() {
     uint shown = 0u, crossing = 0u, crossing_depth = 0u, single = 0u, likely = 0u, count = min(32u, chunk.x - first);
     for (uint i = 0u; i < count; ++i) {
         Capsule c = capsule_of(first + i);
-        bool outside = false;
+        bool outside = false, partly = false;
         float edges = above_planes(c, 0, 4, outside), depths = above_planes(c, 4, 6, outside);
-#if FEATURE_CLIP_PLANES
-        outside = outside || beyond_clip_planes(c);
-        if (clip_touches(0.5 * (c.a + c.b), ball_of(c))) crossing_depth |= 1u << i;
-#endif
-        if (!outside) shown |= 1u << i;
+        if (!outside && !left_out(first + i, c, partly)) shown |= 1u << i;
+        if (partly) crossing_depth |= 1u << i;
         if (edges < c.r + guard.z) crossing |= 1u << i;
         if (depths < c.r + guard.z) crossing_depth |= 1u << i;
 #if FEATURE_LEVEL_OF_DETAIL

@@ -16,6 +16,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "raster/segments.glsl"
 
 #include "compute/marks.glsl"
+#include "compute/budget.glsl"
 
 #if FEATURE_INT64_ATOMICS
 #include "compute/nearest.glsl"

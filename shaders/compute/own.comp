@@ -13,6 +13,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "raster/segments.glsl"
 
 #include "compute/marks.glsl"
+#include "compute/budget.glsl"
 #include "compute/bits.glsl"
 #include "attributes/pixel.glsl"
 
@@ -22,6 +23,7 @@ layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
 layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
 layout(rg32f, binding = 3) writeonly uniform image2D position_image;
+#include "compute/across.glsl"
 
 uint owner;
 bool kept;
@@ -35,6 +37,7 @@ void plot(ivec2 pixel, float z, float s, uint segment) {
     if (before > owner && before != NO_FIBLET) tied = true;
     imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
     imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
+    store_across(pixel);
 }
 
 void main() {

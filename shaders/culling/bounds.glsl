@@ -9,6 +9,7 @@
 // can tell from it: whose capsule is thinner than detail.z pixels, and whose end slips no further. The nearest end decides.
 
 #include "decode/record.glsl"
+#include "frame/tubes.glsl"
 
 struct Capsule { vec3 a; vec3 b; float r; float slip; };
 
@@ -26,6 +27,15 @@ Capsule capsule_of(uint f) {
     if (end) b = a + end_vector(f);
     else b = anchor_local(f + 1u);
     return Capsule(a, b, radius_of(f), end ? 0.867 * steps.w : 0.0);
+}
+
+// How far from a b anything of the fiblet may be drawn, but for pixels of a line's width: tubes are thicker than their axes.
+float body_of(Capsule c) {
+#if FEATURE_TUBES
+    return c.r + tube.x;
+#else
+    return c.r;
+#endif
 }
 
 // W of the nearest point of a capsule.

@@ -5,7 +5,7 @@
 //   zeta(p)      depth of a point in mm along the view, coverage_axis.xyz . p
 //   R            coverage_axis.w, the radius that the buffer is dilated by: of a ball of radius R whose centre has a greater
 //                zeta than the buffer's texel, nothing shows
-//   a, b, r      the fiblet's capsule (culling/bounds.glsl)
+//   a, b, r      the fiblet's capsule (culling/bounds.glsl); r is that of its body
 //
 // The paper's R is N delta, so that the ball around a fiblet's first point holds all of it, and so does the ball around the
 // next fiblet's; to find either hidden is enough. A capsule is a hundredth of that ball. Here R is about a third of N delta,
@@ -35,8 +35,8 @@ bool covered(vec3 p) {
 }
 
 bool hidden(Capsule c) {
-    float pieces = max(ceil(0.5 * distance(c.a, c.b) / max(coverage_axis.w - c.r, 1e-20)), 1.0);
-    if (c.r >= coverage_axis.w || pieces > MOST) return false;
+    float r = body_of(c), pieces = max(ceil(0.5 * distance(c.a, c.b) / max(coverage_axis.w - r, 1e-20)), 1.0);
+    if (r >= coverage_axis.w || pieces > MOST) return false;
     for (float i = 0.0; i <= pieces; ++i) {
         if (!covered(mix(c.a, c.b, i / pieces))) return false;
     }

@@ -8,7 +8,7 @@
 //   (X, Y, Z, W) homogeneous window coordinates (frame/blocks.glsl); X, Y, Z, W are linear in position
 //   m            farthest depth in the squares of pixels that the capsule may touch, a key's upper end
 //   h(p)         Z - m W: positive behind depth m. The points with h > 0 are a half-space
-//   r            the capsule's radius
+//   r            the capsule's radius, that of tubes included
 //
 // Algorithm
 //   1. The capsule is cut into pieces; a piece lies within the rectangle around its ends' pixels, r and a margin further out.
@@ -87,7 +87,7 @@ float overshoot_of(vec4 a, vec4 b, float r) {
 // which are larger than W where the near and the far plane are close together.
 float slack_of(Capsule c) {
     vec3 terms = abs(gradient(2)) + abs(gradient(3));
-    return 1e-6 * (dot(terms, max(abs(c.a), abs(c.b)) + c.r) + abs(window_from_local[3].z) + abs(window_from_local[3].w));
+    return 1e-6 * (dot(terms, max(abs(c.a), abs(c.b)) + body_of(c)) + abs(window_from_local[3].z) + abs(window_from_local[3].w));
 }
 
 bool piece_hidden(vec4 a, vec4 b, float r, float overshoot, float slack, bool whole) {
@@ -106,17 +106,18 @@ bool in_front(vec4 a, vec4 b, float r) { return min(a.w, b.w) > 1.01 * r * detai
 
 bool hidden_as_a_whole(Capsule c) {
     vec4 a = to_homogeneous(c.a), b = to_homogeneous(c.b);
-    return in_front(a, b, c.r) && piece_hidden(a, b, c.r, overshoot_of(a, b, c.r), slack_of(c), true);
+    float r = body_of(c);
+    return in_front(a, b, r) && piece_hidden(a, b, r, overshoot_of(a, b, r), slack_of(c), true);
 }
 
 bool hidden_in_pieces(Capsule c) {
     vec4 a = to_homogeneous(c.a), b = to_homogeneous(c.b);
-    bool all_hidden = in_front(a, b, c.r);
-    float overshoot = overshoot_of(a, b, c.r), slack = slack_of(c);
+    float r = body_of(c), overshoot = overshoot_of(a, b, r), slack = slack_of(c);
+    bool all_hidden = in_front(a, b, r);
     vec4 from = a;
     for (float i = 1.0; i <= PIECES && all_hidden; ++i) {
         vec4 to = mix(a, b, i / PIECES);
-        all_hidden = piece_hidden(from, to, c.r, overshoot, slack, false);
+        all_hidden = piece_hidden(from, to, r, overshoot, slack, false);
         from = to;
     }
     return all_hidden;

@@ -22,7 +22,7 @@ bool was_seen(uint f) {
 
 bool survives(uint f) {
     Capsule c = capsule_of(f);
-    if (outside_view(c)) return false;
+    if (outside_view(f, c)) return false;
 #if FEATURE_CULL_PYRAMID
     bool first = was_seen(f) || probably_shows(c);
     if (first == second_round || (second_round && hidden(c))) return false;

@@ -10,10 +10,11 @@
 
 layout(std140, binding = 0) uniform Frame {
     mat4 window_from_local;
-    vec4 planes[6];        // left, right, bottom, top, near, far; the first four moved out by half a line's width
+    vec4 planes[6];        // left, right, bottom, top, near, far; the first four moved out by half a line's width,
+                           // all by the radius of tubes
     uvec4 reference;       // xyz: anchor integers
     vec4 viewport;         // width, height, half line width (pixels), unused
-    vec4 guard;            // z: mm inside the planes at which nothing can round outside any more
+    vec4 guard;            // x: mm, over W, from a wide line's axis to its edge; z: mm inside the planes at which nothing can round outside any more
     vec4 detail;           // x: pixels times W that a millimetre takes at most; y: change of W per mm;
                            // z, w: pixels of deviation, and of size, up to which a fiblet is one segment
 };

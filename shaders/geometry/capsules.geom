@@ -42,7 +42,7 @@ void main() {
         uint segment = i - 1u, k = segment - first;
         Piece piece;
         bool start = segment == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
-        if (!piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
+        if (!mask_segment(segment, start, cap) || !piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
         Handed handed = Handed(uvec2(pixel_ids.x, tangents[k]), chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
         for (int corner = 0; corner < 4; ++corner) {
             gl_Position = corner_of(piece, corner);

@@ -34,7 +34,8 @@ void main() {
         start_segment(i - 1u, walk_delta, polyline.steps);
         if (i <= first) continue;
         Piece piece;
-        if (!piece_of(from, walk_point, i == 1u && polyline.begin, i == polyline.count && polyline.end, piece)) {
+        bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
+        if (!mask_segment(i - 1u, start, cap) || !piece_of(from, walk_point, start, cap, piece)) {
             open = false;
             continue;
         }

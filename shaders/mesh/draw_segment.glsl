@@ -4,7 +4,7 @@
 void draw_segment(uint slot, uint count, Handed handed, vec3 from, vec3 to, bool start, bool cap) {
     Piece piece;
     uint primitive = PRIMITIVES * (count - 1u - slot);
-    bool any = piece_of(from, to, start, cap, piece);
+    bool any = mask_segment(handed.segment, start, cap) && piece_of(from, to, start, cap, piece);
 #if FEATURE_WIDE_LINES
     for (int corner = 0; corner < 4; ++corner) put_vertex(4u * slot + uint(corner), any ? corner_of(piece, corner) : NOWHERE);
     for (uint i = 0u; i < 3u; ++i) {

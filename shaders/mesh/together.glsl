@@ -9,11 +9,15 @@
 
 #include "decode/parallel.glsl"
 #include "culling/bounds.glsl"
+#include "data/point_mask.glsl"
 #include "attributes/place.glsl"
 #include "attributes/tangent.glsl"
 #include "data/values.glsl"
 #if FEATURE_VALUES_CURVATURE
 #include "attributes/turn.glsl"
+#endif
+#if FEATURE_VALUES_VOLUME
+#include "data/volume.glsl"
 #endif
 #include "mesh/draw_segment.glsl"
 
@@ -106,12 +110,16 @@ vec2 values_of(uint segment) {
 #elif FEATURE_VALUES_CURVATURE
     if (group.whole && group.spans > 1.0) return vec2(0.0);
     return vec2(curvature_of(segment), curvature_of(segment + 1u));
+#elif FEATURE_VALUES_VOLUME
+    if (group.whole && group.spans > 1.0) return vec2(0.0);
+    return vec2(volume_at(point_of(segment)), volume_at(point_of(segment + 1u)));
 #else
     return vec2(0.0);
 #endif
 }
 
 void draw_share(uint f, uint share) {
+    begin_point_mask(f);
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words);
     group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION);
@@ -120,7 +128,7 @@ void draw_share(uint f, uint share) {
     group.unit = group.moves ? step_length(words) : steps.z * exp2(-float(fiblet_cap(words)));
 #if FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
-    if (is_one_segment(capsule)) {
+    if (is_one_segment(capsule) && all_points_shown()) {
         group.spans = float(last + (group.end ? 0u : 1u));
         group.count = 1u;
         group.whole = true;

@@ -6,6 +6,6 @@
 #include "culling/frustum.glsl"
 
 void main() {
-    bool outside = outside_view(capsule_of(uint(gl_VertexID)));
+    bool outside = outside_view(uint(gl_VertexID), capsule_of(uint(gl_VertexID)));
     gl_Position = outside ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }

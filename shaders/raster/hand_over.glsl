@@ -37,7 +37,7 @@ void hand_over(Handed handed, Piece piece, vec3 from, vec3 to) {
     TO(handed_from) = mix(from, to, piece.t0);
     TO(handed_to) = mix(from, to, piece.t1);
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
     TO(handed_values) = handed.values;
 #endif
 }

@@ -39,6 +39,6 @@ HANDED uint handed_part EACH;      // which part of the segment it is: start and
 HANDED vec3 handed_from EACH;      // the part's ends, local mm
 HANDED vec3 handed_to EACH;
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
 HANDED vec2 handed_values EACH;    // at the segment's ends
 #endif

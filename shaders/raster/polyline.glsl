@@ -7,6 +7,7 @@
 
 #include "decode/sequential.glsl"
 #include "culling/bounds.glsl"
+#include "data/point_mask.glsl"
 
 struct Polyline {
     uint last;     // points up to this one are decoded, the one after it is `next`
@@ -20,11 +21,12 @@ struct Polyline {
 Polyline polyline;
 
 void begin_polyline(uint f) {
+    begin_point_mask(f);
     polyline.begin = begins(f);
     polyline.end = ends(f);
 #if FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
-    if (is_one_segment(capsule)) {
+    if (is_one_segment(capsule) && all_points_shown()) {
         walk_point = capsule.a;
         polyline.last = 0u;
         polyline.count = 1u;

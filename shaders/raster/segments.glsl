@@ -22,6 +22,12 @@
 // and a line cut head-on shows the whole brush.
 //
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective.
+//
+// Tubes (FEATURE_TUBES): the pixels and depths of raster/tube.glsl, which needs no clipping: s is then the position along the
+// segment in space.
+//
+// With FEATURE_ACROSS the including pass finds in `across_here` (wide lines) or `normal_here` (tubes) what the G-buffer's
+// texture `across` says of the pixel that it plots (pvfiblets/engine/gbuffer.py).
 
 #include "decode/sequential.glsl"
 #include "raster/project.glsl"
@@ -29,13 +35,40 @@
 #include "culling/bounds.glsl"
 #include "frame/clip_planes.glsl"
 
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
+#include "data/point_mask.glsl"
+#if FEATURE_TUBES
+#include "raster/tube.glsl"
+#endif
+
+#if FEATURE_ACROSS
+#if FEATURE_TUBES
+vec3 normal_here;
+#else
+float across_here;
+#endif
+#endif
+
 void plot(ivec2 pixel, float z, float s, uint segment);
 void start_segment(uint segment, vec3 delta, float steps);
+
+// Plots a pixel, unless the caller's region cuts it away.
+void put(ivec2 pixel, float z, float s, uint segment) {
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(pixel, z)) return;
+#endif
+    plot(pixel, z, s, segment);
+}
 
 // The segment being drawn, for along(): clip w at both ends, and what was left of it by clipping.
 vec4 clipped = vec4(1.0, 1.0, 0.0, 1.0);
 
 float along(float s) {
+#if FEATURE_TUBES
+    return s;
+#else
 #if FEATURE_CLIPPING && !FEATURE_CLIPPING_DEPTH
     s = mix(clipped.z, clipped.w, s);  // clipped in the window, before perspective is corrected
 #endif
@@ -44,6 +77,7 @@ float along(float s) {
     u = mix(clipped.z, clipped.w, u);  // clipped in space
 #endif
     return u;
+#endif
 }
 
 #if FEATURE_CLIP_PLANES && FEATURE_WIDE_LINES
@@ -72,7 +106,43 @@ bool brush_kept(float s, vec2 away) {
 
 #if FEATURE_WIDE_LINES
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pipelines/compute.py
+#endif
 
+#if FEATURE_TUBES
+uniform ivec2 band;   // rows of the picture: the first, and the one after the last
+
+bool affordable();    // whether one more pixel may be tested: compute/budget.glsl
+
+void draw_tube(vec3 from, vec3 to, vec4 c0, vec4 c1, uint segment, bool start) {
+    Outline outline;
+    if (segment < share.x || segment >= share.y || !outline_of(c0, c1, outline)) return;
+    Tube body = tube_of(from, to, c0, start);
+    float r = outline.reach;
+    vec2 run = outline.b.xy - outline.a.xy;
+    bool steep = abs(run.y) > abs(run.x);
+    vec2 a = steep ? outline.a.yx : outline.a.xy, b = steep ? outline.b.yx : outline.b.xy;
+    vec2 low = steep ? vec2(band.x, 0.0) : vec2(0.0, band.x), high = steep ? vec2(band.y, viewport.x) : vec2(viewport.x, band.y);
+    float slope = abs(b.x - a.x) > 1e-6 ? (b.y - a.y) / (b.x - a.x) : 0.0, height = r * sqrt(1.0 + slope * slope);
+    vec2 ends = vec2(min(a.x, b.x), max(a.x, b.x));
+    int column0 = int(max(ceil(ends.x - r - 0.5), low.x)), column1 = int(min(floor(ends.y + r - 0.5), high.x - 1.0));
+    for (int column = column0; column <= column1; ++column) {
+        if (!affordable()) return;
+        float x = float(column) + 0.5, y = a.y + slope * (clamp(x, ends.x, ends.y) - a.x);
+        int row0 = int(max(ceil(y - height - 0.5), low.y)), row1 = int(min(floor(y + height - 0.5), high.y - 1.0));
+        for (int row = row0; row <= row1; ++row) {
+            if (!affordable()) return;
+            ivec2 pixel = steep ? ivec2(row, column) : ivec2(column, row);
+            Hit hit;
+            if (tube_at(body, c0, outline, vec2(pixel) + 0.5, hit)) {
+#if FEATURE_ACROSS
+                normal_here = hit.normal;
+#endif
+                put(pixel, hit.z, hit.t, segment);
+            }
+        }
+    }
+}
+#elif FEATURE_WIDE_LINES
 void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     if (segment < share.x || segment >= share.y) return;
     float r = viewport.z;
@@ -81,6 +151,9 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     vec2 from = steep ? a.yx : a.xy, to = steep ? b.yx : b.xy, size = steep ? viewport.yx : viewport.xy;
     vec2 run = to - from;
     float inverse = 1.0 / max(dot(run, run), 1e-12);
+#if FEATURE_ACROSS
+    vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
+#endif
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
     float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
     float behind = start ? r : r * min(abs(slope), 1.0), least = start ? -3.0e38 : 0.0;  // columns before the start
@@ -101,7 +174,10 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
 #if FEATURE_CLIP_PLANES
             covered = covered && brush_kept(s, steep ? away.yx : away);
 #endif
-            if (covered) plot(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
+#if FEATURE_ACROSS
+            across_here = clamp(dot(left, centre), -1.0, 1.0);
+#endif
+            if (covered) put(steep ? ivec2(row, column) : ivec2(column, row), z, s, segment);
         }
     }
 }
@@ -121,9 +197,9 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     for (int i = 0; i < cells.count; ++i) {
         precise vec2 at = floor(begin + float(i) * per);
         precise float z = base + dot(at, slope);
-        plot(p + ivec2(at), z, dot(at - CELL_SHIFT, cells.run) * cells.square, segment);
+        put(p + ivec2(at), z, dot(at - CELL_SHIFT, cells.run) * cells.square, segment);
     }
-    if (cap) plot(q, b.z, 1.0, segment);
+    if (cap) put(q, b.z, 1.0, segment);
 }
 #endif
 
@@ -133,6 +209,7 @@ float steps_of(uint f) { return float(fiblet_last(decoding_words(f)) + (ends(f) 
 // Draws fiblet f and the segment that joins it to the next. From far enough (is_one_segment() of culling/bounds.glsl) it is
 // one segment, numbered 0, between the ends of its capsule; FEATURE_ONE_SEGMENT: it is known that it is.
 void draw_fiblet(uint f) {
+    begin_point_mask(f);
 #if FEATURE_ONE_SEGMENT || FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
 #endif
@@ -149,7 +226,7 @@ void draw_fiblet(uint f) {
     uint last = walk.last, count = last + (end && last > 0u ? 0u : 1u);  // a single point is a segment of no length
     float steps = end && last == 0u ? 0.0 : 1.0;
 #if FEATURE_LEVEL_OF_DETAIL
-    if (is_one_segment(capsule)) {
+    if (is_one_segment(capsule) && all_points_shown()) {
         next = capsule.b;
         last = 0u;
         count = 1u;
@@ -179,8 +256,12 @@ void draw_fiblet(uint f) {
         precise vec4 c1 = to_homogeneous(walk_point);
         precise vec4 s1 = to_window(c1);
         bool start = i == 1u && begin, cap = end && i == count;
+        bool drawn = mask_segment(i - 1u, start, cap);
         start_segment(i - 1u, walk_delta, steps);
-#if FEATURE_CLIPPING_DEPTH
+#if FEATURE_TUBES
+        if (drawn) draw_tube(from, walk_point, c0, c1, i - 1u, start);
+        c0 = c1;
+#elif FEATURE_CLIPPING_DEPTH
         bool inside1 = in_volume(c1);
 #if FEATURE_CLIP_PLANES
         inside1 = inside1 && clip_height(walk_point) >= 0.0;
@@ -198,9 +279,9 @@ void draw_fiblet(uint f) {
         }
         clipped = vec4(e0.w, e1.w, t0, t1);
 #if FEATURE_CLIP_PLANES && FEATURE_WIDE_LINES
-        if (any) start_heights(from, walk_point, e0, e1, t0, t1);
+        if (any && drawn) start_heights(from, walk_point, e0, e1, t0, t1);
 #endif
-        if (any) draw_window(e0, e1, i - 1u, start || t0 > 0.0, cap || t1 < 1.0);
+        if (any && drawn) draw_window(e0, e1, i - 1u, start || t0 > 0.0, cap || t1 < 1.0);
         inside0 = inside1;
         c0 = c1;
 #elif FEATURE_CLIPPING

@@ -6,13 +6,16 @@
 
 #include "frame/blocks.glsl"
 #include "raster/project.glsl"
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
 #if FEATURE_PER_PRIMITIVE
 #define HANDED flat perprimitiveNV in
 #else
 #define HANDED flat in
 #endif
 #include "raster/handed.glsl"
-#if FEATURE_VALUES_STORED || FEATURE_VALUES_CURVATURE
+#if FEATURE_VALUES_STORED || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
 #include "decode/sequential.glsl"
 #include "attributes/place.glsl"
 #include "attributes/values.glsl"
@@ -41,6 +44,9 @@ float value_at(uint segment, float t, float steps) {
         return value_along(segment, t, uint(whole), at - whole);
     }
     return mix(handed_values.x, handed_values.y, at);  // a single point has one value, though its pixel is an end
+#elif FEATURE_VALUES_VOLUME
+    if (steps > 1.0) return value_along_capsule(handed_ids.z - chunk.y, steps, uint(whole), at - whole);
+    return value_between(handed_values.x, handed_values.y, at);
 #elif FEATURE_VALUES_ARC_LENGTH
     return mix(handed_values.x, handed_values.y, t);
 #else
@@ -51,6 +57,9 @@ float value_at(uint segment, float t, float steps) {
 // s: position along the part in the window, where depth is linear; ratio: clip w at its start over that at its end.
 void shade(float s, float ratio, float depth) {
     float z = clamp(depth, 0.0, NEARLY_ONE);
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(ivec2(gl_FragCoord.xy), z)) discard;
+#endif
     uint key = depth_key(z), segment = handed_ids.w & 255u;
     gl_FragDepth = float(key >> 1u) / 2147483648.0;  // as coarse as the key, also below 2^-8 where float32 is finer
 #if FEATURE_SECOND_ROUND

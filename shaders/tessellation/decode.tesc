@@ -23,6 +23,9 @@ out Half { vec4 points[HALF]; } halves[];
 
 patch out uvec4 patch_ids;
 patch out float patch_first;
+#if FEATURE_POINT_MASK
+patch out uvec4 patch_mask;
+#endif
 
 void main() {
     gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = 0.0;
@@ -41,6 +44,9 @@ void main() {
     patch_ids = uvec4(pixel_ids.x, chunk.y + f, polyline.count | (uint(polyline.steps) << 8u),
                       (polyline.begin ? 1u : 0u) | (polyline.end ? 2u : 0u));
     patch_first = pixel_first_point;
+#if FEATURE_POINT_MASK
+    patch_mask = uvec4(mask_low, mask_high, mask_segments, (mask_before ? 1u : 0u) | (mask_joined ? 2u : 0u));
+#endif
 #if FEATURE_CLIPPING || FEATURE_WIDE_LINES
     gl_TessLevelOuter[0] = float(polyline.count);
     gl_TessLevelOuter[1] = 1.0;

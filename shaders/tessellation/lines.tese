@@ -9,7 +9,7 @@
 void main() {
     Segment segment = this_segment();
     Piece piece;
-    if (!piece_of(segment.from.xyz, segment.to.xyz, segment.start, segment.cap, piece)) {
+    if (!segment.drawn || !piece_of(segment.from.xyz, segment.to.xyz, segment.start, segment.cap, piece)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside, at both ends
         return;
     }

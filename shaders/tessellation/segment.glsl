@@ -4,6 +4,7 @@
 #include "tessellation/patch.glsl"
 #include "codec/layout.glsl"
 #include "attributes/tangent.glsl"
+#include "data/point_mask.glsl"
 
 layout(isolines, equal_spacing) in;
 
@@ -11,6 +12,9 @@ in Half { vec4 points[HALF]; } halves[];
 
 patch in uvec4 patch_ids;
 patch in float patch_first;
+#if FEATURE_POINT_MASK
+patch in uvec4 patch_mask;
+#endif
 
 vec4 point_of(uint i) { return halves[i / HALF].points[i % HALF]; }
 
@@ -22,6 +26,7 @@ struct Segment {
     float steps;
     bool start;
     bool cap;
+    bool drawn;
 };
 
 bool at_start;      // of the segment; else at its end
@@ -47,7 +52,15 @@ Segment this_segment() {
     uint point = uint(round(gl_TessCoord.x * float(count))), index = max(point, 1u) - 1u;
     at_start = point == 0u;
 #endif
+    bool start = index == 0u && (patch_ids.w & 1u) != 0u, cap = index == count - 1u && (patch_ids.w & 2u) != 0u;
+#if FEATURE_POINT_MASK
+    mask_low = patch_mask.x;
+    mask_high = patch_mask.y;
+    mask_segments = patch_mask.z;
+    mask_before = (patch_mask.w & 1u) != 0u;
+    mask_joined = (patch_mask.w & 2u) != 0u;
+#endif
+    bool drawn = mask_segment(index, start, cap);
     return Segment(index, point_of(index), point_of(index + 1u), uvec2(patch_ids.x, tangent_of(index)),
-                   float(patch_ids.z >> 8u), index == 0u && (patch_ids.w & 1u) != 0u,
-                   index == count - 1u && (patch_ids.w & 2u) != 0u);
+                   float(patch_ids.z >> 8u), start, cap, drawn);
 }

@@ -137,7 +137,7 @@ class CoverageBuffer:
         self._origin = np.asarray(fiblets.origin, np.float64)
         self._scale = np.asarray(fiblets.anchor_scale, np.float64)
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
-        self.radius = dilation_radius(fiblets)
+        self._radius = self.radius = dilation_radius(fiblets)
         self._last: tuple[GBuffer, View, Style] | None = None
         self._axis = np.zeros(3)
         self._side = 16
@@ -162,6 +162,7 @@ class CoverageBuffer:
     def before(self, target: GBuffer, view: View, style: Style) -> None:
         """Make the buffer for a picture of the last one, which the target still holds."""
         last, self._last = self._last, None
+        self.radius = self._radius + (style.radius or 0.0)  # tubes are thicker than the capsules of their axes
         width, height = view.size
         self._side = 2 << LEVEL
         while self._side > max(2, min(width, height) // 2):
@@ -174,12 +175,15 @@ class CoverageBuffer:
             before = self._camera(last[1])
         with self._gl.framebuffers_kept():
             if now is not None and before is not None:
-                half = 0.0 if style.line_width == 1.0 else style.line_width / 2.0
                 self._pyramid.build(target)
-                self._dilate(before, 1.0 + (MARGIN + half) / self._side)
+                self._dilate(before, 1.0 + (MARGIN + style.half_width) / self._side)
                 self._move(before, now)
             else:
                 self._framebuffers[1].clear(_UNCOVERED)
+
+    def forget(self) -> None:
+        """Hide nothing in the next picture."""
+        self._last = None
 
     def after(self, target: GBuffer, view: View, style: Style) -> None:
         """Take note that the target holds the picture of this view."""
@@ -197,10 +201,11 @@ class CoverageBuffer:
 
     @staticmethod
     def _comparable(last: tuple[GBuffer, View, Style], view: View, style: Style) -> bool:
-        """Whether what hid then hides now: same lines, and no plane cuts anything else away."""
+        """Whether what hid then hides now: same lines, and nothing else is cut away."""
         _, before, then = last
-        same = (then.line_width, then.tolerance) == (style.line_width, style.tolerance)
-        return before.size == view.size and same and np.array_equal(before.clip_planes, view.clip_planes)
+        same = (then.half_width, then.tolerance, then.radius) == (style.half_width, style.tolerance, style.radius)
+        cut = np.array_equal(before.clip_planes, view.clip_planes) and before.region == view.region
+        return before.size == view.size and same and cut
 
     def _camera(self, view: View) -> _Camera | None:
         """Describe a view; None if it shows no depth."""

@@ -49,6 +49,10 @@ class Occlusion(Protocol):
         """
         ...
 
+    def forget(self) -> None:
+        """Be told that the next picture will be of other things: the last one hides nothing any more."""
+        ...
+
     def build(self, target: GBuffer) -> None:
         """Make the texture of the depth drawn so far in this picture."""
         ...

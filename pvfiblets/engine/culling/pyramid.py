@@ -100,6 +100,9 @@ class DepthPyramid:
                 self._last = _Levels(self._ctx, self._gl, target.size)
             self._build(self._last, target)
 
+    def forget(self) -> None:
+        """Do nothing: what is left out is found out by the picture itself."""
+
     def after(self, target: GBuffer, view: View, style: Style) -> None:
         """Do nothing: the next picture asks for its own."""
 

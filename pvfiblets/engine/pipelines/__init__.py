@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .. import filtering, regions
 from ..measures import ComputeMeasurer, FeedbackMeasurer, Measurer
 from . import compute, geometry, mesh
 from .compute import ComputePipeline
@@ -21,7 +22,13 @@ if TYPE_CHECKING:
 
 __all__ = ["CONSTANTS", "ComputePipeline", "Job", "Limits", "Pipeline", "make_measurer", "make_pipeline"]
 
-CONSTANTS = {**compute.CONSTANTS, **geometry.CONSTANTS, **mesh.CONSTANTS}
+CONSTANTS = {
+    **compute.CONSTANTS,
+    **geometry.CONSTANTS,
+    **mesh.CONSTANTS,
+    **filtering.CONSTANTS,
+    **regions.CONSTANTS,
+}
 """Of all pipelines' sources."""
 
 

@@ -70,6 +70,12 @@ SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
 iterations in sum and says nothing."""
 
+LANES = 8
+"""Invocations that software OpenGL runs in step at most: together they loop as often as each of them in sum."""
+
+TUBE_BUDGET = SOFTWARE_ITERATIONS // LANES
+"""Pixels that one invocation may test for tubes under software OpenGL (``shaders/compute/budget.glsl``)."""
+
 WIDEST_IN_SOFTWARE = 100
 """Pixels of line width with which one segment of each fiblet stays within that."""
 
@@ -104,11 +110,13 @@ class ComputePipeline:
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
         self._shares = [(0, MAX_POINTS)]
+        self._level = 0
         self._words = -(-n_fiblets // 32)
         self._round_arguments = n_chunks * CLASSES
         self._list_base = self._words * MARK_WORDS
         self._argument_base = self._list_base + self._words * CLASSES
-        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+        self._unfinished = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+        size = self._unfinished + 1
         self.buffers: dict[str, moderngl.Buffer] = {}
         self.buffers["marks"] = storage_buffer(ctx, np.zeros(size, np.uint32), "marks")
 
@@ -121,9 +129,11 @@ class ComputePipeline:
             If lines are so wide that software OpenGL would lose parts of them.
         """
         if self._software:
-            self._shares = _shares(job.line_width, job.segment)
+            self._shares = _shares(1.0 if job.tubes else job.line_width, job.segment)
+        self._level = 0
         target, occlusion = job.target, job.occlusion
-        for index, texture in enumerate((target.depth, target.owner, target.ids, target.position)):
+        images = (target.depth, target.owner, target.ids, target.position, target.across)
+        for index, texture in enumerate(image for image in images if image is not None):
             texture.bind_to_image(index, read=True, write=True)
         self.buffers["marks"].bind_to_storage_buffer(5)
         passes = job.passes
@@ -135,11 +145,11 @@ class ComputePipeline:
             self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
-            features = [*job.decoding, *job.detail, *job.planes]
+            features = [*job.decoding, *job.detail, *job.planes, *job.tubes, *job.kept.culling]
             if occlusion is not None and occlusion.guesses:
                 features.append(occlusion.feature)
                 occlusion.bind(self._program("cull", features))
-            self._run("cull", features, job.chunks, 32 * GROUP_SIZE)
+            self._run("cull", features, job)
             self._barrier()
         if occlusion is not None and not occlusion.halfway:
             with passes.timed("occlusion"):
@@ -234,29 +244,51 @@ class ComputePipeline:
         refined = number == REST and job.occlusion is not None and job.occlusion.halfway
         self._plan(number, job.chunks, refined)
         for part, features in job.classes:
+            program = self._program(stage, [*features, *self._int64])
+            if job.tubes:
+                self._draw_tubes(program, number, part, job)
+                continue
             for share in self._shares if job.line_width > 1.0 else self._shares[:1]:
-                program = self._program(stage, [*features, *self._int64])
                 self._set(program, drawing=number, part=part, share=share)
-                self._run_listed(program, number, part, job.chunks)
+                self._run_listed(program, number, part, job)
                 if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
                     self._barrier()
         self._barrier()
 
-    def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, chunks: Sequence[Chunk]) -> None:
-        for index, chunk in enumerate(chunks):
+    def _draw_tubes(self, program: moderngl.ComputeShader, number: int, part: int, job: Job) -> None:
+        """Draw one class of a round's fiblets as tubes, in ever smaller shares until all of them were affordable."""
+        marks, at = self.buffers["marks"], 4 * self._unfinished
+        self._set(program, drawing=number, part=part, unfinished=self._unfinished)
+        self._set(program, budget=TUBE_BUDGET if self._software else 2**32 - 1)
+        while True:
+            for share, band in _tube_shares(self._level, job.target.size[1]):
+                self._set(program, share=share, band=band)
+                self._run_listed(program, number, part, job)
+                self._barrier()
+            if not self._software:
+                return
+            self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+            if not any(marks.read(4, offset=at)):
+                return
+            marks.write(bytes(4), offset=at)
+            self._level += 1
+
+    def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, job: Job) -> None:
+        for index, chunk in enumerate(job.chunks):
             at = self._arguments(number, index)
             self._set(program, argument_base=at)
             chunk.bind_storage()
+            job.kept.bind(program, index)
             program.run_indirect(self.buffers["marks"], 4 * at + ARGUMENT_BYTES * part)
 
     def _test(self, stage: str, job: Job) -> None:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
-        self._run(stage, self._looking(stage, job), job.chunks, 32 * GROUP_SIZE)
+        self._run(stage, self._looking(stage, job), job)
         self._barrier()
 
     def _looking(self, stage: str, job: Job) -> Sequence[str]:
         assert job.occlusion is not None
-        features = [*job.decoding, *job.detail, job.occlusion.feature]
+        features = [*job.decoding, *job.detail, *job.tubes, job.occlusion.feature]
         job.occlusion.bind(self._program(stage, features))
         return features
 
@@ -266,15 +298,17 @@ class ComputePipeline:
         self._plan(TESTED, job.chunks)
         for part, _ in job.classes:
             self._set(program, part=part)
-            self._run_listed(program, TESTED, part, job.chunks)
+            self._run_listed(program, TESTED, part, job)
         self._barrier()
 
-    def _run(self, stage: str, features: Sequence[str], chunks: Sequence[Chunk], per_group: int) -> None:
+    def _run(self, stage: str, features: Sequence[str], job: Job) -> None:
+        """Run a pass of one invocation for 32 fiblets."""
         program = self._program(stage, features)
         self._set(program)
-        for chunk in chunks:
+        for index, chunk in enumerate(job.chunks):
             chunk.bind_storage()
-            dispatch(program, -(-chunk.n_fiblets // per_group), self._max_groups)
+            job.kept.bind(program, index)
+            dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
 
     def release(self) -> None:
         """Give the pipeline's own buffers back; twice is harmless."""
@@ -309,3 +343,14 @@ def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
     ranges = math.ceil(MAX_POINTS / max(count, 1))
     edges = [MAX_POINTS * i // ranges for i in range(ranges + 1)]
     return list(itertools.pairwise(edges))
+
+
+def _tube_shares(level: int, rows: int) -> list[tuple[tuple[int, int], tuple[int, int]]]:
+    """Cut the work of a tube pass: ranges of a fiblet's segments, each for bands of the picture's rows.
+
+    With every level shares are half as large, first in segments; from one segment on, in rows.
+    """
+    parts, bands = min(2**level, MAX_POINTS), min(max(2**level // 64, 1), rows)
+    edges = [MAX_POINTS * i // parts for i in range(parts + 1)]
+    lines = [rows * i // bands for i in range(bands + 1)]
+    return list(itertools.product(itertools.pairwise(edges), itertools.pairwise(lines)))

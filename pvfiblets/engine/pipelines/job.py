@@ -12,6 +12,7 @@ from ..passes import Passes
 
 if TYPE_CHECKING:
     from ..culling.occlusion import Occlusion
+    from ..kept import Kept
 
 __all__ = ["Job", "Pipeline", "Sized"]
 
@@ -40,11 +41,15 @@ class Job:
     detail : tuple of str
         ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
     line_width : float
-        Pixels.
+        Pixels; of tubes, those of the widest, roughly.
     segment : float
         Pixels that the longest segments in the picture take, roughly.
     occlusion : Occlusion, optional
         Tests what earlier depth hides.
+    kept : Kept
+        The caller's filter and region.
+    tubes, across : tuple of str
+        ``TUBES`` and ``ACROSS``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
     """
 
     chunks: Sequence[Chunk]
@@ -58,11 +63,20 @@ class Job:
     line_width: float
     segment: float
     occlusion: Occlusion | None
+    kept: Kept
+    tubes: tuple[str, ...] = ()
+    across: tuple[str, ...] = ()
 
     @property
     def wide(self) -> tuple[str, ...]:
-        """``WIDE_LINES``, if they are."""
-        return ("WIDE_LINES",) if self.line_width > 1.0 else ()
+        """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
+        wide = ("WIDE_LINES",) if self.line_width > 1.0 or self.tubes else ()
+        return (*wide, *self.tubes, *self.across)
+
+    @property
+    def cutting(self) -> tuple[str, ...]:
+        """Features by which a fiblet is drawn in part."""
+        return (*self.planes, *self.kept.cutting)
 
     @property
     def classes(self) -> list[tuple[int, tuple[str, ...]]]:
@@ -71,7 +85,7 @@ class Job:
         classes = [(0, common)]
         if self.clipping:
             classes.append((1, (*common, *self.detail, "CLIPPING")))
-            classes.append((2, (*common, *self.detail, *self.planes, "CLIPPING", "CLIPPING_DEPTH")))
+            classes.append((2, (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")))
         if self.detail:
             classes.append((3, (*common, "ONE_SEGMENT")))
         return classes
@@ -81,7 +95,8 @@ class Job:
         """All of them, for reports."""
         clipping = ("CLIPPING", "CLIPPING_DEPTH") if self.clipping else ()
         culling = (self.occlusion.feature,) if self.occlusion is not None else ()
-        return [*self.decoding, *self.values, *self.wide, *self.detail, *clipping, *self.planes, *culling]
+        every = (*self.decoding, *self.values, *self.wide, *self.detail, *clipping, *self.planes)
+        return [*every, *self.kept.culling, *culling]
 
 
 class Sized(Protocol):

@@ -301,15 +301,16 @@ class RasterPipeline(abc.ABC):
         self._bind(program, job, features)
         ctx.enable_only(moderngl.DEPTH_TEST)
         ctx.depth_func = "<"
-        for chunk in job.chunks:
+        for index, chunk in enumerate(job.chunks):
             chunk.buffers["chunk"].bind_to_uniform_block(2)
+            job.kept.bind(program, index)
             self._draw(array, program, chunk, job)
 
     def _features(self, job: Job) -> list[str]:
         """Features of a picture's programs."""
         culling = (job.occlusion.feature,) if job.occlusion is not None else ()
         clipping = ("CLIPPING", "CLIPPING_DEPTH") if job.clipping else ()
-        every = (*job.decoding, *job.values, *job.wide, *job.detail, *clipping, *job.planes)
+        every = (*job.decoding, *job.values, *job.wide, *job.detail, *clipping, *job.planes, *job.kept.culling)
         return [*self.features, *every, *culling]
 
     def _bind(self, program: moderngl.Program, job: Job, features: Sequence[str]) -> None:
