@@ -40,6 +40,7 @@ _FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glDeleteTextures": ((_INT, _POINTER), 330),
     "glDrawMeshTasksEXT": ((_UINT, _UINT, _UINT), "GL_EXT_mesh_shader"),
     "glFramebufferTexture2D": ((_UINT, _UINT, _UINT, _UINT, _INT), 330),
+    "glFramebufferTextureLayer": ((_UINT, _UINT, _UINT, _INT, _INT), 330),
     "glGenTextures": ((_INT, _POINTER), 330),
     "glGetFramebufferAttachmentParameteriv": ((_UINT, _UINT, _UINT, _POINTER), 330),
     "glGetInteger64v": ((_UINT, _POINTER), 330),
@@ -360,6 +361,27 @@ class OpenGL:
             self.function("glFramebufferTexture2D")(_FRAMEBUFFER, point, _TEXTURE_2D, texture.glo, level)
         width, height = (max(1, side >> level) for side in texture.size)
         framebuffer.viewport = (0, 0, width, height)
+
+    def attach_layer(
+        self, framebuffer: moderngl.Framebuffer, texture: moderngl.TextureArray, layer: int, attachment: int = 0
+    ) -> None:
+        """Make a framebuffer draw into one layer of a texture, and set its viewport to the texture's size.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            Not the window's. Its ``size`` stays what it was.
+        texture : moderngl.TextureArray
+        layer : int
+        attachment : int
+            Which colour attachment; it must have one.
+        """
+        with self.framebuffers_kept():
+            self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
+            self.function("glFramebufferTextureLayer")(
+                _FRAMEBUFFER, _COLOR_ATTACHMENT_0 + attachment, texture.glo, 0, layer
+            )
+        framebuffer.viewport = (0, 0, texture.width, texture.height)
 
     def clear_integers(self, framebuffer: moderngl.Framebuffer, values: Sequence[int], attachment: int = 0) -> None:
         """Fill an unsigned integer attachment; moderngl's ``clear`` is for floats.
