@@ -8,9 +8,12 @@ texture        format    content
 ``depth``      r32ui     window depth is ``key / 4294967295``; 0xFFFFFFFF where nothing was drawn
 ``ids``        rg32ui    streamline; unit tangent (data coordinates, octahedral about +x, two snorm16)
 ``position``   rg32f     point index within the streamline plus the fraction along the segment; per-point value
+``across``     r16f      only if asked for: where across a wide line the pixel lies, its distance from the line's axis
+                         over half the width, in -1..1; positive to the left of the tangent on the screen
+  of tubes     r32ui     their surface's unit normal, packed as the tangent is
 =============  ========  ======================================================================================
 
-``ids`` and ``position`` are undefined where ``depth`` is empty.
+``ids``, ``position`` and ``across`` are undefined where ``depth`` is empty.
 
 A float32 has room for fractions up to point 2^23 of a streamline, and for whole points up to 2^24, which is 1.7 km at
 0.1 mm. Beyond, places are rounded to every second point, from 2^25 on to every fourth, and so on.
@@ -25,6 +28,9 @@ from .errors import EngineError
 __all__ = ["EMPTY", "GBuffer"]
 
 EMPTY = 0xFFFFFFFF
+
+RELIEF = {"across": "f2", "normal": "u4"}
+"""Type of the texture ``across`` by what it holds."""
 
 
 class GBuffer:
@@ -48,6 +54,8 @@ class GBuffer:
     depth, ids, position : moderngl.Texture
     owner : moderngl.Texture
         r32ui, the engine's own: index of the fiblet that each pixel belongs to.
+    across : moderngl.Texture or None
+        See :meth:`want_relief`.
     generation : int
         Counts redraws; a reader that saw this number has seen this picture.
     """
@@ -66,6 +74,8 @@ class GBuffer:
         self.owner = self._texture(ctx, 1, "u4")
         self.ids = self._texture(ctx, 2, "u4")
         self.position = self._texture(ctx, 2, "f4")
+        self.across: moderngl.Texture | None = None
+        self._relief: str | None = None
 
     def _texture(self, ctx: moderngl.Context, components: int, dtype: str) -> moderngl.Texture:
         try:
@@ -77,13 +87,31 @@ class GBuffer:
         self._textures.append(texture)
         return texture
 
+    def want_relief(self, ctx: moderngl.Context, relief: str | None) -> None:
+        """Have the texture ``across`` for ``'across'`` of wide lines or the ``'normal'`` of tubes, or None.
+
+        Raises
+        ------
+        EngineError
+            If memory does not suffice; then everything is given back.
+        """
+        if relief == self._relief:
+            return
+        if self.across is not None:
+            self._textures.remove(self.across)
+            self.across.release()
+        self.across = None if relief is None else self._texture(ctx, 1, RELIEF[relief])
+        self._relief = relief
+
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        return self.size[0] * self.size[1] * 24
+        relief = 0 if self._relief is None else int(RELIEF[self._relief][1])
+        return self.size[0] * self.size[1] * (24 + relief)
 
     def release(self) -> None:
         """Give the textures back; twice is harmless."""
         for texture in self._textures:
             texture.release()
         self._textures.clear()
+        self.across = self._relief = None

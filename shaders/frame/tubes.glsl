@@ -1,0 +1,18 @@
+// Tubes of a radius in millimetres; pvfiblets/engine/tubes.py packs them. Without the feature nothing of this file is left.
+//
+// Symbols
+//   r            radius (mm)
+//   D(x, y)      direction of the ray through (x, y) of the window, local mm: in perspective mm per W, D_0 + x D_x + y D_y;
+//                in a parallel view D_0 everywhere
+//   D_x, D_y     in both, a pixel to the right (upwards) of a point in its plane W is W D_x (W D_y) away
+//   E            the eye, local mm: in perspective all rays come from there
+
+#if FEATURE_TUBES
+layout(std140, binding = 7) uniform Tubes {
+    vec4 tube;             // x: r; y: change of W over r; z: W of the near plane or less, 0 if unknown; w: 1 in perspective, else 0
+    vec4 tube_ray;         // xyz: D_0
+    vec4 tube_ray_x;       // xyz: D_x
+    vec4 tube_ray_y;       // xyz: D_y
+    vec4 tube_eye;         // xyz: E
+};
+#endif
