@@ -2,9 +2,9 @@
 
 A value at a point is that of the volume there: trilinear between the centres of eight voxels, or that of the nearest
 voxel where numbers are names (labels). A voxel reaches half a voxel around its centre; in the outer half of the
-outermost voxels their own values go on. Outside the volume, and where a voxel that has a part in it is NaN, the value is NaN.
-Infinite voxels stay infinite. Between two points of a streamline the value is interpolated as of every per-point array;
-of labels, and next to NaN, the nearer point's counts.
+outermost voxels their own values go on. Outside the volume, and where a voxel that has a part in it is NaN, the value
+is NaN. Infinite voxels stay infinite. Between two points of a streamline the value is interpolated as of every
+per-point array; of labels, and next to NaN, the nearer point's counts.
 
 What the GPU holds, and what that costs in precision:
 
@@ -62,6 +62,8 @@ class VolumeSource:
     nearest : bool, optional
         Whether a point takes the nearest voxel's value, as labels need it. By default integers and bool do, and floats
         are interpolated.
+    name : str, default 'volume'
+        For people.
 
     Raises
     ------
@@ -73,6 +75,7 @@ class VolumeSource:
     values: npt.NDArray[Any]
     affine: Array
     nearest: bool | None = None
+    name: str = "volume"
     voxels: Array = field(init=False, repr=False)  # (4, 4) mm to voxel indices
 
     def __post_init__(self) -> None:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.volumes import VolumeSource
 
 Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value"]
 
@@ -38,13 +41,13 @@ class Colouring:
         ``'solid'``: `color`.
         ``'streamline_rgb'``: `values`, one RGB or RGBA colour per streamline.
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
-        ``'point_value'``: the array named `source`, a number per point, through `lut`.
+        ``'point_value'``: `source`, a number per point, through `lut`.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
         (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers.
-    source : str, optional
-        ``'curvature'``, ``'arc_length'`` or the name of a stored per-point array.
+    source : str or VolumeSource, optional
+        ``'curvature'``, ``'arc_length'``, the name of a stored per-point array, or a volume.
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
@@ -66,7 +69,7 @@ class Colouring:
     mode: Mode = "orientation"
     color: tuple[float, ...] = (1.0, 1.0, 1.0)
     values: npt.NDArray[Any] | None = None
-    source: str | None = None
+    source: str | VolumeSource | None = None
     lut: npt.NDArray[np.uint8] | None = None
     clim: tuple[float, float] | None = None
     log_scale: bool = False
@@ -86,7 +89,7 @@ class Colouring:
         if self.mode == "streamline_rgb":
             self._check_rgb()
         if self.mode == "point_value" and not self.source:
-            raise ValueError("mode 'point_value' needs source: the name of a per-point array")
+            raise ValueError("mode 'point_value' needs source: the name of a per-point array, or a volume")
         if self.mode in _TABLE_MODES:
             self._check_table()
 
@@ -139,8 +142,8 @@ class Colouring:
         return frozenset(names)
 
     @property
-    def point_source(self) -> str | None:
-        """Per-point array that the engine must put into the G-buffer, if any."""
+    def point_source(self) -> str | VolumeSource | None:
+        """Per-point value that the engine must put into the G-buffer, if any."""
         return self.source if self.mode == "point_value" else None
 
     def table(self) -> npt.NDArray[np.uint8]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.engine.volumes import VolumeSource
 
 
 class FibletActor(Filtering, Selecting, Shading, pv.Actor):
@@ -35,7 +36,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     ----------
     fiblets : FibletSet
         What to draw.
-    scalars : str or array, optional
+    scalars : str, array or VolumeSource, optional
         As for ``plotter.add_fiblets``.
     settings : ColourSettings, optional
         Colour map and colours.
@@ -59,7 +60,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
         self,
         fiblets: FibletSet,
         *,
-        scalars: str | np.ndarray | None = None,
+        scalars: Any = None,
         settings: ColourSettings | None = None,
         line_width: float | None = None,
         opacity: float = 1.0,
@@ -170,12 +171,12 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     # Colours ------------------------------------------------------------------------------------
 
     @property
-    def scalars(self) -> str | np.ndarray | None:
-        """Name or array that colours the actor; ``None`` for ``color``, or else orientation."""
+    def scalars(self) -> str | np.ndarray | VolumeSource | None:
+        """What colours the actor: a name, an array or a volume; ``None`` for ``color`` or orientation."""
         return self._choice
 
     @scalars.setter
-    def scalars(self, scalars: str | np.ndarray | None) -> None:
+    def scalars(self, scalars: Any) -> None:
         fiblets, scalars = with_point_values(self._fiblets, scalars)
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:
@@ -237,6 +238,15 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     @n_colors.setter
     def n_colors(self, n_colors: int) -> None:
         self._set("n_colors", n_colors)
+
+    @property
+    def categories(self) -> bool:
+        """Whether there are as many colours as different values, instead of ``n_colors``."""
+        return self._settings.categories
+
+    @categories.setter
+    def categories(self, categories: bool) -> None:
+        self._set("categories", bool(categories))
 
     @property
     def log_scale(self) -> bool:
@@ -361,7 +371,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
         self._mapper.set_fiblets(fiblets)
         self._fiblets = fiblets
 
-    def _find(self, fiblets: FibletSet, choice: str | np.ndarray | None) -> Scalars | None:
+    def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:
             return None
         return find_scalars(fiblets, choice)
@@ -382,7 +392,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     def _show(self, scalars: Scalars | None) -> None:
         """Hand the mapper its colours."""
         if scalars is not None and scalars.mapped:
-            update_table(self._table, self._settings, scalars, self._theme)
+            update_table(self._table, self._settings, scalars, self._theme, self._fiblets)
         self._mapper.colouring = make_colouring(self._settings, scalars, self._table, self._theme)
         self._scalars = scalars
         colour = pv.Color(self._settings.color, default_color=self._theme.color)

@@ -16,6 +16,7 @@ import pyvista as pv
 from pvfiblets.mappers.colouring import Colouring
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.scalars import Scalars
 
 
@@ -39,6 +40,8 @@ class ColourSettings:
         For NaN, and for values outside ``clim``.
     flip_scalars : bool, default: False
         Reverse the colour map.
+    categories : bool, default: False
+        As many colours as there are different values, instead of ``n_colors``.
     """
 
     color: Any = None
@@ -50,6 +53,7 @@ class ColourSettings:
     below_color: Any = None
     above_color: Any = None
     flip_scalars: bool = False
+    categories: bool = False
 
 
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
@@ -80,9 +84,15 @@ def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
 
 
 def update_table(
-    table: pv.LookupTable, settings: ColourSettings, scalars: Scalars, theme: Any
+    table: pv.LookupTable,
+    settings: ColourSettings,
+    scalars: Scalars,
+    theme: Any,
+    fiblets: FibletSet | None = None,
 ) -> None:
     """Bring ``table`` in step with the settings; the object stays, so scalar bars follow.
+
+    ``fiblets`` are needed where there are categories, to count them.
 
     Raises
     ------
@@ -96,7 +106,10 @@ def update_table(
     if isinstance(cmap, pv.LookupTable):
         table.DeepCopy(cmap)
     else:
-        table.apply_cmap(cmap, int(settings.n_colors), flip=settings.flip_scalars)
+        count = int(settings.n_colors)
+        if settings.categories and fiblets is not None:
+            count = scalars.distinct(fiblets)
+        table.apply_cmap(cmap, count, flip=settings.flip_scalars)
     # The order matters: VTK refuses a logarithmic scale while the range touches zero.
     table.log_scale = False
     table.scalar_range = (low, high)
@@ -131,7 +144,7 @@ def make_colouring(
     return Colouring(
         mode=scalars.kind,
         values=scalars.values,
-        source=scalars.name if scalars.values is None else None,
+        source=_source(scalars),
         lut=np.asarray(table.values, dtype=np.uint8),
         clim=tuple(table.scalar_range),
         log_scale=bool(settings.log_scale),
@@ -139,6 +152,13 @@ def make_colouring(
         below_color=_rgba(table.below_range_color),
         above_color=_rgba(table.above_range_color),
     )
+
+
+def _source(scalars: Scalars) -> Any:
+    """Return what the engine takes a value at every point from, if it does."""
+    if scalars.values is not None:
+        return None
+    return scalars.name if scalars.volume is None else scalars.volume
 
 
 def _rgba(color: Any) -> tuple[float, ...] | None:

@@ -78,7 +78,7 @@ class FibletsComponent(Picking, Widgets):
         self,
         source: Source,
         *,
-        scalars: str | np.ndarray | None = None,
+        scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
         color: Any = None,
         cmap: Any = None,
         clim: Any = None,
@@ -88,6 +88,7 @@ class FibletsComponent(Picking, Widgets):
         below_color: Any = None,
         above_color: Any = None,
         flip_scalars: bool = False,
+        categories: bool = False,
         opacity: float = 1.0,
         line_width: float | None = None,
         lighting: bool | None = True,
@@ -113,11 +114,16 @@ class FibletsComponent(Picking, Widgets):
         ----------
         source : path, FibletSet, Streamlines, pyvista.PolyData or list of (n, 3) arrays
             What to draw; anything not compressed yet is compressed first.
-        scalars : str or array, optional
+        scalars : str, array or volume, optional
             What colours the streamlines: ``"orientation"`` (the default: the absolute value of
             the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
             ``"arc_length"``), the name of per-streamline or per-point data, or an array with one
             value per streamline or per point, or one colour (3 or 4 columns) per streamline.
+
+            Or a volume, in the coordinates of the streamlines' data: a
+            :class:`pyvista.ImageData`, ``(array, affine)``, or a NIfTI image or its path. It is
+            sampled on the GPU at every point: floats trilinear, integers (labels) by the nearest
+            voxel; ``nan_color`` shows outside of it.
         color : color-like, optional
             One colour for all. ``scalars`` go before it.
         cmap : str, list or colormap, optional
@@ -132,6 +138,8 @@ class FibletsComponent(Picking, Widgets):
             Colour of NaN, and of values outside ``clim``.
         flip_scalars : bool, default: False
             Reverse the colour map.
+        categories : bool, default: False
+            As many colours as there are different values, instead of ``n_colors``.
         opacity : float, default: 1.0
             Of all streamlines.
         line_width : float, optional
@@ -210,6 +218,7 @@ class FibletsComponent(Picking, Widgets):
             below_color=below_color,
             above_color=above_color,
             flip_scalars=flip_scalars,
+            categories=bool(categories),
         )
         actor = FibletActor(
             fiblets,

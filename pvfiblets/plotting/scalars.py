@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.engine.volumes import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ class Scalars:
         Least and largest finite value.
     positive : float
         Least value above zero, where a logarithmic scale may begin.
+    volume : VolumeSource, optional
+        To be sampled at the points, where ``kind`` is ``"point_value"``.
     """
 
     name: str
@@ -48,6 +51,7 @@ class Scalars:
     values: np.ndarray | None = None
     range: tuple[float, float] = (0.0, 1.0)
     positive: float = 1e-6
+    volume: VolumeSource | None = None
 
     @property
     def mapped(self) -> bool:
@@ -59,16 +63,37 @@ class Scalars:
         """What the scalar bar says."""
         return UNITS.get(self.name, self.name)
 
+    def distinct(self, fiblets: FibletSet) -> int:
+        """Return how many different numbers there are, NaN not counted; at least 1.
 
-def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | None) -> Scalars:
+        Raises
+        ------
+        ValueError
+            If they come of the geometry at every point, as arc length and curvature do.
+        """
+        if self.volume is not None:
+            return max(self.volume.distinct, 1)
+        if self.values is not None:
+            return max(int(np.unique(self.values[~np.isnan(self.values)]).size), 1)
+        if self.name not in fiblets.per_point:
+            raise ValueError(
+                f"{self.name!r} has no categories; give categories=False, or the number of colours "
+                "as n_colors"
+            )
+        stored = fiblets.per_point[self.name]
+        return max(int(np.count_nonzero(np.bincount(stored.codes)[: stored.levels])), 1)
+
+
+def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | None) -> Scalars:
     """Find what ``scalars`` means for ``fiblets``.
 
     Parameters
     ----------
     fiblets : FibletSet
         The data.
-    scalars : str or array or None
-        A name, or one value or colour per streamline; ``None`` means orientation.
+    scalars : str, array, VolumeSource or None
+        A name, one value or colour per streamline, or a volume to be sampled; ``None`` means
+        orientation.
 
     Returns
     -------
@@ -84,6 +109,11 @@ def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | None) -> Scalar
     """
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
+    if isinstance(scalars, VolumeSource):
+        low, high = scalars.range
+        return Scalars(
+            scalars.name, "point_value", None, (low, high), scalars.least_positive, scalars
+        )
     if not isinstance(scalars, str):
         return per_streamline(UNNAMED, scalars, fiblets.n_streamlines)
     if scalars in fiblets.per_point:

@@ -15,27 +15,30 @@ from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.engine.volumes import VolumeSource
 from pvfiblets.plotting.scalars import UNNAMED
+from pvfiblets.plotting.volumes import as_volume
 from pvfiblets.streamlines import Streamlines
 
 
 def as_fiblets(
     source: Any,
     *,
-    scalars: str | np.ndarray | None = None,
+    scalars: Any = None,
     per_point: Iterable[str] = (),
     max_error: float | None = None,
     progress: bool = False,
     **options: Any,
-) -> tuple[FibletSet, str | np.ndarray | None]:
+) -> tuple[FibletSet, str | np.ndarray | VolumeSource | None]:
     """Compress ``source`` unless it is compressed already.
 
     Parameters
     ----------
     source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
         What to draw.
-    scalars : str or array, optional
-        If this names, or is, per-point data of ``source``, that is kept.
+    scalars : str, array or volume, optional
+        If this names, or is, per-point data of ``source``, that is kept; for volumes see
+        :func:`~pvfiblets.plotting.volumes.as_volume`.
     per_point : iterable of str
         Further per-point arrays to keep, for a later change of the actor's ``scalars``.
     max_error : float, optional
@@ -57,6 +60,8 @@ def as_fiblets(
     TypeError
         If ``source`` is something else.
     """
+    volume = as_volume(scalars)
+    scalars = scalars if volume is None else volume
     if isinstance(source, (str, os.PathLike)):
         path = Path(source)
         if path.suffix.lower() == ".fiblets":
@@ -76,7 +81,7 @@ def as_fiblets(
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
             keep.append(scalars)
-    elif scalars is not None:
+    elif scalars is not None and volume is None:
         values = np.asarray(scalars)
         if len(values) == streamlines.n_points != len(streamlines):
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
@@ -94,7 +99,7 @@ def as_fiblets(
 
 def with_point_values(
     fiblets: FibletSet, scalars: Any
-) -> tuple[FibletSet, str | np.ndarray | None]:
+) -> tuple[FibletSet, str | np.ndarray | VolumeSource | None]:
     """Store ``scalars`` with the fiblets if they are an array with one number per point.
 
     Parameters
@@ -108,9 +113,12 @@ def with_point_values(
     -------
     fiblets : FibletSet
         The same, or one that shares its arrays and has one per-point array more.
-    scalars : str or array or None
-        The name of that array, or ``scalars`` itself.
+    scalars : str, array, VolumeSource or None
+        The name of that array, a volume in one form, or ``scalars`` itself.
     """
+    volume = as_volume(scalars)
+    if volume is not None:
+        return fiblets, volume
     if scalars is None or isinstance(scalars, str):
         return fiblets, scalars
     values = np.asarray(scalars)
