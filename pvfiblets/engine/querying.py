@@ -1,20 +1,21 @@
 """Which streamlines have points in a region, asked on the GPU of the records that are drawn.
 
-The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a margin
-(``shaders/compute/query.comp``). What the margin leaves open, and only that, is settled from the same records in float64
-by :func:`pvfiblets.codec.query.passing.region_flags`: the answers are its own, bit for bit.
+The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
+margin (``shaders/compute/query.comp``). What the margin leaves open, and only that, is settled from the same records in
+float64 by :func:`pvfiblets.codec.query.passing.region_flags`: the answers are its own, bit for bit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .chunks import Chunk, storage_buffer
+from .chunks import Chunk, reserve_buffer, storage_buffer
 from .errors import GPUMemoryError
 from .frame import FRAME_BYTES, Array
 from .opengl import OpenGL
@@ -34,7 +35,8 @@ ANY, ALL, FIRST, LAST = 1, 2, 4, 8
 BATCH = 1 << 20
 """Fiblets asked at a time, so that no dispatch runs for long."""
 
-_BINDING = 5
+_ANSWERS, _LISTS = 5, 7  # storage bindings
+_STAGES = 3
 _REFERENCE_AT = 160  # bytes into the block `Frame`, see shaders/frame/blocks.glsl
 
 # As shaders/compute/query.comp has them.
@@ -85,7 +87,7 @@ class RegionQuery:
 
     @property
     def available(self) -> bool:
-        """Whether the GPU can answer: it has compute shaders, storage blocks of the chunks' sizes, and the whole set."""
+        """Whether the GPU can answer: the whole set is there, compute shaders, and large enough storage blocks."""
         if self._ctx.version_code < 430 or sum(c.n_fiblets for c in self._chunks) < self._fiblets.n_fiblets:
             return False
         largest = self._gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
@@ -167,19 +169,26 @@ class RegionQuery:
 
     def _ask_chunk(self, program: moderngl.ComputeShader, chunk: Chunk, ranks: int) -> Bytes:
         groups = self._max_groups or int(self._ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
-        answers = storage_buffer(self._ctx, np.zeros(ranks, np.uint8), "answers")
-        try:
+        batch = min(BATCH, chunk.n_fiblets)
+        with ExitStack() as stack:
+            answers = storage_buffer(self._ctx, np.zeros(ranks, np.uint8), "answers")
+            stack.callback(answers.release)
+            lists = reserve_buffer(self._ctx, 4 * (2 + 2 * batch), "lists of fiblets")
+            stack.callback(lists.release)
             chunk.bind_storage()
-            answers.bind_to_storage_buffer(_BINDING)
-            for first in range(0, chunk.n_fiblets, BATCH):
-                size = min(BATCH, chunk.n_fiblets - first)
+            answers.bind_to_storage_buffer(_ANSWERS)
+            lists.bind_to_storage_buffer(_LISTS)  # in the place of per-point values
+            for first in range(0, chunk.n_fiblets, batch):
+                size = min(batch, chunk.n_fiblets - first)
                 program["batch_first"], program["batch_size"] = first, size
-                dispatch(program, -(-size // GROUP_SIZE), groups)
-                # A later batch skips what an earlier one settled.
-                self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+                lists.write(bytes(8))
+                for stage in range(_STAGES):
+                    # How many fiblets each stage left to the next.
+                    count = np.frombuffer(lists.read(8), "<u4")[stage - 1] if stage else size
+                    program["stage"] = stage
+                    dispatch(program, -(-int(count) // GROUP_SIZE), groups)
+                    self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
             return np.frombuffer(answers.read(ranks), np.uint8)
-        finally:
-            answers.release()
 
     def release(self) -> None:
         """Give back what is on the GPU; twice is harmless."""

@@ -17,12 +17,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.query.shapes import LABELS, MAX_LEAVES, MAX_OPS
+from ..codec.query.region import MAX_LEAVES, MAX_OPS
+from ..codec.query.shapes import LABELS, SURFACE
 from .errors import GPUMemoryError
 
 if TYPE_CHECKING:
     from ..codec.query.fields import Field
-    from ..codec.query.shapes import Region, Shape
+    from ..codec.query.region import Region
+    from ..codec.query.shapes import Shape
     from .opengl import OpenGL
 
 __all__ = ["BLOCK_BYTES", "CONSTANTS", "FIELDS_UNIT", "FieldTextures", "RegionBlock", "region_block", "region_features"]
@@ -92,35 +94,31 @@ def region_block(region: Region, to_data: Array, corners: Sequence[Corner] = ())
     return block.tobytes()
 
 
-def _pack_leaf(
-    block: npt.NDArray[Any], k: int, leaf: Shape, offset: Array, corners: dict[int, Corner]
-) -> None:
+def _pack_leaf(block: npt.NDArray[Any], k: int, leaf: Shape, offset: Array, corners: dict[int, Corner]) -> None:
     """Fill the rows of one leaf; ``offset`` are the data mm of local 0."""
     linear, shift = leaf.linear, offset - leaf.centre
     # What float64 may have lost: in positions of the data, in the centre, in the map's own numbers.
     lost = 16.0 * np.finfo(np.float64).eps * np.abs(linear) @ (np.abs(offset) + np.abs(leaf.centre))
     moved = linear @ shift
-    pace = np.ones(3)
-    if leaf.field is not None:
-        first, pace = _grid_of(leaf)
-        linear, moved, lost = linear / pace[:, None], (moved - first) / pace, (lost + np.spacing(np.abs(first))) / pace
-        block["leaves"][k, 1:] = corners[id(leaf.field)]
-        block["field_sizes"][k, :3] = leaf.field.values.shape[::-1]
-        block["field_steps"][k, :3] = pace
+    kind, steps = leaf.kind, np.ones(3)
+    if (field := leaf.field) is not None:
+        # Unit coordinates count in voxels, or mm, from somewhere; texels from the field's first.
+        steps = np.asarray(field.steps, np.float64)
+        lost = lost + 2.0 * np.finfo(np.float64).eps * np.abs(field.origin)
+        linear, moved = linear / field.spacing[:, None], (moved - field.origin) / field.spacing
+        lost = lost / field.spacing
+        kind = LABELS if field.whole else SURFACE  # of blocks of voxels no sign alone is sure
+        block["leaves"][k, 1:] = corners[id(field)]
+        block["field_sizes"][k, :3] = field.values.shape[::-1]
+        block["field_steps"][k, :3] = steps
     values = np.concatenate([linear, moved[:, None]], axis=1)
-    slopes = np.array([*np.linalg.norm(linear, axis=1), np.linalg.norm(linear * pace[:, None], 2)])
+    slopes = np.array([*np.linalg.norm(linear, axis=1), np.linalg.norm(linear * steps[:, None], 2)])
     good = bool(np.isfinite(values).all() and max(np.abs(values).max(), slopes.max(), lost.max()) < _LARGEST)
-    block["leaves"][k, 0] = leaf.kind if good else UNDECIDED
+    block["leaves"][k, 0] = kind if good else UNDECIDED
     if good:
         block["rows"][k] = values
         block["slopes"][k] = slopes * _UP + _LEAST
         block["slacks"][k, :3] = lost * _UP + 4.0 * _LEAST
-
-
-def _grid_of(leaf: Shape) -> tuple[Array, Array]:
-    """Where the first texel of a leaf's field lies in its own coordinates, and how far apart texels are."""
-    assert leaf.field is not None
-    return np.asarray(leaf.field.origin, np.float64), np.asarray(leaf.field.spacing, np.float64)
 
 
 def _fields_of(region: Region) -> list[Field]:
@@ -210,8 +208,8 @@ def _stacked(shapes: Sequence[tuple[int, ...]], largest: int) -> tuple[list[Corn
     size = x + across, height, depth
     if max(size) > largest:
         raise GPUMemoryError(
-            f"the region's distance fields of {' + '.join(map(str, shapes))} texels need a texture of {size}; this OpenGL "
-            f"has at most {largest} along each axis: use fewer or smaller label volumes"
+            f"the region's distance fields of {' + '.join(map(str, shapes))} texels need a texture of {size}; this "
+            f"OpenGL has at most {largest} along each axis: use fewer or smaller label volumes"
         )
     return corners, size
 
@@ -268,7 +266,7 @@ class RegionBlock:
         self.features = region_features(region)
         self._buffer.bind_to_uniform_block(REGIONS_BINDING)
 
-    def bind(self, program: moderngl.Program | moderngl.ComputeShader | None = None) -> None:
+    def bind(self, program: Any = None) -> None:
         """Bind block and fields, and tell a program, if one is given, where the fields are."""
         if self._buffer is not None:
             self._buffer.bind_to_uniform_block(REGIONS_BINDING)

@@ -1,5 +1,9 @@
-// Asks of every streamline where its points lie: one invocation per fiblet of a batch. Whole fiblets first, by their capsules;
-// those that a capsule leaves undecided are decoded, but only as far as their streamline's answer is still open.
+// Asks of every streamline where its points lie. Three passes over a batch of fiblets, one invocation each:
+//   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed
+//   SIFT         of those, list the ones whose streamline's answer is still open: one that has points inside and points
+//                outside by now has only its two ends to be asked about
+//   DECODE       the points of these, until the streamline's answer is settled
+// Lists keep neighbouring invocations busy alike.
 //
 // Points are tested as balls of the radius by which float32 may have moved them (walk_margin). A point that this leaves
 // undecided counts as unsure; where that matters to its streamline, pvfiblets/engine/querying.py has it settled in float64.
@@ -18,9 +22,14 @@ layout(local_size_x = {{ group_size }}) in;
 #include "compute/groups.glsl"
 
 layout(std430, binding = 5) buffer Answers { uint answers[]; };
+layout(std430, binding = 7) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size
+
+const uint CLASSIFY = 0u, SIFT = 1u, DECODE = 2u;
+
+uniform uint stage;
 
 uniform uint batch_first;
-uniform uint batch_size;
+uniform uint batch_size;   // fiblets from batch_first on
 uniform float sampling;  // mm; 0: points alone
 
 const uint INSIDE = 1u, OUTSIDE = 2u, UNSURE = 4u, FIRST_INSIDE = 8u, FIRST_UNSURE = 16u, LAST_INSIDE = 32u, LAST_UNSURE = 64u;
@@ -60,14 +69,8 @@ uint between(vec3 a, vec3 b, float margin) {
     return found;
 }
 
-uint answer_of(uint f, uint known) {
-    bool first = begins(f), last = ends(f);
-    Capsule c = capsule_of(f);
-    int whole = region_of_capsule(c.a, c.b, c.r);
-    if (whole > 0) return INSIDE | (first ? FIRST_INSIDE : 0u) | (last ? LAST_INSIDE : 0u);
-    if (whole < 0) return OUTSIDE;
-    bool settled = (known & SETTLED) == SETTLED;
-    if (settled && !first && !last) return 0u;
+uint decoded_answer(uint f, uint known) {
+    bool first = begins(f), last = ends(f), settled = (known & SETTLED) == SETTLED;
     walk_begin(f);
     uint found = 0u;
     float margin = 0.0;
@@ -75,12 +78,12 @@ uint answer_of(uint f, uint known) {
         vec3 before = walk_point;
         float margin_before = margin;
         if (i > 0u) walk_next(i);
-        margin = walk_margin(i);
         bool at_first = first && i == 0u, at_last = last && i == walk.last;
         if (settled && !at_first && !at_last) {
             if (last) continue;
             break;
         }
+        margin = walk_margin(i);
         int side = region_of_ball(walk_point, margin);
         found |= place_of(side);
         if (at_first) found |= side > 0 ? FIRST_INSIDE : side == 0 ? FIRST_UNSURE : 0u;
@@ -97,8 +100,21 @@ uint answer_of(uint f, uint known) {
 
 void main() {
     uint slot = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    if (slot >= batch_size) return;
-    uint f = batch_first + slot, rank = rank_of(f) - chunk_bases.x, shift = 8u * (rank & 3u);
-    uint known = (answers[rank >> 2] >> shift) & 255u, found = answer_of(f, known);
+    if (slot >= (stage == CLASSIFY ? batch_size : counts[stage - 1u])) return;
+    uint f = batch_first + slot;
+    if (stage == SIFT) f = lists[slot];
+    if (stage == DECODE) f = lists[batch_size + slot];
+    uint rank = rank_of(f) - chunk_bases.x, shift = 8u * (rank & 3u);
+    uint known = (answers[rank >> 2] >> shift) & 255u, found = 0u;
+    if (stage == CLASSIFY) {
+        Capsule c = capsule_of(f);
+        int side = region_of_capsule(c.a, c.b, c.r);
+        if (side == 0) lists[atomicAdd(counts[0], 1u)] = f;
+        else found = side < 0 ? OUTSIDE : INSIDE | (begins(f) ? FIRST_INSIDE : 0u) | (ends(f) ? LAST_INSIDE : 0u);
+    } else if (stage == SIFT) {
+        if ((known & SETTLED) != SETTLED || begins(f) || ends(f)) lists[batch_size + atomicAdd(counts[1], 1u)] = f;
+    } else {
+        found = decoded_answer(f, known);
+    }
     if ((found & ~known) != 0u) atomicOr(answers[rank >> 2], found << shift);
 }
