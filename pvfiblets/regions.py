@@ -8,11 +8,28 @@ Shapes are combined by ``&`` (both), ``|`` (either), ``~`` (not) and ``-`` (with
     left = regions.Plane((-1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     region = lesion & left
 
+Streamlines are chosen by where their points lie: ``passes(region)``, ``ends_in(region)`` and ``stays_in(region)``,
+joined by ``&``, ``|`` and ``~``, for :meth:`.FibletSet.select`. ``Distance(region)`` measures how near they come.
+
 Positions are mm. See :mod:`pvfiblets.codec.query.shapes` for how a region is kept.
 """
 
 from __future__ import annotations
 
+from .codec.query.measures import Distance
+from .codec.query.predicates import Predicate, ends_in, passes, stays_in
 from .codec.query.shapes import Box, Plane, Region, Shape, Slab, Sphere
 
-__all__ = ["Box", "Plane", "Region", "Shape", "Slab", "Sphere"]
+__all__ = [
+    "Box",
+    "Distance",
+    "Plane",
+    "Predicate",
+    "Region",
+    "Shape",
+    "Slab",
+    "Sphere",
+    "ends_in",
+    "passes",
+    "stays_in",
+]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
 from .quantised import QuantisedPoints
+
+if TYPE_CHECKING:
+    from .query.predicates import FlagsOf, Predicate
 
 __all__ = ["FibletSet"]
 
@@ -254,6 +257,25 @@ class FibletSet:
         from .extract import extract
 
         return extract(self, ids)
+
+    def select(self, predicate: Predicate, *, flags: FlagsOf | None = None) -> npt.NDArray[np.bool_]:
+        """Choose streamlines by where their points lie; see :func:`pvfiblets.codec.query.predicates.select`.
+
+        Parameters
+        ----------
+        predicate : Predicate
+            Such as ``regions.passes(box) & ~regions.ends_in(sphere)`` (:mod:`pvfiblets.regions`).
+        flags : callable, optional
+            What answers for a region instead of the compiled kernels: the GPU.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` bool.
+        """
+        from .query.predicates import select
+
+        return select(self, predicate, flags=flags)
 
     # ----------------------------------------------------------------------------------------------------- decoding
 
