@@ -36,6 +36,8 @@ class Draw:
     view, style : Any
         As given to the engine.
     renderer : vtkRenderer
+    fiblets : FibletSet
+        What is drawn.
     """
 
     ctx: Any
@@ -45,6 +47,7 @@ class Draw:
     view: Any
     style: Any
     renderer: Any
+    fiblets: Any
 
 
 class Kept(Protocol):

@@ -284,7 +284,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             if engine.needs_outside(view, style) and others_before(renderer, actor):
                 outside = slot.outside_depth(context.ctx).copy(viewport)
             buffer = engine.render(view, style, outside=outside)
-            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer)
+            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._fiblets)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
             textures |= prepare_extras(slot, self._extras, draw)
             units = context.texture_units(len(textures))

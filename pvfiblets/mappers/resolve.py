@@ -5,7 +5,9 @@ The pieces live in ``shaders/resolve``, one file per feature. A file is prose fo
     //@ stage where TAG
 
 with ``stage`` ``vertex`` or ``fragment``, ``where`` ``before``, ``after`` or ``instead`` and ``TAG`` one
-of VTK's own tags (``//VTK::Color::Impl``) or a tag of another piece (``//pvfiblets::Scale::Impl``).
+of VTK's own tags (``//VTK::Color::Impl``) or a tag of another piece (``//pvfiblets::Scale::Impl``). With
+``replace`` for ``where``, the rest of the line is GLSL that VTK itself has written for its tags, and the
+section takes its place wherever it stands.
 `assemble` turns a set of features into replacements for a ``vtkShaderProperty``; a feature that is not
 asked for leaves no text behind.
 """
@@ -27,14 +29,21 @@ FEATURES = (
     "colour_streamline",
     "colour_point_value",
     "scale_logarithm",
+    "illuminated",
+    "ambient_occlusion",
+    "ink",
+    "depth_cue",
+    "halo",
+    "silhouette",
 )
 """Every feature, in the order in which pieces for the same tag follow each other."""
 
 _OWN_TAG = "//pvfiblets::"
-_SECTION = re.compile(r"//@ (?P<stage>\w+) (?P<where>\w+) (?P<tag>//\S+)$")
+_SECTION = re.compile(r"//@ (?P<stage>\w+) (?P<where>\w+) (?P<tag>//\S+|(?<= replace )\S.*)$")
 _UNUSED_TAG = re.compile(r"^//pvfiblets::\S+\n?", re.MULTILINE)
 _STAGES = ("vertex", "fragment")
 _PLACES = ("before", "instead", "after")
+_REPLACE = "replace"
 
 # VTK writes gl_FragCoord.z where it wants a fragment's depth (coincident topology, peeling); the
 # covering triangle's depth is not the fiblet's.
@@ -86,10 +95,10 @@ def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
     for number, line in enumerate(read_shader(path).splitlines(), start=1):
         if line.startswith("//@"):
             match = _SECTION.match(line.rstrip())
-            if not match or match["stage"] not in _STAGES or match["where"] not in _PLACES:
+            if not match or match["stage"] not in _STAGES or match["where"] not in (*_PLACES, _REPLACE):
                 raise ValueError(
                     f"{path}:{number}: found {line!r}, expected '//@ stage where //TAG' with stage "
-                    f"one of {_STAGES} and where one of {_PLACES}"
+                    f"one of {_STAGES} and where one of {_PLACES}, or '//@ stage {_REPLACE} GLSL'"
                 )
             sections.append((match["stage"], match["where"], match["tag"], []))
         elif sections:
@@ -120,15 +129,18 @@ def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
     if unknown:
         raise ValueError(f"unknown resolve features {sorted(unknown)}; known are {FEATURES}")
     edits: dict[tuple[str, str], _Edits] = {}
+    result = []
     for feature in FEATURES:
         if feature not in features:
             continue
         for stage, where, tag, text in _sections(feature):
+            if where == _REPLACE:
+                result.append(Replacement(stage, tag, False, text))
+                continue
             edit = edits.setdefault((stage, tag), _Edits())
             edit.parts[where].append(text)
             edit.replaced = edit.replaced or where == "instead"
     own = {key: edit for key, edit in edits.items() if key[1].startswith(_OWN_TAG)}
-    result = []
     for (stage, tag), edit in edits.items():
         if (stage, tag) in own:
             continue

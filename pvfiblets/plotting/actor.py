@@ -77,6 +77,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
         self._choice = scalars
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
+        self._init_shading()
         self._bar_changed: Callable[[FibletActor], None] | None = None
         mapper = PlottedMapper(fiblets, options=options, progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
@@ -131,6 +132,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
         twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
         twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
         twin.visibility, twin.pickable = self.visibility, self.pickable
+        twin._shade_like(self)
         return twin
 
     def explain(self) -> dict[str, Any]:

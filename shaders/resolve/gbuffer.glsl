@@ -52,6 +52,7 @@ vec3 fibletDirection(uint word)
 //@ fragment instead //VTK::PositionVC::Impl
   ivec2 fibletPixel = ivec2(gl_FragCoord.xy) - fibletOrigin;
   uint fibletKey = fibletSize.x > 0 ? texelFetch(fibletDepthMap, fibletPixel, 0).r : fibletEmpty;
+//pvfiblets::Key::Impl
   if (fibletKey == fibletEmpty)
   {
     discard;

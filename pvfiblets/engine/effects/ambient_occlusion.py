@@ -1,0 +1,85 @@
+"""Ambient occlusion of lines in screen space: ``shaders/effects/occlusion.frag`` and its mean over 4 x 4 pixels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .lens import Lens
+from .screen import ScreenEffect
+
+__all__ = ["MAX_SAMPLES", "AmbientOcclusionPass"]
+
+MAX_SAMPLES = 256
+"""Pixels looked at around each; more change nothing that 8 bits can show."""
+
+GAIN, BIAS = 6.0, 0.1
+"""A wall as high as the ball, along one side of a line, takes about half of the light with a gain of 6. What rises
+over a line by less than 6 degrees does not count: neighbours in a flat bundle are never quite at one depth."""
+
+
+class AmbientOcclusionPass(ScreenEffect):
+    """How open each pixel of a G-buffer is.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        super().__init__(ctx, {"gain": GAIN, "bias": BIAS})
+
+    def draw(
+        self,
+        buffer: Any,
+        lens: Lens,
+        directions_to_view: npt.NDArray[np.float64],
+        *,
+        radius: float,
+        samples: int,
+        strength: float,
+    ) -> moderngl.Texture:
+        """Bring the texture up to date.
+
+        Parameters
+        ----------
+        buffer : GBuffer
+            Its ``depth`` and ``ids`` are read.
+        lens : Lens
+            Of the same picture.
+        directions_to_view : numpy.ndarray
+            ``(3, 3)``: tangents in data coordinates to view coordinates, of any scale.
+        radius : float
+            mm: what is farther does not darken.
+        samples : int
+            Pixels to look at around each, 1 to `MAX_SAMPLES`.
+        strength : float
+            0 leaves everything open, 1 is the whole effect.
+
+        Returns
+        -------
+        moderngl.Texture
+            8 bits normalised, 1 where open; valid until the next draw.
+        """
+        turn = tuple(np.asarray(directions_to_view, np.float64).T.ravel().tolist())
+        uniforms = lens.uniforms() | {
+            "data_to_view": turn,
+            "parallel": lens.scale[2] == 0.0,
+            "radius": radius,
+            "samples": samples,
+            "strength": strength,
+        }
+        texture = self._target("occlusion", lens.size, "f1")
+        self._target("rough occlusion", lens.size, "f1")
+        rough = self._targets["rough occlusion"][0]
+
+        def passes() -> None:
+            self._pass("occlusion", "rough occlusion", {"keys": buffer.depth, "ids": buffer.ids}, uniforms)
+            self._pass("smooth", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
+
+        made_of = buffer, buffer.generation, lens.key, turn, radius, samples, strength
+        self._once(made_of, passes)
+        return texture

@@ -1,0 +1,74 @@
+"""Depth-dependent halos of Everts et al. 2009 in screen space: ``shaders/effects/halo.frag``."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import moderngl
+
+from .lens import Lens
+from .screen import ScreenEffect
+
+__all__ = ["WIDEST", "HaloPass"]
+
+WIDEST = 32.0
+"""Pixels: a halo of more, of a line near the viewer, is drawn with so many."""
+
+TILE = 8
+"""Pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into."""
+
+
+class HaloPass(ScreenEffect):
+    """Where the halos of a G-buffer's lines show, and how deep they lie.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        super().__init__(ctx, {"tile": TILE})
+
+    def draw(self, buffer: Any, lens: Lens, *, width: float, depth: float, nearest: float = 0.0) -> moderngl.Texture:
+        """Bring the texture up to date.
+
+        Parameters
+        ----------
+        buffer : GBuffer
+            Its ``depth`` is read.
+        lens : Lens
+            Of the same picture.
+        width : float
+            mm from a line's edge to its halo's; at most `WIDEST` pixels.
+        depth : float
+            mm by which the halo's edge lies behind the line.
+        nearest : float
+            mm: no line is nearer to the viewer's plane. It saves time and changes nothing.
+
+        Returns
+        -------
+        moderngl.Texture
+            r32ui keys as in the G-buffer: where a halo is nearer than the pixel's line, its key, else EMPTY. Valid
+            until the next draw.
+        """
+        reach = self.reach(lens, width, nearest)
+        uniforms = lens.uniforms() | {"width": width, "depth": depth, "widest": WIDEST, "reach": reach}
+        across, up = (-(-side // TILE) for side in lens.size)
+        texture = self._target("halos", lens.size, "u4")
+        distances = self._target("distances", lens.size, "f4")
+        tiles = self._target("tiles", (across, up), "f4")
+        keys = {"keys": buffer.depth}
+
+        def passes() -> None:
+            self._pass("distance", "distances", keys, uniforms)
+            self._pass("nearest", "tiles", {"distances": distances}, uniforms)
+            self._pass("halo", "halos", keys | {"distances": distances, "tiles": tiles}, uniforms)
+
+        self._once((buffer, buffer.generation, lens.key, width, depth, reach), passes)
+        return texture
+
+    @staticmethod
+    def reach(lens: Lens, width: float, nearest: float) -> int:
+        """Return how many pixels wide the widest halo can be, of lines no nearer than ``nearest`` (mm)."""
+        return math.ceil(min(width * lens.pixels_per_mm(nearest), WIDEST))

@@ -1,0 +1,105 @@
+"""What all effects are made of: textures of the picture's size, and passes that fill them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import moderngl
+
+from ..errors import EngineError
+from ..opengl import OpenGL
+from ..shaders import Programs
+
+__all__ = ["FIRST_UNIT", "ScreenEffect"]
+
+FIRST_UNIT = 9
+"""Texture units from here on are free to effects: the engine binds its own to them again when it draws."""
+
+
+class ScreenEffect:
+    """Base of the effects: keeps programs and textures, and what the last picture was made of.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Current, as for every other method.
+    constants : mapping
+        Values of ``{{ name }}`` in the shaders.
+    """
+
+    def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
+        self._ctx = ctx
+        self._gl = OpenGL(ctx)
+        self._programs = Programs(ctx, constants)
+        self._queries: dict[str, moderngl.Query] = {}
+        self._targets: dict[str, tuple[moderngl.Texture, moderngl.Framebuffer]] = {}
+        self._made_of: tuple[object, ...] | None = None
+
+    def _once(self, made_of: tuple[object, ...], draw: Callable[[], None]) -> None:
+        """Draw, unless the last picture was made of the same."""
+        if made_of == self._made_of:
+            return
+        self._made_of = None  # until it has come out well
+        with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
+            self._ctx.scissor = None
+            self._ctx.enable_only(moderngl.NOTHING)
+            draw()
+        self._made_of = made_of
+
+    def _target(self, name: str, size: tuple[int, int], dtype: str) -> moderngl.Texture:
+        """Return a texture of one component, made anew for another size."""
+        old = self._targets.get(name)
+        if old is not None and old[0].size == size:
+            return old[0]
+        if old is not None:
+            self._drop(name)
+        try:
+            texture = self._ctx.texture(size, 1, dtype=dtype)
+        except moderngl.Error as error:
+            raise EngineError(f"no memory for an effect on a picture of {size[0]} x {size[1]} pixels") from error
+        texture.filter = moderngl.NEAREST, moderngl.NEAREST  # integer textures are incomplete otherwise
+        self._targets[name] = texture, self._ctx.framebuffer([texture])
+        return texture
+
+    def _pass(self, name: str, target: str, textures: Mapping[str, Any], uniforms: Mapping[str, Any]) -> None:
+        """Run the fragment stage of ``shaders/effects`` on every pixel of a target."""
+        program, array = self._programs.screen(f"effects/{name}.frag")
+        for unit, (sampler, texture) in enumerate(textures.items(), start=FIRST_UNIT):
+            texture.use(unit)
+            program[sampler] = unit
+        for uniform, value in uniforms.items():
+            if uniform in program:
+                program[uniform] = value
+        if name not in self._queries:
+            self._queries[name] = self._ctx.query(time=True)
+        with self._queries[name]:
+            self._targets[target][1].use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+
+    def explain(self) -> dict[str, list[dict[str, object]]]:
+        """Return ``passes``, name and ms of when it last drew, and ``buffers``, name and bytes of its textures."""
+        sizes = {"f1": 1, "u1": 1, "f4": 4, "u4": 4}
+        buffers: list[dict[str, object]] = [
+            {"name": f"{name} (effect)", "bytes": texture.width * texture.height * sizes[texture.dtype]}
+            for name, texture in self._textures().items()
+        ]
+        passes: list[dict[str, object]] = [
+            {"name": f"{name} (effect)", "ms": query.elapsed / 1e6} for name, query in self._queries.items()
+        ]
+        return {"passes": passes, "buffers": buffers}
+
+    def _textures(self) -> dict[str, moderngl.Texture]:
+        return {name: texture for name, (texture, _) in self._targets.items()}
+
+    def _drop(self, name: str) -> None:
+        for thing in self._targets.pop(name)[::-1]:
+            thing.release()
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for name in list(self._targets):
+            self._drop(name)
+        self._programs.release()
+        self._queries.clear()
+        self._made_of = None

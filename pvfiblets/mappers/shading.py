@@ -1,0 +1,346 @@
+"""Shading as extras of a mapper: light of illuminated lines, ambient occlusion, depth cueing, halos, ink, outlines.
+
+Each is a value that ``FibletMapper.set_extra`` takes; none leaves a trace in a mapper that has not been given it.
+Lengths are mm of the world. All work with perspective and parallel cameras, and in pictures that are supersampled.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
+from pvfiblets.engine.effects.ambient_occlusion import MAX_SAMPLES
+from pvfiblets.engine.effects.halos import WIDEST
+from pvfiblets.mappers.extras import Draw
+
+__all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
+
+Colour = tuple[float, float, float]
+
+MAX_OUTLINE = 16.0
+"""Pixels of the window; an outline's cost grows with the square of its width."""
+
+
+class _Piece:
+    """What extras have in common: a piece of the resolve, and no wishes to the engine."""
+
+    features: ClassVar[frozenset[str]]
+    style: ClassVar[Mapping[str, Any]] = {}
+
+    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all extras
+        """Keep nothing on the GPU."""
+        return None
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+        """Have no textures."""
+        return {}
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
+        """Have no uniforms."""
+
+
+class Illuminated(_Piece):
+    """Every light finds the normal of a line that reflects most of it (Zöckler 1996, Mallo 2005), see `resolve`."""
+
+    features = frozenset({"illuminated"})
+
+
+@dataclass(frozen=True)
+class Ink(_Piece):
+    """One colour for all lines whatever they are coloured by, without light.
+
+    Parameters
+    ----------
+    color : tuple of 3 floats, default (0, 0, 0)
+        RGB between 0 and 1.
+    """
+
+    color: Colour = (0.0, 0.0, 0.0)
+    features = frozenset({"ink"})
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "color", _colour(self.color, "color of ink"))
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set the colour."""
+        program.SetUniform3f("fibletInk", self.color)
+
+
+@dataclass(frozen=True)
+class AmbientOcclusion(_Piece):
+    """Lines are darker where others stand over them.
+
+    Parameters
+    ----------
+    radius : float, optional
+        mm: what is farther away does not count. By default a 20th of the diagonal of the data's bounds.
+    samples : int, default 16
+        Pixels looked at around each, 1 to 256.
+    strength : float, default 1.0
+        0 to 1.
+
+    Raises
+    ------
+    ValueError
+        A number is not one of these.
+    """
+
+    radius: float | None = None
+    samples: int = 16
+    strength: float = 1.0
+    features = frozenset({"ambient_occlusion"})
+
+    def __post_init__(self) -> None:
+        if self.radius is not None:
+            object.__setattr__(self, "radius", _positive(self.radius, "radius of ambient occlusion", "mm"))
+        if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:
+            raise ValueError(
+                f"samples of ambient occlusion is {self.samples!r}; give a whole number from 1 to {MAX_SAMPLES}"
+            )
+        object.__setattr__(self, "samples", int(self.samples))
+        object.__setattr__(self, "strength", _share(self.strength, "strength of ambient occlusion"))
+
+    def make(self, ctx: Any) -> AmbientOcclusionPass:
+        """Make the passes."""
+        return AmbientOcclusionPass(ctx)
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
+        """Run them."""
+        radius = extent(draw) / 20.0 if self.radius is None else self.radius
+        texture = kept.draw(
+            draw.buffer,
+            lens_of(draw),
+            draw.frame.directions_to_view,
+            radius=radius,
+            samples=self.samples,
+            strength=self.strength,
+        )
+        return {"fibletOcclusionMap": texture}
+
+
+@dataclass(frozen=True)
+class DepthCue(_Piece):
+    """Lines fade towards one colour with their distance from the viewer's plane.
+
+    Parameters
+    ----------
+    strength : float, default 0.7
+        Share of that colour at the far end, 0 to 1.
+    color : tuple of 3 floats, optional
+        RGB between 0 and 1; by default the renderer's background.
+    range : tuple of 2 floats, optional
+        Distances in mm at which fading begins and ends. By default those of the nearest and the farthest corner of the
+        data's bounds, as the camera sees them.
+
+    Raises
+    ------
+    ValueError
+        A number is not one of these.
+    """
+
+    strength: float = 0.7
+    color: Colour | None = None
+    range: tuple[float, float] | None = None
+    features = frozenset({"depth_cue"})
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "strength", _share(self.strength, "strength of depth cueing"))
+        if self.color is not None:
+            object.__setattr__(self, "color", _colour(self.color, "color of depth cueing"))
+        if self.range is not None:
+            ends = tuple(float(end) for end in self.range)
+            if len(ends) != 2 or not all(map(math.isfinite, ends)) or ends[0] >= ends[1]:
+                raise ValueError(f"range of depth cueing is {self.range!r}; give two rising distances in mm, or None")
+            object.__setattr__(self, "range", ends)
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set colours and distances."""
+        near, far = distances(draw) if self.range is None else self.range
+        lower, upper = background(draw.renderer) if self.color is None else (self.color, self.color)
+        program.SetUniform3f("fibletCueLower", lower)
+        program.SetUniform3f("fibletCueUpper", upper)
+        program.SetUniform3f("fibletCue", (near, 1.0 / max(far - near, 1e-30), self.strength))
+
+
+@dataclass(frozen=True)
+class Halos(_Piece):
+    """Depth-dependent halos: a line cuts a gap into the lines behind it, the wider the farther they are behind.
+
+    Everts et al. 2009. A halo is there where no line is, too: it hides what is behind it, and has a depth in the scene.
+    Lines that a colour's alpha hides have their halos all the same; a mask of streamlines takes both away.
+
+    Parameters
+    ----------
+    width : float, optional
+        mm from a line's edge to its halo's, at most 32 pixels on the screen. By default a 250th of the diagonal of the
+        data's bounds.
+    depth : float, optional
+        mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each
+        other alone. By default a 20th of the diagonal.
+    color : tuple of 3 floats, optional
+        RGB between 0 and 1; by default the renderer's background.
+
+    Raises
+    ------
+    ValueError
+        A number is not one of these.
+    """
+
+    width: float | None = None
+    depth: float | None = None
+    color: Colour | None = (1.0, 1.0, 1.0)
+    features = frozenset({"halo"})
+
+    def __post_init__(self) -> None:
+        if self.width is not None:
+            object.__setattr__(self, "width", _positive(self.width, "width of halos", "mm"))
+        if self.depth is not None:
+            object.__setattr__(self, "depth", _positive(self.depth, "depth of halos", "mm"))
+        if self.color is not None:
+            object.__setattr__(self, "color", _colour(self.color, "color of halos"))
+
+    def make(self, ctx: Any) -> HaloPass:
+        """Make the passes."""
+        return HaloPass(ctx)
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
+        """Run them."""
+        width, depth = self.sizes(draw)
+        nearest = distances(draw)[0]
+        return {"fibletHaloMap": kept.draw(draw.buffer, lens_of(draw), width=width, depth=depth, nearest=nearest)}
+
+    def sizes(self, draw: Draw) -> tuple[float, float]:
+        """Return width and depth in mm."""
+        width = extent(draw) / 250.0 if self.width is None else self.width
+        return width, extent(draw) / 20.0 if self.depth is None else self.depth
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set the colour, and widen the rectangle in which anything can be."""
+        lower, upper = background(draw.renderer) if self.color is None else (self.color, self.color)
+        program.SetUniform3f("fibletHaloLower", lower)
+        program.SetUniform3f("fibletHaloUpper", upper)
+        widen(program, draw)
+
+
+@dataclass(frozen=True, eq=False)
+class Silhouette(_Piece):
+    """An outline around the pixels that show chosen streamlines.
+
+    Parameters
+    ----------
+    selected : array_like
+        ``(n_streamlines,)`` bool.
+    color : tuple of 3 floats, default (1, 1, 1)
+        RGB between 0 and 1.
+    width : float, default 2.0
+        Pixels of the window, 1 to 16.
+
+    Raises
+    ------
+    ValueError
+        A number is not one of these, or, when drawing, `selected` is for another number of streamlines.
+    """
+
+    selected: npt.NDArray[np.bool_]
+    color: Colour = (1.0, 1.0, 1.0)
+    width: float = 2.0
+    features = frozenset({"silhouette"})
+
+    def __post_init__(self) -> None:
+        selected = np.array(self.selected)
+        if selected.dtype != np.bool_ or selected.ndim != 1:
+            raise ValueError(
+                f"selected of a silhouette is {selected.dtype} of shape {selected.shape}; "
+                "expected bool (n_streamlines,)"
+            )
+        selected.flags.writeable = False
+        object.__setattr__(self, "selected", selected)
+        object.__setattr__(self, "color", _colour(self.color, "color of a silhouette"))
+        if not 1.0 <= float(self.width) <= MAX_OUTLINE:
+            raise ValueError(f"width of a silhouette is {self.width!r}; give pixels from 1 to {MAX_OUTLINE:g}")
+        object.__setattr__(self, "width", float(self.width))
+
+    def make(self, ctx: Any) -> OutlinePass:
+        """Make the passes."""
+        return OutlinePass(ctx)
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
+        """Run them."""
+        if len(self.selected) != draw.fiblets.n_streamlines:
+            raise ValueError(
+                f"a silhouette has {len(self.selected)} values for {draw.fiblets.n_streamlines} streamlines; "
+                "give one per streamline, empty ones included"
+            )
+        return {"fibletOutlineMap": kept.draw(draw.buffer, self.selected, width=self.width * _enlarged(draw))}
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set the colour, and widen the rectangle in which anything can be."""
+        program.SetUniform3f("fibletOutlineColour", self.color)
+        widen(program, draw)
+
+
+def lens_of(draw: Draw) -> Lens:
+    """Return what effects must know of a draw's camera."""
+    return Lens(draw.view.size, draw.frame.projection)
+
+
+def extent(draw: Draw) -> float:
+    """Return the diagonal of the data's bounds in mm of the world; 1 where there is none."""
+    bounds = np.asarray(draw.fiblets.bounds, np.float64)
+    diagonal = float(np.linalg.norm(draw.frame.model[:3, :3] @ (bounds[1::2] - bounds[::2])))
+    return diagonal if math.isfinite(diagonal) and diagonal > 0.0 else 1.0
+
+
+def distances(draw: Draw) -> tuple[float, float]:
+    """Return the distances in mm of the nearest and the farthest corner of the bounds; not behind the viewer."""
+    bounds = np.asarray(draw.fiblets.bounds, np.float64)
+    slack = np.array([-draw.fiblets.promise, draw.fiblets.promise])
+    ends = [bounds[axis : axis + 2] + slack for axis in (0, 2, 4)]
+    corners = np.array([[x, y, z, 1.0] for x in ends[0] for y in ends[1] for z in ends[2]])
+    away = -(corners @ draw.frame.model_view[2])
+    return max(0.0, float(away.min())), max(0.0, float(away.max()))
+
+
+def background(renderer: Any) -> tuple[Colour, Colour]:
+    """Return the colours of a renderer's background at its lower and its upper edge."""
+    lower = tuple(renderer.GetBackground())
+    return lower, tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else lower
+
+
+def widen(program: Any, draw: Draw) -> None:
+    """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
+    margin = draw.style.line_width / 2.0 + 2.0 + max(WIDEST, MAX_OUTLINE * _enlarged(draw))
+    rectangle = draw.frame.rectangle(draw.fiblets.bounds, draw.fiblets.promise, margin)
+    program.SetUniform4f("fibletRectangle", rectangle)
+
+
+def _enlarged(draw: Draw) -> float:
+    """Return pixels of the framebuffer per pixel of the window: supersampling has more."""
+    return max(1.0, draw.view.size[0] / max(1, draw.renderer.GetSize()[0]))
+
+
+def _colour(value: Any, name: str) -> Colour:
+    channels = tuple(float(channel) for channel in value)
+    if len(channels) != 3 or not all(0.0 <= channel <= 1.0 for channel in channels):
+        raise ValueError(f"{name} is {value!r}; expected 3 numbers between 0 and 1")
+    return channels
+
+
+def _positive(value: Any, name: str, unit: str) -> float:
+    number = float(value)
+    if not (math.isfinite(number) and number > 0.0):
+        raise ValueError(f"{name} is {value!r}; give {unit}, a finite number above 0")
+    return number
+
+
+def _share(value: Any, name: str) -> float:
+    number = float(value)
+    if not 0.0 <= number <= 1.0:
+        raise ValueError(f"{name} is {value!r}; give a number from 0 to 1")
+    return number
