@@ -2,8 +2,8 @@
 
 A streamline takes a bit, by rank; a point takes a bit, in the order in which points are coded. Both are looked at by
 the culling stage of every pipeline (``shaders/culling/frustum.glsl``), so that what is left out costs no decoding. A
-segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only some
-segments are kept is drawn by the programs that can cut.
+segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only
+some segments are kept is drawn by the programs that can cut.
 """
 
 from __future__ import annotations
@@ -174,9 +174,10 @@ class FilterTextures:
         limit = int(self._ctx.info["GL_MAX_TEXTURE_SIZE"])
         if size[1] > limit:
             raise EngineError(f"{32 * len(words)} bits are more than this OpenGL's largest texture holds")
-        if held is None or held.size != size:
-            if held is not None:
-                held.release()
+        if held is not None and held.size != size:
+            held.release()
+            held = None
+        if held is None:
             try:
                 held = self._ctx.texture(size, 1, dtype="u4")
             except moderngl.Error as error:

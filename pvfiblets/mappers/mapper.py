@@ -22,8 +22,9 @@ from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
 from pvfiblets.mappers.extras import Draw, Extra, prepare_extras, set_extra_uniforms, styled
-from pvfiblets.mappers.picking import Drawn, pick
+from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.questions import Questions
 from pvfiblets.mappers.scene import frame_of, others_before, world_planes
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
@@ -31,7 +32,7 @@ from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_
 VTK_SURFACE = 2
 
 
-class FibletMapper(vtkOpenGLPolyDataMapper):
+class FibletMapper(Questions, vtkOpenGLPolyDataMapper):
     """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
 
     Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
@@ -317,74 +318,7 @@ class FibletMapper(vtkOpenGLPolyDataMapper):
             slot.renderer.filtering = slot.versions["filtering"] = self._filtering
         return slot.renderer
 
-    # Questions
-
-    def pick_at(
-        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
-    ) -> tuple[int, float] | None:
-        """Return the streamline nearest to a pixel of what was drawn last.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 2
-            How many pixels away a line may be.
-
-        Returns
-        -------
-        tuple of int and float, or None
-            Streamline id and position along it: the index of the point before, plus the fraction of
-            the segment. None where there is no fiblet. Other actors in front are not looked at.
-        """
-        key = self._last_drawn if renderer is None else renderer.GetAddressAsString("")
-        for context in contexts_with(self):
-            slot = context.slots[self.GetAddressAsString("")]
-            drawn = slot.drawn.get(key or "")
-            if drawn is not None and slot.renderer is not None and context.alive:
-                context.window.MakeCurrent()
-                with context.foreign():
-                    return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance)
-        return None
-
-    @property
-    def pipeline_in_use(self) -> str | None:
-        """Name of the pipeline that drew the last picture; None before the first."""
-        return next((getattr(renderer, "pipeline", None) for renderer in self._renderers()), None)
-
-    @property
-    def share(self) -> float | None:
-        """Least share of the streamlines that a window draws: 1.0 but for ``fit='sample'``; None before the first."""
-        return min((getattr(renderer, "share", 1.0) for renderer in self._renderers()), default=None)
-
-    def _renderers(self) -> list[Any]:
-        """Return the engine's renderers of all windows."""
-        slots = [context.slots[self.GetAddressAsString("")] for context in contexts_with(self)]
-        return [slot.renderer for slot in slots if slot.renderer is not None]
-
-    def explain(self) -> dict[str, Any]:
-        """Return what is active: the engine's passes, features and buffers, and the resolve's.
-
-        Returns
-        -------
-        dict
-            Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
-            shader; ``textures``: name and bytes of the mapper's own textures.
-        """
-        windows, textures = [], []
-        for context in contexts_with(self):
-            slot = context.slots[self.GetAddressAsString("")]
-            if slot.renderer is not None and context.alive:
-                context.window.MakeCurrent()
-                with context.foreign():
-                    windows.append(slot.renderer.explain())
-            textures += [
-                {"name": name, "bytes": texture.width * texture.height * texture.components}
-                for name, texture in slot.textures.items()
-            ]
-        return {"features": sorted(self.features), "textures": textures, "windows": windows}
+    # Memory
 
     def release(self, window: Any = None) -> None:
         """Delete the GL objects of one window, or of all; twice is harmless.

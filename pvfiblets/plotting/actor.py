@@ -10,6 +10,7 @@ import pyvista as pv
 
 from pvfiblets.mappers import Colouring, EngineOptions
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.engines import Engines
 from pvfiblets.plotting.filtering import Filtering
 from pvfiblets.plotting.mapper import PlottedMapper
 from pvfiblets.plotting.report import added_up
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes import VolumeSource
 
 
-class FibletActor(Filtering, Selecting, Shading, pv.Actor):
+class FibletActor(Engines, Filtering, Selecting, Shading, pv.Actor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -79,6 +80,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
         self._table = pv.LookupTable()
         self._init_shading()
         self._bar_changed: Callable[[FibletActor], None] | None = None
+        self._init_filtering()
         mapper = PlottedMapper(fiblets, options=options, progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
@@ -103,8 +105,10 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
+        before = self._fiblets
         self._draw(fiblets)
         self._show(scalars)
+        self._refilter(before)
 
     def copy(self, deep: bool = True) -> FibletActor:
         """Return another actor that draws the same fiblets with the same colours and place.
@@ -129,6 +133,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
             options=self._mapper.options,
         )
         twin.prop = self.prop.copy() if deep else self.prop
+        twin._choose_as(self)
         twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
         twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
         twin.visibility, twin.pickable = self.visibility, self.pickable
@@ -153,6 +158,7 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
             "pipeline": self.pipeline_in_use,
             "culling": self.culling,
             "share": self.share,
+            **self._explain_choices(),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -317,48 +323,6 @@ class FibletActor(Filtering, Selecting, Shading, pv.Actor):
             raise ValueError(f"line_width is {width!r}; give pixels above 0 and up to 64")
         self.prop.line_width = float(width)
         self._mapper.line_width = float(width)
-
-    # How it is drawn ----------------------------------------------------------------------------
-
-    @property
-    def pipeline(self) -> str:
-        """How fiblets become pixels; ``plotter.fiblets.pipelines()`` lists the choices."""
-        return self._mapper.options.pipeline
-
-    @pipeline.setter
-    def pipeline(self, pipeline: str) -> None:
-        self._mapper.options = replace(self._mapper.options, pipeline=pipeline)
-
-    @property
-    def pipeline_in_use(self) -> str | None:
-        """The pipeline that drew the last picture; ``None`` before the first."""
-        return self._mapper.pipeline_in_use
-
-    @property
-    def share(self) -> float | None:
-        """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
-
-        Less only where ``fit`` is ``"sample"`` and memory does not suffice for all.
-        """
-        return self._mapper.share
-
-    @property
-    def culling(self) -> str | None:
-        """How fiblets behind others are found out: ``"two-phase"``, ``"coverage"`` or ``None``."""
-        return self._mapper.options.culling
-
-    @culling.setter
-    def culling(self, culling: str | None) -> None:
-        self._mapper.options = replace(self._mapper.options, culling=culling)
-
-    @property
-    def fit(self) -> str | None:
-        """What to do where memory does not suffice: ``None`` refuses, ``"sample"`` draws a share."""
-        return self._mapper.options.fit
-
-    @fit.setter
-    def fit(self, fit: str | None) -> None:
-        self._mapper.options = replace(self._mapper.options, fit=fit)
 
     def watch(self, bar_changed: Callable[[FibletActor], None] | None) -> None:
         """Call ``bar_changed(actor)`` whenever the actor comes to need another scalar bar."""

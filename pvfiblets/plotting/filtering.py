@@ -1,7 +1,386 @@
-"""Which streamlines, and which parts of them, an actor shows: criteria, regions, groups, subsets, and cuts."""
+"""Which streamlines, and which parts of them, an actor shows: criteria, regions, groups, subsets, and cuts.
+
+Choices add up: a streamline is shown where all of them agree. What is not shown is culled on the GPU, not only hidden,
+and nothing is compressed or copied anew.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from pvfiblets.plotting.choices import (
+    Choices,
+    Condition,
+    Criterion,
+    as_predicate,
+    checked_range,
+    in_groups,
+    unique_name,
+    where,
+)
+from pvfiblets.plotting.cutting import as_region
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.codec.query.predicates import Predicate
+    from pvfiblets.plotting.mapper import PlottedMapper
+    from pvfiblets.regions import Region
 
 
 class Filtering:
     """The part of :class:`~pvfiblets.plotting.actor.FibletActor` that chooses what is there to be drawn."""
+
+    _mapper: PlottedMapper
+
+    def _init_filtering(self) -> None:
+        self._choices = Choices()
+
+    # Values -------------------------------------------------------------------------------------
+
+    @property
+    def criteria(self) -> Mapping[str, tuple[float, float]]:
+        """Ranges of all criteria, by name; to change one, call :meth:`criterion` again."""
+        return MappingProxyType({name: c.range for name, c in self._choices.criteria.items()})
+
+    def criterion(
+        self,
+        what: Any,
+        range: Any,  # noqa: A002 - the word users look for
+        *,
+        keep_nan: bool = False,
+        name: str | None = None,
+    ) -> str:
+        """Show only what has values in a range.
+
+        Parameters
+        ----------
+        what : str, array or Distance
+            ``"length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"`` or any number
+            per streamline: streamlines are shown or not. ``"curvature"``, ``"arc_length"`` or any
+            number per point: of a streamline those segments are shown both points of which are in
+            range. An array with one number per streamline, or per point; or
+            :class:`pvfiblets.regions.Distance` to a region or a point (mm). The name of a
+            criterion that there is changes that one's range.
+        range : (float, float)
+            Least and greatest value that is shown; infinite ends are open.
+        keep_nan : bool, default: False
+            Whether to show what has no value.
+        name : str, optional
+            Replaces the criterion of the same name; by default that of the values.
+
+        Returns
+        -------
+        str
+            The name.
+
+        Raises
+        ------
+        KeyError
+            If there are no such values; the message lists those that there are.
+        ValueError
+            If the range is none, or an array has the wrong length.
+        """
+        low, high = checked_range(range)
+        known = self._choices.criteria
+        if isinstance(what, str) and what in known and name in (None, what):
+            values, name, what = known[what].values, what, known[what].what
+        elif name in known and known[name].what is what:
+            values = known[name].values
+        else:
+            from pvfiblets.codec.query.measures import measure
+
+            values = measure(self._data, what)
+        if name is None:
+            name = values.name or unique_name(known, "criterion")
+        criterion = Criterion(name, what, values, (low, high), bool(keep_nan))
+        self._choose(criteria={**known, name: criterion})
+        return name
+
+    def remove_criterion(self, name: str | None = None) -> None:
+        """Take a criterion back, or all of them."""
+        self._choose(criteria=_without(self._choices.criteria, name, "criterion"))
+
+    # Regions ------------------------------------------------------------------------------------
+
+    def include(self, condition: Any, *, name: str | None = None) -> str:
+        """Show only streamlines for which a condition holds.
+
+        Parameters
+        ----------
+        condition : Predicate or region-like
+            ``regions.passes(…)``, ``regions.ends_in(…)``, ``regions.stays_in(…)`` and what ``&``,
+            ``|`` and ``~`` make of them. A region alone, a closed mesh, a label volume or six
+            bounds stand for the streamlines that pass through it. In data coordinates.
+        name : str, optional
+            Replaces the condition of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`remove_condition`.
+        """
+        return self._add_condition(as_predicate(condition, as_region), name, "include")
+
+    def exclude(self, condition: Any, *, name: str | None = None) -> str:
+        """Hide streamlines for which a condition holds; see :meth:`include`."""
+        return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
+
+    @property
+    def conditions(self) -> Mapping[str, Predicate]:
+        """Conditions that streamlines fulfil to be shown, by name."""
+        return MappingProxyType({n: c.predicate for n, c in self._choices.conditions.items()})
+
+    def remove_condition(self, name: str | None = None) -> None:
+        """Take a condition back, or all of them."""
+        self._choose(conditions=_without(self._choices.conditions, name, "condition"))
+
+    def streamlines_where(self, condition: Any) -> np.ndarray:
+        """Return the streamlines for which a condition holds.
+
+        Parameters
+        ----------
+        condition : Predicate or region-like
+            As for :meth:`include`.
+
+        Returns
+        -------
+        numpy.ndarray
+            (n_streamlines,) bool, shown or not. The GPU is asked where it can be, and gives the
+            same answer.
+        """
+        return where(self._data, as_predicate(condition, as_region), self._mapper.region_flags)
+
+    # Subsets ------------------------------------------------------------------------------------
+
+    def subset(
+        self, amount: float | None = None, *, seed: int = 0, every: int | None = None
+    ) -> None:
+        """Show some streamlines only, whatever they are.
+
+        Parameters
+        ----------
+        amount : float or int, optional
+            A share below 1, or a number of streamlines, drawn at random.
+        seed : int, default: 0
+            Other seeds draw others. A smaller amount is a part of a larger one of the same seed.
+        every : int, optional
+            Streamlines 0, n, 2n and so on, instead.
+
+        Raises
+        ------
+        ValueError
+            If the amount or ``every`` is out of range, or both are given. Neither shows all again.
+        """
+        self._choose(subset=_subset(self._data.n_streamlines, amount, seed, every))
+
+    @property
+    def groups_shown(self) -> tuple[str, ...] | None:
+        """Names of the groups that are shown, None for all streamlines, in a group or not."""
+        return self._choices.groups
+
+    @groups_shown.setter
+    def groups_shown(self, names: Iterable[str] | None) -> None:
+        wanted = None if names is None else tuple([names] if isinstance(names, str) else names)
+        if wanted is not None:
+            in_groups(self._data, wanted)
+        self._choose(groups=wanted)
+
+    def show_only(self, ids: Any) -> None:
+        """Show these streamlines only: numbers, a mask or a slice; None for all."""
+        mask = None
+        if ids is not None:
+            from pvfiblets.codec.decompress import select_streamlines
+
+            mask = np.zeros(self._data.n_streamlines, bool)
+            mask[select_streamlines(self._data.n_streamlines, ids)] = True
+        self._choose(ids=mask)
+
+    @property
+    def shown(self) -> np.ndarray:
+        """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
+        mask = self._choices.mask(self._data)
+        return np.ones(self._data.n_streamlines, bool) if mask is None else mask.copy()
+
+    def show_all(self) -> None:
+        """Take all criteria, conditions, subsets and cuts back."""
+        self._choices = Choices()
+        self._apply(filtering=True, cuts=True)
+
+    # Cuts ---------------------------------------------------------------------------------------
+
+    def clip(self, what: Any, inside: bool = True, *, name: str | None = None) -> str:
+        """Cut: show only what lies within a region, or without.
+
+        Parameters
+        ----------
+        what : region-like
+            A region of :mod:`pvfiblets.regions`, a closed mesh, six bounds, or a plane as
+            ``(normal, origin)``. In world coordinates. Several cuts add up; ``&``, ``|``, ``~`` of
+            regions make others.
+        inside : bool, default: True
+            Which side stays: of a plane, that which the normal points to.
+        name : str, optional
+            Replaces the cut of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`unclip`.
+
+        Raises
+        ------
+        TypeError
+            If that is no region.
+        ValueError
+            If a mesh is open, empty or inside-out, or a number makes no sense.
+        """
+        region = as_region(what)
+        known = self._choices.clips
+        name = unique_name(known, "clip") if name is None else name
+        self._choose(clips={**known, name: region if inside else ~region})
+        return name
+
+    def clip_slab(
+        self, normal: Any, origin: Any, thickness: float, *, name: str | None = None
+    ) -> str:
+        """Cut a slab out, as of a radiologist's slice.
+
+        Parameters
+        ----------
+        normal : str or (3,) array
+            ``"x"``, ``"y"``, ``"z"``, or a direction.
+        origin : float or (3,) array
+            A point of its middle plane; for an axis a coordinate will do, mm.
+        thickness : float
+            mm.
+        name : str, optional
+            Replaces the cut of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`unclip`.
+        """
+        from pvfiblets.plotting.cutting import slab
+
+        return self.clip(slab(normal, origin, thickness), name=name)
+
+    def unclip(self, name: str | None = None) -> None:
+        """Take a cut back, or all of them."""
+        self._choose(clips=_without(self._choices.clips, name, "cut"))
+
+    @property
+    def clips(self) -> Mapping[str, Region]:
+        """Cuts by name, in the order in which they were made."""
+        return MappingProxyType(self._choices.clips)
+
+    # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _data(self) -> FibletSet:
+        return cast("FibletSet", self.fiblets)  # type: ignore[attr-defined]  # of the actor
+
+    def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
+        known = self._choices.conditions
+        name = unique_name(known, stem) if name is None else name
+        mask = where(self._data, predicate, self._mapper.region_flags)
+        self._choose(conditions={**known, name: Condition(name, predicate, mask)})
+        return name
+
+    def _choose(self, **changes: Any) -> None:
+        """Make choices; one that is refused leaves all as they were."""
+        before, self._choices = self._choices, self._choices.copy()
+        for key, value in changes.items():
+            setattr(self._choices, key, value)
+        try:
+            self._apply(filtering=set(changes) != {"clips"}, cuts="clips" in changes)
+        except Exception:
+            self._choices = before
+            raise
+
+    def _apply(self, *, filtering: bool, cuts: bool) -> None:
+        if cuts:
+            self._mapper.region = self._choices.region()
+        if filtering:
+            self._mapper.filtering = self._choices.filter(self._data)
+
+    def _choose_as(self, other: Filtering) -> None:
+        """Take over the choices of another actor of the same fiblets."""
+        self._choices = other._choices.copy()
+        self._apply(filtering=True, cuts=True)
+
+    def _refilter(self, before: FibletSet) -> None:
+        """Make the choices anew for other fiblets."""
+        if self._choices.filter(before) is None:
+            return
+        from pvfiblets.codec.query.measures import measure
+
+        self._mapper.filtering = None
+        fiblets, old = self._data, self._choices
+        criteria = {}
+        for name, c in old.criteria.items():
+            criteria[name] = Criterion(name, c.what, measure(fiblets, c.what), c.range, c.keep_nan)
+        conditions = {
+            name: Condition(name, c.predicate, where(fiblets, c.predicate))
+            for name, c in old.conditions.items()
+        }
+        same = fiblets.n_streamlines == before.n_streamlines
+        groups = old.groups if old.groups and set(old.groups) <= set(fiblets.groups) else None
+        self._choices = Choices(
+            criteria=criteria,
+            conditions=conditions,
+            clips=old.clips,
+            groups=groups,
+            subset=old.subset if same else None,
+            ids=old.ids if same else None,
+        )
+        self._apply(filtering=True, cuts=False)
+
+    def _explain_choices(self) -> dict[str, Any]:
+        """What is chosen, for ``explain()``."""
+        choices = self._choices
+        mask = choices.mask(self._data)
+        total = self._data.n_streamlines
+        return {
+            "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
+            "criteria": dict(self.criteria),
+            "conditions": list(choices.conditions),
+            "clips": list(choices.clips),
+            "groups_shown": choices.groups,
+        }
+
+
+def _without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:
+    if name is None:
+        return {}
+    if name not in known:
+        there = ", ".join(repr(key) for key in known) or "none"
+        raise KeyError(f"there is no {kind} {name!r}; there are: {there}")
+    return {key: value for key, value in known.items() if key != name}
+
+
+def _subset(
+    count: int, amount: float | None, seed: int, every: int | None
+) -> np.ndarray | None:
+    """Return (count,) bool, None for all."""
+    if amount is not None and every is not None:
+        raise ValueError(f"amount is {amount} and every is {every}; give one of them")
+    if every is not None:
+        if every < 1 or int(every) != every:
+            raise ValueError(f"every is {every}; give a whole number above zero")
+        return np.arange(count) % int(every) == 0
+    if amount is None:
+        return None
+    whole = isinstance(amount, (int, np.integer)) and not isinstance(amount, bool)
+    if whole and not 0 <= amount <= count:
+        raise ValueError(f"amount is {amount}; there are {count} streamlines")
+    if not whole and not 0.0 <= float(amount) <= 1.0:
+        raise ValueError(f"amount is {amount}; give a share from 0 to 1, or a whole number")
+    wanted = int(amount) if whole else round(float(amount) * count)
+    mask = np.zeros(count, bool)
+    mask[np.random.default_rng(seed).permutation(count)[:wanted]] = True
+    return mask

@@ -102,7 +102,7 @@ def test_segments_between_kept_points_are_drawn_and_no_others(
     if style == "far detail":  # a fiblet that is cut is drawn by its points, up to half a pixel beside
         assert (picture.depth[sure] != 0xFFFFFFFF).mean() > 0.9
         return
-    # Programs that clip may round a depth otherwise than those that do not; a wide line gains round ends where it is cut.
+    # Programs that clip may round a depth otherwise than others; a wide line gains round ends where it is cut.
     assert (picture.depth[sure] <= whole.depth[sure] + np.uint32(1024)).all()
     if style == "thin":
         assert (picture.depth[sure] >= whole.depth[sure] - np.uint32(1024)).all()

@@ -1,0 +1,187 @@
+"""Choosing what an actor shows: masks equal NumPy's on the decoded points, and the picture follows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets import Streamlines, compress, regions
+from pvfiblets.synthetic import brain_streamlines
+
+
+@pytest.fixture
+def tract():
+    """Some streamlines of a brain, with groups, numbers and a streamline without points."""
+    lines = [np.asarray(line) for line in brain_streamlines(400, seed=4)]
+    lines[17] = np.zeros((0, 3))
+    streamlines = Streamlines.from_list(lines)
+    rng = np.random.default_rng(3)
+    streamlines.per_streamline = {"weight": np.where(np.arange(400) % 50 == 7, np.nan, rng.random(400))}
+    streamlines.per_point = {"fa": rng.random(streamlines.n_points).astype(np.float32)}
+    streamlines.groups = {"left": np.arange(0, 120), "right": np.arange(100, 300)}
+    return compress(streamlines, per_point=("fa",))
+
+
+@pytest.fixture
+def shown(tract):
+    """A plotter that shows them."""
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
+    actor = plotter.add_fiblets(tract)
+    plotter.show(auto_close=False)
+    yield plotter, actor
+    plotter.close()
+
+
+def seen(plotter, actor):
+    """Streamlines in the picture."""
+    plotter.render()
+    found = {actor.pick_at(x, y) for x in range(0, 240, 3) for y in range(0, 200, 3)}
+    return {hit[0] for hit in found if hit is not None}
+
+
+def test_numbers_per_streamline(shown, tract):
+    plotter, actor = shown
+    lengths, weights = tract.lengths(), tract.per_streamline["weight"]
+    assert actor.criterion("length", (50.0, 100.0)) == "length"
+    long = (lengths >= 50.0) & (lengths <= 100.0)
+    np.testing.assert_array_equal(actor.shown, long)
+    assert actor.criterion("weight", (-np.inf, 0.5)) == "weight"
+    with np.errstate(invalid="ignore"):
+        np.testing.assert_array_equal(actor.shown, long & (weights <= 0.5))
+    here = seen(plotter, actor)
+    assert here
+    assert actor.shown[list(here)].all()
+    actor.criterion("weight", (-np.inf, 0.5), keep_nan=True)
+    np.testing.assert_array_equal(actor.shown, long & ~(weights > 0.5))
+    actor.criterion("length", (0.0, 50.0))  # another range of the same
+    assert dict(actor.criteria) == {"length": (0.0, 50.0), "weight": (-np.inf, 0.5)}
+    actor.remove_criterion("weight")
+    np.testing.assert_array_equal(actor.shown, lengths <= 50.0)
+    actor.criterion(np.arange(400), (10, 20), name="number")
+    np.testing.assert_array_equal(actor.shown, (lengths <= 50.0) & (np.arange(400) >= 10) & (np.arange(400) <= 20))
+    report = actor.explain()
+    assert report["streamlines"] == {"total": 400, "shown": int(actor.shown.sum())}
+    assert set(report["criteria"]) == {"length", "number"}
+    actor.remove_criterion()
+    assert actor.mapper.filtering is None
+
+
+def test_numbers_per_point(shown, tract):
+    _, actor = shown
+    actor.criterion("fa", (0.2, 0.9))
+    decoded = tract.decompress()
+    values = decoded.per_point["fa"].astype(np.float64)
+    words = actor.mapper.filtering.points
+    bits = np.unpackbits(words.view(np.uint8), bitorder="little")[: tract.n_points].astype(bool)
+    np.testing.assert_array_equal(bits, (values >= 0.2) & (values <= 0.9))
+    assert actor.mapper.filtering.streamlines is None
+    assert "POINT_MASK" not in actor.explain()["features"]  # of the last picture
+    actor.criterion(regions.Distance(regions.Sphere((0, 0, 20), 10.0), per="point"), (0.0, 15.0), name="near")
+    words = actor.mapper.filtering.points
+    both = np.unpackbits(words.view(np.uint8), bitorder="little")[: tract.n_points].astype(bool)
+    near = np.linalg.norm(decoded.points.astype(float) - (0, 0, 20), axis=1) - 10.0 <= 15.0
+    far = np.abs(np.linalg.norm(decoded.points.astype(float) - (0, 0, 20), axis=1) - 25.0) > 1e-3
+    np.testing.assert_array_equal(both[far], (bits & near)[far])
+
+
+def test_regions(shown, tract):
+    plotter, actor = shown
+    decoded = tract.decompress(dtype=np.float64)
+    ball = regions.Sphere((10.0, 0.0, 20.0), 20.0)
+    lines = [np.asarray(line) for line in decoded]
+    through = np.array([len(line) > 0 and bool(ball.contains(line).any()) for line in lines])
+    ends = np.array([len(line) > 0 and bool(ball.contains(line[[0, -1]]).any()) for line in lines])
+    np.testing.assert_array_equal(actor.streamlines_where(ball), through)
+    np.testing.assert_array_equal(actor.streamlines_where(regions.ends_in(ball)), ends)
+    actor.include(ball)
+    np.testing.assert_array_equal(actor.shown, through)
+    name = actor.exclude(regions.ends_in(ball))
+    np.testing.assert_array_equal(actor.shown, through & ~ends)
+    here = seen(plotter, actor)
+    assert here
+    assert actor.shown[list(here)].all()
+    assert len(actor.conditions) == 2
+    actor.remove_condition(name)
+    np.testing.assert_array_equal(actor.shown, through)
+    actor.include((-10.0, 30.0, -20.0, 20.0, 0.0, 40.0), name="include 1")
+    box = regions.Box((-10.0, 30.0, -20.0, 20.0, 0.0, 40.0))
+    np.testing.assert_array_equal(actor.shown, [len(x) > 0 and bool(box.contains(x).any()) for x in lines])
+
+
+def test_subsets_and_groups(shown):
+    _, actor = shown
+    actor.subset(0.25, seed=3)
+    quarter = actor.shown
+    assert quarter.sum() == 100
+    actor.subset(150, seed=3)
+    assert actor.shown.sum() == 150
+    assert (actor.shown | ~quarter).all()
+    actor.subset(every=7)
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(0, 400, 7))
+    actor.subset()
+    assert actor.mapper.filtering is None
+    actor.groups_shown = ["left"]
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(120))
+    actor.groups_shown = ["left", "right"]
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(300))
+    actor.groups_shown = []
+    assert not actor.shown.any()
+    actor.groups_shown = None
+    actor.show_only([3, 5, -1])
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), [3, 5, 399])
+    twin = actor.copy()
+    np.testing.assert_array_equal(twin.shown, actor.shown)
+    actor.show_all()
+    assert actor.shown.all()
+    assert not twin.shown.all()
+
+
+def test_other_fiblets_are_chosen_from_the_same_way(shown):
+    plotter, actor = shown
+    actor.criterion("length", (50.0, 100.0))
+    actor.include(regions.Sphere((10.0, 0.0, 20.0), 30.0))
+    actor.subset(0.5)
+    other = compress(brain_streamlines(150, seed=9))
+    actor.fiblets = other
+    plotter.render()
+    lengths = other.lengths()
+    through = other.select(regions.passes(regions.Sphere((10.0, 0.0, 20.0), 30.0)))
+    np.testing.assert_array_equal(actor.shown, (lengths >= 50.0) & (lengths <= 100.0) & through)
+
+
+def test_refused_choices_leave_all_as_it_was(shown):
+    _, actor = shown
+    actor.criterion("length", (50.0, 100.0))
+    before = actor.shown
+    with pytest.raises(KeyError, match="weight"):
+        actor.criterion("wieght", (0.0, 1.0))
+    with pytest.raises(ValueError, match="range is \\(2, 1\\); give two numbers, the low one first"):
+        actor.criterion("length", (2.0, 1.0))
+    with pytest.raises(ValueError, match="range is \\(nan, 1\\)"):
+        actor.criterion("length", (np.nan, 1.0))
+    with pytest.raises(ValueError, match="give two numbers"):
+        actor.criterion("length", 5.0)
+    with pytest.raises(ValueError, match="399"):
+        actor.criterion(np.arange(399), (0, 1))
+    with pytest.raises(KeyError, match="there is no group 'front'; there are: 'left', 'right'"):
+        actor.groups_shown = ["front"]
+    with pytest.raises(TypeError, match="does not say where it lies; give regions.Labels"):
+        actor.include(np.zeros((3, 3, 3), int))
+    with pytest.raises(ValueError, match="amount is 401; there are 400 streamlines"):
+        actor.subset(401)
+    with pytest.raises(ValueError, match="amount is 1.5"):
+        actor.subset(1.5)
+    with pytest.raises(ValueError, match="give one of them"):
+        actor.subset(0.5, every=2)
+    with pytest.raises(ValueError, match="every is 0"):
+        actor.subset(every=0)
+    with pytest.raises(IndexError):
+        actor.show_only([400])
+    with pytest.raises(KeyError, match="there is no criterion 'fa'; there are: 'length'"):
+        actor.remove_criterion("fa")
+    with pytest.raises(KeyError, match="there is no cut 'a'; there are: none"):
+        actor.unclip("a")
+    with pytest.raises(TypeError, match="is no region"):
+        actor.clip(3.0)
+    np.testing.assert_array_equal(actor.shown, before)
