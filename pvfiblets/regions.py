@@ -16,19 +16,25 @@ Positions are mm. See :mod:`pvfiblets.codec.query.shapes` for how a region is ke
 
 from __future__ import annotations
 
+from .codec.query.classify import classify
+from .codec.query.labels import Labels
 from .codec.query.measures import Distance
 from .codec.query.predicates import Predicate, ends_in, passes, stays_in
 from .codec.query.shapes import Box, Plane, Region, Shape, Slab, Sphere
+from .codec.query.surfaces import Surface
 
 __all__ = [
     "Box",
     "Distance",
+    "Labels",
     "Plane",
     "Predicate",
     "Region",
     "Shape",
     "Slab",
     "Sphere",
+    "Surface",
+    "classify",
     "ends_in",
     "passes",
     "stays_in",

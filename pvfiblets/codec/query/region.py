@@ -10,7 +10,6 @@ A position with a coordinate that is not finite lies in no region, not in ``~reg
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -107,23 +106,18 @@ class Region:
         ValueError
             If the points are not three numbers each.
         """
-        places = positions(points)
-        with np.errstate(over="ignore", invalid="ignore"):
-            found = self._evaluate([leaf.holds(places) for leaf in self._leaves])
-        found &= np.isfinite(places).all(axis=1)
-        return found
+        from .classify import pack_rows
+        from .shape_kernels import evaluate
 
-    def _evaluate(self, flags: Sequence[Flags]) -> Flags:
-        stack: list[Flags] = []
-        for op in self._program:
-            if op >= 0:
-                stack.append(flags[op].copy())
-            elif op == NOT:
-                np.logical_not(stack[-1], out=stack[-1])
-            else:
-                top = stack.pop()
-                (np.logical_and if op == AND else np.logical_or)(stack[-1], top, out=stack[-1])
-        return stack[0]
+        places = np.ascontiguousarray(positions(points))
+        known = [leaf.holds(places) for leaf in self._leaves]
+        rows = [flags for flags in known if flags is not None]
+        where = np.cumsum([flags is not None for flags in known]) - 1
+        where[[flags is None for flags in known]] = -1
+        found = np.empty(len(places), np.bool_)
+        table = np.stack(rows) if rows else np.zeros((0, len(places)), np.bool_)
+        evaluate(*pack_rows(self), table, where, places, found)
+        return found
 
     def distance(self, points: npt.ArrayLike) -> Array:
         """Distances of positions from the region, 0 inside.

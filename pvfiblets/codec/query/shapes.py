@@ -110,6 +110,7 @@ class Shape(Region):
         return None
 
     def placed(self, matrix: Array) -> Shape:
+        """Return the shape as placed by an affine ``(4, 4)`` matrix known to be good."""
         inverse = np.linalg.inv(matrix[:3, :3])
         other: Shape = object.__new__(type(self))
         other.__dict__.update(self._shared())
@@ -130,10 +131,12 @@ class Shape(Region):
             a[2, 0] * x + a[2, 1] * y + a[2, 2] * z,
         )
 
-    def holds(self, points: Array) -> Flags:
-        raise NotImplementedError
+    def holds(self, points: Array) -> Flags | None:  # noqa: ARG002 - of other shapes
+        """Return ``(n,)`` bool: which points are in; None of shapes that the kernels of :mod:`.shape_kernels` know."""
+        return None
 
     def apart(self, points: Array) -> Array:
+        """Return ``(n,)`` mm: distances of finite points ``(n, 3)`` from the shape, 0 inside."""
         raise NotImplementedError
 
     def extents(self) -> tuple[Bounds, Bounds]:
@@ -174,16 +177,13 @@ class Plane(Shape):
     def __init__(self, normal: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> None:
         super().__init__(PLANE, frame_about(normal, "normal"), finite_vector(origin, "origin"))
 
-    def holds(self, points: Array) -> Flags:
-        found: Flags = self._unit(points)[2] >= 0.0
-        return found
-
     def apart(self, points: Array) -> Array:
-        """Exact, under any matrix."""
+        """Exact up to rounding, under any matrix."""
         found: Array = np.maximum(-self._unit(points)[2], 0.0) / np.linalg.norm(self._linear[2])
         return found
 
     def extents(self) -> tuple[Bounds, Bounds]:
+        """See :meth:`Shape.extents`."""
         return Bounds.of_half_space(self._linear[2], self._centre), Bounds.of_half_space(-self._linear[2], self._centre)
 
     def __repr__(self) -> str:
@@ -213,16 +213,13 @@ class Slab(Shape):
         linear[2] *= 1.0 / (positive(thickness, "thickness") / 2.0)
         super().__init__(SLAB, linear, finite_vector(origin, "origin"))
 
-    def holds(self, points: Array) -> Flags:
-        found: Flags = np.abs(self._unit(points)[2]) <= 1.0
-        return found
-
     def apart(self, points: Array) -> Array:
-        """Exact, under any matrix."""
+        """Exact up to rounding, under any matrix."""
         found: Array = np.maximum(np.abs(self._unit(points)[2]) - 1.0, 0.0) / np.linalg.norm(self._linear[2])
         return found
 
     def extents(self) -> tuple[Bounds, Bounds]:
+        """See :meth:`Shape.extents`."""
         normal = self._linear[2]
         half = normal / float(normal @ normal)
         low = Bounds.of_half_space(normal, self._centre - half)
@@ -287,11 +284,6 @@ class Box(Shape):
         scales = np.array([1.0 / positive(n, name) for n in np.broadcast_to(half, 3)])
         super().__init__(BOX, scales[:, None] * turn.T, middle)
 
-    def holds(self, points: Array) -> Flags:
-        u, v, w = self._unit(points)
-        found: Flags = (np.abs(u) <= 1.0) & (np.abs(v) <= 1.0) & (np.abs(w) <= 1.0)
-        return found
-
     def apart(self, points: Array) -> Array:
         """Exact up to rounding, of sheared boxes to 1e-9 of their size."""
         from .convex import box_distance
@@ -299,6 +291,7 @@ class Box(Shape):
         return box_distance(self._linear, np.stack(self._unit(points), axis=1))
 
     def extents(self) -> tuple[Bounds, Bounds]:
+        """See :meth:`Shape.extents`."""
         reach = np.abs(np.linalg.inv(self._linear)).sum(axis=1)
         return Bounds(self._centre - reach, self._centre + reach), Bounds.everything()
 
@@ -326,11 +319,6 @@ class Sphere(Shape):
         linear = np.eye(3) / positive(radius, "radius")
         super().__init__(SPHERE, linear, finite_vector(center, "center"))
 
-    def holds(self, points: Array) -> Flags:
-        u, v, w = self._unit(points)
-        found: Flags = u * u + v * v + w * w <= 1.0
-        return found
-
     def apart(self, points: Array) -> Array:
         """Exact up to rounding, of ellipsoids to 1e-9 of their size."""
         from .convex import ellipsoid_distance
@@ -338,6 +326,7 @@ class Sphere(Shape):
         return ellipsoid_distance(self._linear, np.stack(self._unit(points), axis=1))
 
     def extents(self) -> tuple[Bounds, Bounds]:
+        """See :meth:`Shape.extents`."""
         reach = np.linalg.norm(np.linalg.inv(self._linear), axis=1)
         return Bounds(self._centre - reach, self._centre + reach), Bounds.everything()
 
