@@ -29,6 +29,7 @@ FEATURES = (
     "colour_streamline",
     "colour_point_value",
     "scale_logarithm",
+    "highlight",
     "illuminated",
     "ambient_occlusion",
     "ink",
