@@ -10,6 +10,7 @@ from __future__ import annotations
 import moderngl
 
 from .chunks import Chunk
+from .layers import PEEL_UNITS
 from .opengl import BufferTexture, OpenGL
 from .volumes import VOLUME_UNIT
 
@@ -81,3 +82,5 @@ def set_data_samplers(gl: OpenGL, program: moderngl.Program) -> None:
     for name, (sampler, _) in SAMPLERS.items():
         gl.set_sampler(program, sampler, UNITS[name])
     gl.set_sampler(program, "sampled_volume", VOLUME_UNIT)
+    for sampler, unit in PEEL_UNITS.items():
+        gl.set_sampler(program, sampler, unit)

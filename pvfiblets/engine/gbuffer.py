@@ -104,6 +104,11 @@ class GBuffer:
         self._relief = relief
 
     @property
+    def relief(self) -> str | None:
+        """What :meth:`want_relief` was last told."""
+        return self._relief
+
+    @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
         relief = 0 if self._relief is None else int(RELIEF[self._relief][1])

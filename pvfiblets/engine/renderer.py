@@ -22,6 +22,7 @@ from .fit import Fitted, Room
 from .frame import FRAME_BYTES, frame_block, local_frame, segment_pixels
 from .gbuffer import GBuffer
 from .kept import Kept
+from .layers import LayeredBuffer, Layers
 from .opengl import OpenGL
 from .passes import Passes
 from .pipelines import CONSTANTS, Job, Limits, Pipeline, make_measurer, make_pipeline
@@ -116,9 +117,10 @@ class FibletRenderer:
         self._features: list[str] = []
         self._values: ValueSources | None = None
         self._kept: Kept | None = None
+        self._layers: Layers | None = None
         self._query: RegionQuery | None = None
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
-        limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
+        self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         try:
             whole = fiblets
             fitted = self._upload(Room.of(ctx, self._gl, limits, max_total_bytes), fit, progress)
@@ -127,9 +129,7 @@ class FibletRenderer:
             self._make_shared()
             self._kept = Kept(ctx, self._gl, self._programs, whole, fiblets, self._chunks)
             self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
-            self._pipeline = make_pipeline(
-                pipeline, ctx, self._gl, self._programs, fiblets.n_fiblets, len(self._chunks), limits
-            )
+            self._pipeline = self._make_pipeline()
             self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
             measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
@@ -192,7 +192,7 @@ class FibletRenderer:
             After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
         """
         style = style or Style()
-        pipeline, values, kept = self._alive()
+        pipeline = self._alive()[0]
         if self._target is not None and self._drawn == (view, style):
             return self._target
         self._drawn = None
@@ -202,28 +202,7 @@ class FibletRenderer:
                 self._target = None
             self._target = GBuffer(self._ctx, view.size)
         self._target.want_relief(self._ctx, style.relief)
-        self._bind_shared()
-        decoding = self._decoding_features()
-        source = values.activate(style.values, decoding)
-        clipping, planes = self._write_frame(view, style)
-        kept.update(view, *self._place(), self._top)
-        values.locate(local_frame(view, *self._place(), self._top)[1])
-        job = Job(
-            chunks=self._chunks,
-            target=self._target,
-            passes=self._passes,
-            decoding=tuple(decoding),
-            values=(source,) if source else (),
-            clipping=clipping or planes or bool(kept.cutting),
-            planes=("CLIP_PLANES",) if planes else (),
-            detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
-            line_width=style.line_width,
-            segment=self._segment,
-            occlusion=self._occlusion,
-            kept=kept,
-            tubes=("TUBES",) if style.radius is not None else (),
-            across=("ACROSS",) if style.relief is not None else (),
-        )
+        job = self._job(view, style, self._target)
         self._features = job.features
         self._passes.begin()
         if self._occlusion is not None:
@@ -239,6 +218,77 @@ class FibletRenderer:
             self._drawn = (view, style)
         self._last = (view, style)
         return self._target
+
+    def render_layers(self, view: View, style: Style | None = None, count: int = 4) -> LayeredBuffer:
+        """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
+
+        Parameters
+        ----------
+        view : View
+        style : Style, optional
+        count : int
+            Layers, the picture of :meth:`render` included.
+
+        Returns
+        -------
+        LayeredBuffer
+            The renderer's own (:mod:`pvfiblets.engine.layers`); the same object until the size changes.
+
+        Raises
+        ------
+        EngineError
+            As :meth:`render`.
+        ValueError
+            If the number of layers is not from 2 to 64.
+        """
+        style = style or Style()
+        nearest = self.render(view, style)
+        if self._layers is None:
+            self._layers = Layers(self._ctx, self._gl, self._programs, self._make_pipeline)
+        return self._layers.of(nearest, count, lambda: self._job(view, style, nearest))
+
+    def drop_layers(self) -> None:
+        """Give back what :meth:`render_layers` keeps; twice is harmless."""
+        if self._layers is not None:
+            self._layers.release()
+            self._layers = None
+
+    def _make_pipeline(self) -> Pipeline:
+        return make_pipeline(
+            self.pipeline,
+            self._ctx,
+            self._gl,
+            self._programs,
+            self._fiblets.n_fiblets,
+            len(self._chunks),
+            self._limits,
+        )
+
+    def _job(self, view: View, style: Style, target: GBuffer) -> Job:
+        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
+        _, values, kept = self._alive()
+        self._bind_shared()
+        decoding = self._decoding_features()
+        source = values.activate(style.values, decoding)
+        clipping, planes = self._write_frame(view, style)
+        kept.update(view, *self._place(), self._top)
+        values.locate(local_frame(view, *self._place(), self._top)[1])
+        return Job(
+            chunks=self._chunks,
+            target=target,
+            passes=self._passes,
+            decoding=tuple(decoding),
+            values=(source,) if source else (),
+            clipping=clipping or planes or bool(kept.cutting),
+            planes=("CLIP_PLANES",) if planes else (),
+            detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
+            line_width=style.line_width,
+            segment=self._segment,
+            occlusion=self._occlusion,
+            kept=kept,
+            tubes=("TUBES",) if style.radius is not None else (),
+            across=("ACROSS",) if style.relief is not None else (),
+        )
 
     def needs_outside(self, view: View, style: Style) -> bool:
         """Say whether :meth:`render` would gain from the depth of other things in the scene.
@@ -392,7 +442,14 @@ class FibletRenderer:
             "passes": self._passes.report(),
             "features": list(self._features),
             "buffers": buffer_sizes(
-                self._buffers, self._chunks, self._pipeline, self._occlusion, self._target, self._kept, self._values
+                self._buffers,
+                self._chunks,
+                self._pipeline,
+                self._occlusion,
+                self._target,
+                self._kept,
+                self._values,
+                self._layers,
             ),
             "fiblets_total": int(self._fiblets.n_fiblets),
             "fiblets": self._count() if counts else no_counts(int(self._fiblets.n_fiblets)),
@@ -428,6 +485,7 @@ class FibletRenderer:
         if self._values is not None:
             self._values.release()
             self._values = None
+        self.drop_layers()
         if self._kept is not None:
             self._kept.release()
             self._kept = None

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .culling import Occlusion
     from .gbuffer import GBuffer
     from .kept import Kept
+    from .layers import Layers
     from .values import ValueSources
 
 __all__ = ["buffer_sizes", "count_fiblets", "no_counts"]
@@ -26,6 +27,7 @@ def buffer_sizes(
     target: GBuffer | None,
     kept: Kept | None,
     values: ValueSources | None,
+    layers: Layers | None,
 ) -> list[dict[str, object]]:
     """Return name and bytes of everything on the GPU."""
     sizes: dict[str, int] = {name: buffer.size for name, buffer in shared.items()}
@@ -42,6 +44,8 @@ def buffer_sizes(
         sizes |= kept.buffers
     if values is not None:
         sizes |= values.buffers
+    if layers is not None:
+        sizes["layers"] = layers.nbytes
     return [{"name": name, "bytes": size} for name, size in sizes.items()]
 
 

@@ -39,6 +39,7 @@
 #include "regions/boundaries.glsl"
 #endif
 #include "data/point_mask.glsl"
+#include "raster/peel.glsl"
 #if FEATURE_TUBES
 #include "raster/tube.glsl"
 #endif
@@ -54,10 +55,13 @@ float across_here;
 void plot(ivec2 pixel, float z, float s, uint segment);
 void start_segment(uint segment, vec3 delta, float steps);
 
-// Plots a pixel, unless the caller's region cuts it away.
+// Plots a pixel, unless the caller's region cuts it away, or it does not lie behind the layers drawn so far.
 void put(ivec2 pixel, float z, float s, uint segment) {
 #if FEATURE_CLIP_REGION
     if (!region_keeps(pixel, z)) return;
+#endif
+#if FEATURE_PEEL
+    if (!behind_layers(pixel, depth_key(z), segment)) return;
 #endif
     plot(pixel, z, s, segment);
 }
@@ -119,6 +123,9 @@ void draw_tube(vec3 from, vec3 to, vec4 c0, vec4 c1, uint segment, bool start) {
     Tube body = tube_of(from, to, c0, start);
     float r = outline.reach;
     vec2 run = outline.b.xy - outline.a.xy;
+#if FEATURE_PEEL
+    peel_segment(outline.a.xy, outline.b.xy, r, peel_steps);
+#endif
     bool steep = abs(run.y) > abs(run.x);
     vec2 a = steep ? outline.a.yx : outline.a.xy, b = steep ? outline.b.yx : outline.b.xy;
     vec2 low = steep ? vec2(band.x, 0.0) : vec2(0.0, band.x), high = steep ? vec2(band.y, viewport.x) : vec2(viewport.x, band.y);
@@ -147,6 +154,9 @@ void draw_window(vec4 a, vec4 b, uint segment, bool start, bool cap) {
     if (segment < share.x || segment >= share.y) return;
     float r = viewport.z;
     vec2 d = b.xy - a.xy;
+#if FEATURE_PEEL
+    peel_segment(a.xy, b.xy, r, peel_steps);
+#endif
     bool steep = abs(d.y) > abs(d.x);
     vec2 from = steep ? a.yx : a.xy, to = steep ? b.yx : b.xy, size = steep ? viewport.yx : viewport.xy;
     vec2 run = to - from;
@@ -210,6 +220,9 @@ float steps_of(uint f) { return float(fiblet_last(decoding_words(f)) + (ends(f) 
 // one segment, numbered 0, between the ends of its capsule; FEATURE_ONE_SEGMENT: it is known that it is.
 void draw_fiblet(uint f) {
     begin_point_mask(f);
+#if FEATURE_PEEL && FEATURE_WIDE_LINES
+    begin_peel(streamline_of(f), float(points_before(f)));
+#endif
 #if FEATURE_ONE_SEGMENT || FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
 #endif
@@ -258,6 +271,9 @@ void draw_fiblet(uint f) {
         bool start = i == 1u && begin, cap = end && i == count;
         bool drawn = mask_segment(i - 1u, start, cap);
         start_segment(i - 1u, walk_delta, steps);
+#if FEATURE_PEEL
+        peel_steps = steps;
+#endif
 #if FEATURE_TUBES
         if (drawn) draw_tube(from, walk_point, c0, c1, i - 1u, start);
         c0 = c1;

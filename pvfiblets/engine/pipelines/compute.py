@@ -279,6 +279,8 @@ class ComputePipeline:
             self._set(program, argument_base=at)
             chunk.bind_storage()
             job.kept.bind(program, index)
+            if job.peel is not None:
+                job.peel.bind(program)
             program.run_indirect(self.buffers["marks"], 4 * at + ARGUMENT_BYTES * part)
 
     def _test(self, stage: str, job: Job) -> None:

@@ -13,6 +13,7 @@ from ..passes import Passes
 if TYPE_CHECKING:
     from ..culling.occlusion import Occlusion
     from ..kept import Kept
+    from ..layers import Peel
 
 __all__ = ["Job", "Pipeline", "Sized"]
 
@@ -50,6 +51,8 @@ class Job:
         The caller's filter and region.
     tubes, across : tuple of str
         ``TUBES`` and ``ACROSS``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
+    peel : Peel, optional
+        Layers behind which the picture begins.
     """
 
     chunks: Sequence[Chunk]
@@ -66,12 +69,18 @@ class Job:
     kept: Kept
     tubes: tuple[str, ...] = ()
     across: tuple[str, ...] = ()
+    peel: Peel | None = None
 
     @property
     def wide(self) -> tuple[str, ...]:
         """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
         wide = ("WIDE_LINES",) if self.line_width > 1.0 or self.tubes else ()
         return (*wide, *self.tubes, *self.across)
+
+    @property
+    def peeling(self) -> tuple[str, ...]:
+        """``PEEL``, if the picture begins behind others."""
+        return () if self.peel is None else ("PEEL",)
 
     @property
     def cutting(self) -> tuple[str, ...]:
@@ -81,7 +90,7 @@ class Job:
     @property
     def classes(self) -> list[tuple[int, tuple[str, ...]]]:
         """Classes of fiblets (``shaders/compute/cull.comp``) that there can be, with the features of their programs."""
-        common = (*self.decoding, *self.values, *self.wide)
+        common = (*self.decoding, *self.values, *self.wide, *self.peeling)
         classes = [(0, common)]
         if self.clipping:
             classes.append((1, (*common, *self.detail, "CLIPPING")))

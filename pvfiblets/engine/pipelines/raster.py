@@ -10,7 +10,7 @@ draw           draws the others; without two-phase culling, all
 marks          two-phase culling: notes, for the next picture, which fiblets own a pixel
 =============  =================================================================================================
 
-The G-buffer's four textures are colour attachments, and a depth buffer of float32 decides what is nearest. OpenGL
+The G-buffer's textures are colour attachments, and a depth buffer of float32 decides what is nearest. OpenGL
 draws in order, fiblet by fiblet, and a fragment must be nearer than what is there: of two at the same depth the
 fiblet with the smaller index stays. The second round comes later than its indices: ``shaders/raster/between.frag``
 and ``shade.glsl`` see to it that the picture is the same as if there were but one. Depths are written as coarse as
@@ -78,6 +78,8 @@ class RasterTarget:
     Attributes
     ----------
     target : GBuffer
+    across : moderngl.Texture or None
+        As the G-buffer had it when this was made.
     first, second : moderngl.Framebuffer
         For the two rounds; the same without two rounds.
     kept : moderngl.Texture or None
@@ -89,7 +91,10 @@ class RasterTarget:
         self._gl = gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
         self.kept: moderngl.Texture | None = None
+        self.across = target.across
         colours = [target.depth, target.owner, target.ids, target.position]
+        if target.across is not None:
+            colours.append(target.across)
         try:
             self.depth = self._keep(_depth_texture(ctx, gl, target.size))
             self.first = self.second = self._keep(ctx.framebuffer(colours, self.depth))
@@ -271,7 +276,8 @@ class RasterPipeline(abc.ABC):
 
     def _attach(self, target: GBuffer, two_rounds: bool) -> RasterTarget:
         held = self._target
-        if held is None or held.target is not target or (held.kept is not None) != two_rounds:
+        same = held is not None and held.target is target and held.across is target.across
+        if held is None or not same or (held.kept is not None) != two_rounds:
             if held is not None:
                 held.release()
                 self._target = None
@@ -311,12 +317,15 @@ class RasterPipeline(abc.ABC):
         culling = (job.occlusion.feature,) if job.occlusion is not None else ()
         clipping = ("CLIPPING", "CLIPPING_DEPTH") if job.clipping else ()
         every = (*job.decoding, *job.values, *job.wide, *job.detail, *clipping, *job.planes, *job.kept.culling)
+        every = (*every, *job.peeling)
         return [*self.features, *every, *culling]
 
     def _bind(self, program: moderngl.Program, job: Job, features: Sequence[str]) -> None:
         """Bind what a round's program looks at, and tell it where."""
         if job.occlusion is not None:
             job.occlusion.bind(program)
+        if job.peel is not None:
+            job.peel.bind(program)
         if self._seen is not None and "seen" in program:
             self._seen.texture.use(SEEN_UNIT)
             program["seen"], program["seen_bits"] = SEEN_UNIT, self._seen.bits

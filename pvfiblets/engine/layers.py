@@ -1,0 +1,234 @@
+"""What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
+
+Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only what lies behind layer k - 1
+(``shaders/raster/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines into, and
+what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they reach;
+what lies behind the last one is not there.
+
+Each layer takes a pass over all fiblets in the view volume: earlier depth hides nothing that is behind it, so that
+there is no other culling. The layers are kept until the picture changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from .errors import EngineError, GPUMemoryError
+from .gbuffer import RELIEF, GBuffer
+
+if TYPE_CHECKING:
+    from .opengl import OpenGL
+    from .pipelines import Job, Pipeline
+    from .shaders import Programs
+
+__all__ = ["MOST_LAYERS", "PEEL_UNITS", "LayeredBuffer", "Layers", "Peel"]
+
+MOST_LAYERS = 64
+
+PEEL_UNITS = {"peeled_depth": 29, "peeled_ids": 30, "peeled_position": 31}
+"""Texture units of the layers drawn so far, by the names of their samplers."""
+
+_COPY_UNITS = {"depth": 12, "ids": 13, "position": 14, "across": 15}  # as the raster pipelines between their rounds
+
+
+class LayeredBuffer:
+    """Layers of a picture: texture arrays with the content of the G-buffer's textures, layer 0 the nearest.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    target : GBuffer
+        Of the same size and kind as what is to be kept.
+    count : int
+        Layers.
+
+    Raises
+    ------
+    EngineError
+        If memory does not suffice.
+
+    Attributes
+    ----------
+    size : tuple of int
+    count : int
+    depth, ids, position : moderngl.TextureArray
+        See :mod:`pvfiblets.engine.gbuffer`. A layer is empty where those before it left nothing.
+    across : moderngl.TextureArray or None
+        If the G-buffer has it.
+    """
+
+    def __init__(self, ctx: moderngl.Context, gl: OpenGL, target: GBuffer, count: int) -> None:
+        self.size, self.count = target.size, count
+        self.relief = target.relief
+        self.nbytes = 0
+        self._things: list[Any] = []
+        self.across: moderngl.TextureArray | None = None
+        try:
+            self.depth = self._array(ctx, 1, "u4")
+            self.ids = self._array(ctx, 2, "u4")
+            self.position = self._array(ctx, 2, "f4")
+            if self.relief is not None:
+                self.across = self._array(ctx, 1, RELIEF[self.relief])
+            self._framebuffers = [self._framebuffer(ctx, gl, target, layer) for layer in range(count)]
+        except moderngl.Error as error:
+            self.release()
+            width, height = self.size
+            raise GPUMemoryError(f"no memory for {count} layers of {width} x {height} pixels: {error}") from error
+
+    def _array(self, ctx: moderngl.Context, components: int, dtype: str) -> moderngl.TextureArray:
+        array = ctx.texture_array((*self.size, self.count), components, dtype=dtype)
+        array.filter = moderngl.NEAREST, moderngl.NEAREST
+        self._things.append(array)
+        self.nbytes += self.size[0] * self.size[1] * self.count * components * int(dtype[1])
+        return array
+
+    @property
+    def arrays(self) -> dict[str, moderngl.TextureArray]:
+        """All of them, by name."""
+        across = {} if self.across is None else {"across": self.across}
+        return {"depth": self.depth, "ids": self.ids, "position": self.position, **across}
+
+    def _framebuffer(self, ctx: moderngl.Context, gl: OpenGL, target: GBuffer, layer: int) -> moderngl.Framebuffer:
+        # moderngl attaches whole textures: those of the picture hold the places.
+        framebuffer = ctx.framebuffer([getattr(target, name) for name in self.arrays])
+        self._things.append(framebuffer)
+        for attachment, array in enumerate(self.arrays.values()):
+            gl.attach_layer(framebuffer, array, layer, attachment)
+        return framebuffer
+
+    def keep(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, drawn: GBuffer, layer: int) -> None:
+        """Copy a picture into a layer."""
+        features = {None: [], "across": ["ACROSS"], "normal": ["ACROSS", "TUBES"]}[self.relief]
+        program, array = programs.screen("layers/copy.frag", features)
+        for name in self.arrays:
+            getattr(drawn, name).use(_COPY_UNITS[name])
+            program[f"drawn_{name}"] = _COPY_UNITS[name]
+        with gl.framebuffers_kept():
+            ctx.enable_only(moderngl.NOTHING)
+            self._framebuffers[layer].use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+
+    def release(self) -> None:
+        """Give the textures back; twice is harmless."""
+        for thing in reversed(self._things):
+            thing.release()
+        self._things.clear()
+
+
+@dataclass(frozen=True)
+class Peel:
+    """What a picture is drawn behind.
+
+    Attributes
+    ----------
+    layers : LayeredBuffer
+    drawn : int
+        How many of them there are so far.
+    """
+
+    layers: LayeredBuffer
+    drawn: int
+
+    def bind(self, program: Any) -> None:
+        """Bind the layers, and tell a program how many count."""
+        if "peeled_layers" in program:
+            program["peeled_layers"] = self.drawn
+            self.layers.depth.use(PEEL_UNITS["peeled_depth"])
+            self.layers.ids.use(PEEL_UNITS["peeled_ids"])
+            self.layers.position.use(PEEL_UNITS["peeled_position"])
+
+
+class Layers:
+    """Draws layers behind a picture and keeps them.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    programs : Programs
+    make_pipeline : callable
+        Makes a pipeline of its own: what one remembers of the last picture serves the first layer alone.
+    """
+
+    def __init__(
+        self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, make_pipeline: Callable[[], Pipeline]
+    ) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._pipeline = make_pipeline()
+        self._scratch: GBuffer | None = None
+        self._held: LayeredBuffer | None = None
+        self._drawn: tuple[int, int] | None = None
+
+    def of(self, nearest: GBuffer, count: int, make_job: Callable[[], Job]) -> LayeredBuffer:
+        """Return the layers of a picture, drawn unless they are there.
+
+        Parameters
+        ----------
+        nearest : GBuffer
+            The picture.
+        count : int
+            Layers, itself included.
+        make_job : callable
+            Returns the job that it was drawn by, with everything bound.
+
+        Raises
+        ------
+        ValueError
+            If the number of layers is not from 2 to :data:`MOST_LAYERS`.
+        EngineError
+            If memory does not suffice.
+        """
+        if not 2 <= count <= MOST_LAYERS:
+            raise ValueError(f"{count} layers are asked for; give 2 to {MOST_LAYERS}")
+        if self._held is not None and self._drawn == (nearest.generation, count):
+            return self._held
+        self._drawn = None
+        held = self._resize(nearest, count)
+        scratch = self._scratch
+        if scratch is None:
+            raise EngineError("these layers have been released")
+        job = make_job()
+        held.keep(self._ctx, self._gl, self._programs, nearest, 0)
+        for layer in range(1, count):
+            self._pipeline.draw(replace(job, target=scratch, occlusion=None, peel=Peel(held, layer)))
+            held.keep(self._ctx, self._gl, self._programs, scratch, layer)
+        self._drawn = nearest.generation, count
+        return held
+
+    def _resize(self, nearest: GBuffer, count: int) -> LayeredBuffer:
+        """Have textures for a picture like this one."""
+        if self._scratch is not None and self._scratch.size != nearest.size:
+            self._scratch.release()
+            self._scratch = None
+        if self._scratch is None:
+            self._scratch = GBuffer(self._ctx, nearest.size)
+        self._scratch.want_relief(self._ctx, nearest.relief)
+        held = self._held
+        wanted = nearest.size, count, nearest.relief
+        if held is None or (held.size, held.count, held.relief) != wanted:
+            if held is not None:
+                held.release()
+                self._held = None
+            self._held = held = LayeredBuffer(self._ctx, self._gl, self._scratch, count)
+        return held
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        own = sum(buffer.size for buffer in self._pipeline.buffers.values())
+        return own + sum(buffer.nbytes for buffer in (self._scratch, self._held) if buffer is not None)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        self._pipeline.release()
+        for buffer in (self._scratch, self._held):
+            if buffer is not None:
+                buffer.release()
+        self._scratch = self._held = self._drawn = None
