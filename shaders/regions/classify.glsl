@@ -5,7 +5,7 @@
 // the greatest, of "not" the negative.
 //
 // Invariant: never 1 or -1 where one point of the capsule, or one that float32 rounding puts there, lies on the other side.
-// What is not a number compares false, and is undecided.
+// What is not finite makes the slack so, which compares false with everything: undecided.
 
 #include "regions/block.glsl"
 #include "regions/fields.glsl"
@@ -18,7 +18,7 @@ int region_leaf(int leaf, vec3 a, vec3 b, float radius) {
     if (kind >= REGION_SURFACE) return region_field_capsule(leaf, a, b, radius);
 #endif
     vec3 sa, sb, ua = region_unit(leaf, a, sa), ub = region_unit(leaf, b, sb);
-    vec3 slack = max(sa, sb), low = min(ua, ub), high = max(ua, ub), reach = slack + radius * region_slopes[leaf].xyz;
+    vec3 slack = sa + sb, low = min(ua, ub), high = max(ua, ub), reach = slack + radius * region_slopes[leaf].xyz;
     if (kind == REGION_PLANE) return region_side(low.z > reach.z, high.z < -reach.z);
     if (kind == REGION_SLAB) {
         return region_side(max(-low.z, high.z) + reach.z < 1.0, low.z - reach.z > 1.0 || high.z + reach.z < -1.0);

@@ -15,7 +15,7 @@ int region_field_ball(int leaf, vec3 centre, float radius) {
     vec3 beyond = max(abs(u - 0.5 * top) - (0.5 * top + 0.5), 0.0);
     if (length(beyond * pace) * (1.0 - REGION_ROUNDING) > margin) return -1;
     vec3 g = clamp(floor(u + 0.5), vec3(0.0), top);
-    ivec3 texel = ivec3(g);
+    ivec3 texel = clamp(ivec3(g), ivec3(0), region_field_sizes[leaf].xyz - 1);  // g may be no number
     float d = texelFetch(region_fields, region_leaves[leaf].yzw + texel, 0).x;
     int side = d > 0.0 ? 1 : -1;
     if (abs(d) * (1.0 - REGION_ROUNDING) - length((u - g) * pace) * (1.0 + REGION_ROUNDING) > margin) return side;

@@ -15,6 +15,7 @@
 uniform sampler2DArray layers_even, layers_even_end, layers_odd, layers_odd_end, tallies;
 
 const float LAYERS_NONE = -3.0;
+const float LAYERS_BEYOND = 3.0;
 const float LAYERS_BACK = 4096.0;
 
 // Fragments of front and of back faces.
@@ -30,6 +31,9 @@ vec4 layers_ends(vec4 ends, float end) {
     if (depths.z == depths.w) depths.w = LAYERS_NONE;
     return depths;
 }
+
+// Of such depths, 1 for those that there are.
+ivec4 layers_there(vec4 depths) { return ivec4(greaterThan(depths, vec4(0.0))) * ivec4(lessThan(depths, vec4(2.0))); }
 
 void layers_fetch(ivec3 at, out vec4 ends, out float end) {
     ivec3 place = ivec3(at.xy, at.z >> 1);

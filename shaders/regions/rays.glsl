@@ -15,15 +15,11 @@
 //   rows of a sphere   Qxx, Qyy, 2 Qxy, Q11 | 2 Qx1, 2 Qy1, Qxz, Qyz | Qzz, Qz1
 
 layout(std140, binding = 7) uniform Rays {
-    ivec4 rays_info;                                // x: words of the program; y: leaves
-    ivec4 rays_program[{{ max_region_ops }} / 4];   // postfix, four words to a row: a leaf, or one of the words below
-    ivec4 rays_leaves[{{ max_region_leaves }}];     // x: kind, as below; y: first row; z: rows;
-                                                    // of a surface: y: first layer, z: layers
-    vec4 rays_centres[{{ max_region_leaves }}];     // c; of a surface: the rectangle of pixels that it may touch
-    vec4 rays_rows[6 * {{ max_region_leaves }}];
+    vec4 rays_rows[6 * {{ leaves }}];        // six a leaf
+    vec4 rays_centres[{{ leaves }}];         // c; of a surface: the rectangle of pixels that it may touch
+    ivec4 rays_surfaces[{{ leaves }}];       // of a surface: first layer, layers, first of its tallies or -1
 };
 
-const int RAYS_AND = -1, RAYS_OR = -2, RAYS_NOT = -3;
 const int RAYS_PLANES = 0, RAYS_SPHERE = 1, RAYS_SURFACE = 2;
 
 const vec2 RAYS_NOWHERE = vec2(3.0, -3.0);
@@ -31,10 +27,11 @@ const float RAYS_FAR = 3.0;  // beyond any depth
 
 float rays_bounded(float z) { return clamp(z, -RAYS_FAR, RAYS_FAR); }
 
-vec2 rays_planes(ivec4 leaf, vec3 centre, vec2 pixel) {
+vec2 rays_planes(int leaf, int planes, vec2 pixel) {
+    vec3 centre = rays_centres[leaf].xyz;
     vec2 d = pixel - centre.xy, span = vec2(-RAYS_FAR, RAYS_FAR);
-    for (int k = leaf.y; k < leaf.y + leaf.z; ++k) {
-        vec4 row = rays_rows[k];
+    for (int k = 0; k < planes; ++k) {
+        vec4 row = rays_rows[6 * leaf + k];
         float height = dot(row.xy, d) + row.w;
         if (row.z == 0.0) {
             if (height < 0.0) return RAYS_NOWHERE;
@@ -47,9 +44,10 @@ vec2 rays_planes(ivec4 leaf, vec3 centre, vec2 pixel) {
     return span.x <= span.y ? span : RAYS_NOWHERE;
 }
 
-vec2 rays_sphere(ivec4 leaf, vec3 centre, vec2 pixel) {
+vec2 rays_sphere(int leaf, vec2 pixel) {
+    vec3 centre = rays_centres[leaf].xyz;
     vec2 d = pixel - centre.xy;
-    vec4 xy = rays_rows[leaf.y], slope = rays_rows[leaf.y + 1], along = rays_rows[leaf.y + 2];
+    vec4 xy = rays_rows[6 * leaf], slope = rays_rows[6 * leaf + 1], along = rays_rows[6 * leaf + 2];
     float a = along.x, b = along.y + slope.z * d.x + slope.w * d.y;
     float c = xy.w + d.x * (slope.x + xy.x * d.x + xy.z * d.y) + d.y * (slope.y + xy.y * d.y);
     float discriminant = b * b - a * c;

@@ -1,0 +1,41 @@
+// What the CPU asks of a surface's layers (regions/layers.glsl), by squares of pixels:
+//
+//   x   the most fragments of front or of back faces at a pixel; a layer holds two of each
+//   y   1 where fragments share a depth, so that all layers together hold fewer than there are
+
+#version 430
+
+#include "regions/layers.glsl"
+
+uniform ivec4 rectangle;  // that the surface may touch: left, lower, right, upper
+uniform int base, count;  // first layer, and how many
+
+out vec2 found;
+
+const int SQUARE = 4;  // as in pvfiblets/engine/surface_layers.py
+
+void main() {
+    ivec2 low = ivec2(gl_FragCoord.xy) * SQUARE + rectangle.xy, high = min(low + SQUARE, rectangle.zw);
+    int most = 0;
+    bool shared_depth = false;
+    for (int y = low.y; y < high.y; ++y) {
+        for (int x = low.x; x < high.x; ++x) {
+            vec4 ends;
+            float end;
+            layers_fetch(ivec3(x, y, base), ends, end);
+            ivec2 fragments = layers_counts(ends.w);
+            int larger = max(fragments.x, fragments.y);
+            most = max(most, larger);
+            if (larger == 0 || larger > 2 * count) continue;
+            int left = fragments.x + fragments.y;
+            for (int layer = base; left > 0; ++layer) {
+                ivec4 there = layers_there(layers_ends(ends, end));
+                left -= there.x + there.y + there.z + there.w;
+                if (layer + 1 == base + count) break;
+                layers_fetch(ivec3(x, y, layer + 1), ends, end);
+            }
+            shared_depth = shared_depth || left > 0;
+        }
+    }
+    found = vec2(most, shared_depth);
+}

@@ -1,0 +1,15 @@
+// A closed surface for its layers. It is cut at the near plane, for what lies before that has no boundary in the picture and
+// its window depths have no digits; beyond the far plane depths are clamped (pvfiblets/engine/surface_layers.py).
+
+#version 430
+
+in vec3 position;
+
+uniform mat4 clip_from_surface;
+
+invariant gl_Position;
+
+void main() {
+    gl_Position = clip_from_surface * vec4(position, 1.0);
+    gl_ClipDistance[0] = gl_Position.z + gl_Position.w;
+}
