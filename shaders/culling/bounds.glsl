@@ -9,7 +9,6 @@
 // can tell from it: whose capsule is thinner than detail.z pixels, and whose end slips no further. The nearest end decides.
 
 #include "decode/record.glsl"
-#include "frame/tubes.glsl"
 
 struct Capsule { vec3 a; vec3 b; float r; float slip; };
 

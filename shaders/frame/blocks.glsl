@@ -31,3 +31,5 @@ layout(std140, binding = 2) uniform Chunk {
     uvec4 chunk_bases;     // x: first rank here, y: bits per stored value, z: pages here, w: where end vectors start
     vec4 chunk_values;     // x: value of code 0, y: value per code
 };
+
+#include "frame/tubes.glsl"

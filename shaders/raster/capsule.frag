@@ -1,14 +1,34 @@
 // A pixel of a wide line, as raster/segments.glsl finds it for the compute pipeline: its centre is at most half the width from
 // the segment; the round end at a segment's start is left out where another segment ends, for it is that one's; what lies
-// beyond a plane of the caller's at the depth that it shows is left out.
+// beyond a plane of the caller's at the depth that it shows is left out. A pixel of a tube: raster/tube.glsl.
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
 #extension GL_NV_mesh_shader : require
 #endif
 
+#include "codec/layout.glsl"
 #include "raster/shade.glsl"
 #include "frame/clip_planes.glsl"
+
+#if FEATURE_TUBES
+#include "raster/tube.glsl"
+#if FEATURE_ACROSS
+#include "attributes/tangent.glsl"
+#endif
+
+void main() {
+    precise vec4 c0 = to_homogeneous(handed_from), c1 = to_homogeneous(handed_to);
+    Tube body = tube_of(handed_from, handed_to, c0, (handed_ids.w & 0x10000u) != 0u);
+    Outline outline;
+    Hit hit;
+    if (!outline_of(c0, c1, outline) || !tube_at(body, c0, outline, gl_FragCoord.xy, hit)) discard;
+#if FEATURE_ACROSS
+    shown_across = packed_direction(hit.normal);
+#endif
+    shade(hit.t, 1.0, hit.z);
+}
+#else
 
 #if FEATURE_CLIP_PLANES
 // Heights over clip w are linear in the window; `away` is how far the pixel is from the segment's point s.
@@ -33,5 +53,9 @@ void main() {
     if (!brush_kept(s, away)) discard;
 #endif
     precise float depth = handed_start.z + (handed_end.z - handed_start.z) * s;
+#if FEATURE_ACROSS
+    shown_across = clamp(dot(vec2(-run.y, run.x), centre) / (viewport.z * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
+#endif
     shade(s, handed_start.w / handed_end.w, depth);
 }
+#endif

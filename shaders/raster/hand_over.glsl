@@ -21,6 +21,10 @@ void hand_over(Handed handed, Piece piece, vec3 from, vec3 to) {
     uint flags = handed.segment | (uint(handed.steps) << 8u) | (piece.start ? 0x10000u : 0u);
     TO(handed_ids) = uvec4(handed.ids, handed.owner, flags);
     TO(handed_first) = handed.first;
+#if FEATURE_TUBES
+    TO(handed_from) = from;
+    TO(handed_to) = to;
+#else
 #if FEATURE_WIDE_LINES
     TO(handed_start) = piece.a;
     TO(handed_end) = piece.b;
@@ -36,6 +40,7 @@ void hand_over(Handed handed, Piece piece, vec3 from, vec3 to) {
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
     TO(handed_from) = mix(from, to, piece.t0);
     TO(handed_to) = mix(from, to, piece.t1);
+#endif
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
     TO(handed_values) = handed.values;

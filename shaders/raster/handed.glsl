@@ -7,15 +7,15 @@
 // Budget: how many components a vertex has, its position included, decides how many vertices a geometry stage may emit
 // (pvfiblets/engine/pipelines/geometry.py).
 //
-//                      thin lines   wide lines
-//   position                4            4
-//   handed_ids              4            4
-//   handed_first            1            1
-//   handed_ends             4            8
-//   handed_ratio            1            0
-//   handed_part             1            1     where segments may be cut
-//   handed_from, _to        0            6     at planes of the caller's
-//   handed_values           2            2     with some per-point values
+//                      thin lines   wide lines   tubes
+//   position                4            4         4
+//   handed_ids              4            4         4
+//   handed_first            1            1         1
+//   handed_ends             4            8         0
+//   handed_ratio            1            0         0
+//   handed_part             1            1         0     where segments may be cut
+//   handed_from, _to        0            6         6     of wide lines, at planes of the caller's
+//   handed_values           2            2         2     with some per-point values
 
 #ifndef EACH
 #define EACH
@@ -24,6 +24,10 @@
 HANDED uvec4 handed_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
                                    // and whether the streamline starts here in bit 16
 HANDED float handed_first EACH;    // index of the fiblet's first point within the streamline
+#if FEATURE_TUBES
+HANDED vec3 handed_from EACH;      // ends of the segment, local mm
+HANDED vec3 handed_to EACH;
+#else
 #if FEATURE_WIDE_LINES
 HANDED vec4 handed_start EACH;     // ends of the part that is drawn: window x, y; depth; clip w
 HANDED vec4 handed_end EACH;
@@ -38,6 +42,7 @@ HANDED uint handed_part EACH;      // which part of the segment it is: start and
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
 HANDED vec3 handed_from EACH;      // the part's ends, local mm
 HANDED vec3 handed_to EACH;
+#endif
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
 HANDED vec2 handed_values EACH;    // at the segment's ends

@@ -7,8 +7,15 @@
 //   t0, t1       where they lie on the segment
 //   start, cap   the line starts at a, ends at b: nothing is drawn before or after that this part would be joined to
 
+//
+// Tubes are not clipped: what their outline (raster/tube.glsl) reaches is looked at pixel by pixel, and a, b are the ends of the
+// part of the axis that it is around.
+
 #include "raster/project.glsl"
 #include "frame/clip_planes.glsl"
+#if FEATURE_TUBES
+#include "raster/tube.glsl"
+#endif
 
 struct Piece {
     vec4 a;
@@ -17,11 +24,20 @@ struct Piece {
     float t1;
     bool start;
     bool cap;
+#if FEATURE_TUBES
+    float reach;    // pixels away from a b
+#endif
 };
 
 // False if nothing is left.
 bool piece_of(vec3 from, vec3 to, bool start, bool cap, out Piece piece) {
     precise vec4 c0 = to_homogeneous(from), c1 = to_homogeneous(to);
+#if FEATURE_TUBES
+    Outline outline;
+    bool any = outline_of(c0, c1, outline);
+    piece = Piece(outline.a, outline.b, 0.0, 1.0, start, cap, outline.reach);
+    return any;
+#else
     piece = Piece(to_window(c0), to_window(c1), 0.0, 1.0, start, cap);
 #if FEATURE_CLIPPING
     bool inside = in_volume(c0) && in_volume(c1);
@@ -39,4 +55,5 @@ bool piece_of(vec3 from, vec3 to, bool start, bool cap, out Piece piece) {
     piece = Piece(piece.a, piece.b, t0, t1, start || t0 > 0.0, cap || t1 < 1.0);
 #endif
     return true;
+#endif
 }

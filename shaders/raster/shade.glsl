@@ -1,4 +1,4 @@
-// What a fragment says of its pixel: the four attachments of pvfiblets/engine/pipelines/raster.py.
+// What a fragment says of its pixel: the attachments of pvfiblets/engine/pipelines/raster.py.
 //
 // Ties (equal depth in one pixel) go to the fiblet with the smallest index, as in the compute pipeline: OpenGL draws in
 // order, and a later fragment must be nearer. In the second round of two-phase culling it may also be as near as the first
@@ -15,6 +15,7 @@
 #define HANDED flat in
 #endif
 #include "raster/handed.glsl"
+#include "raster/peel.glsl"
 #if FEATURE_VALUES_STORED || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
 #include "decode/sequential.glsl"
 #include "attributes/place.glsl"
@@ -25,6 +26,13 @@ layout(location = 0) out uint shown_depth;
 layout(location = 1) out uint shown_owner;
 layout(location = 2) out uvec2 shown_ids;
 layout(location = 3) out vec2 shown_position;
+#if FEATURE_ACROSS
+#if FEATURE_TUBES
+layout(location = 4) out uint shown_across;
+#else
+layout(location = 4) out float shown_across;
+#endif
+#endif
 
 #if FEATURE_SECOND_ROUND
 uniform usampler2D first_round;  // depth key and owner
@@ -67,7 +75,14 @@ void shade(float s, float ratio, float depth) {
     if (key == before.x && handed_ids.z > before.y) discard;
 #endif
     float t = clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0), steps = float((handed_ids.w >> 8u) & 255u);
-#if FEATURE_CLIPPING
+#if FEATURE_PEEL
+    begin_peel(handed_ids.x, handed_first);
+#if FEATURE_WIDE_LINES
+    peel_segment(handed_start.xy, handed_end.xy, viewport.z, steps);
+#endif
+    if (!behind_layers(ivec2(gl_FragCoord.xy), key, segment)) discard;
+#endif
+#if FEATURE_CLIPPING && !FEATURE_TUBES
     t = mix(float(handed_part & 0xFFFFu), float(handed_part >> 16u), t) / 65535.0;
 #endif
     shown_depth = key;

@@ -29,7 +29,6 @@
 // r |J| / W_near for the part of it that can show. |J| is convex along the axis, so that the larger of both ends' serves.
 
 #include "raster/project.glsl"
-#include "frame/tubes.glsl"
 #include "frame/clip_planes.glsl"
 
 struct Outline {
