@@ -85,7 +85,7 @@ def slab(normal: Any, origin: Any, thickness: float) -> Region:
 def _surface(mesh: pv.PolyData) -> Region:
     from pvfiblets import regions
 
-    if mesh.n_cells == 0 or mesh.n_faces_strict == 0:
+    if mesh.GetNumberOfPolys() + mesh.GetNumberOfStrips() == 0:
         raise ValueError(
             f"the mesh has {mesh.n_points} points and no faces, and encloses nothing; give a closed surface"
         )
