@@ -1,7 +1,8 @@
 // Asks of every streamline where its points lie. Three passes over a batch of fiblets, one invocation each:
-//   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed
-//   SIFT         of those, list the ones whose streamline's answer is still open: one that has points inside and points
-//                outside by now has only its two ends to be asked about
+//   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed. A streamline's first point is an
+//                anchor; its last is no farther from the rounded end vector than the rounding (Capsule.slip), or asked for
+//   SIFT         of those, list the ones whose streamline's answer is still open: not where it has points inside and points
+//                outside by now, unless its last point is asked for
 //   DECODE       the points of these, until the streamline's answer is settled
 // Lists keep neighbouring invocations busy alike.
 //
@@ -22,8 +23,9 @@ layout(local_size_x = {{ group_size }}) in;
 #include "compute/groups.glsl"
 
 layout(std430, binding = 5) buffer Answers { uint answers[]; };
-layout(std430, binding = 7) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size
+layout(std430, binding = 7) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size; an entry may have the bit
 
+const uint LAST_ASKED = 0x80000000u;  // a chunk has fewer fiblets
 const uint CLASSIFY = 0u, SIFT = 1u, DECODE = 2u;
 
 uniform uint stage;
@@ -69,29 +71,29 @@ uint between(vec3 a, vec3 b, float margin) {
     return found;
 }
 
-uint decoded_answer(uint f, uint known) {
-    bool first = begins(f), last = ends(f), settled = (known & SETTLED) == SETTLED;
+uint decoded_answer(uint f, bool last, uint known) {
+    bool settled = (known & SETTLED) == SETTLED;
     walk_begin(f);
     uint found = 0u;
     float margin = 0.0;
-    for (uint i = 0u; i <= walk.last; ++i) {
+    for (uint i = 0u; i <= walk.last; ++i) {  // the anchor itself was tried before, but its margin is asked for
         vec3 before = walk_point;
         float margin_before = margin;
         if (i > 0u) walk_next(i);
-        bool at_first = first && i == 0u, at_last = last && i == walk.last;
-        if (settled && !at_first && !at_last) {
+        bool at_last = last && i == walk.last;
+        if (settled && !at_last) {
             if (last) continue;
             break;
         }
         margin = walk_margin(i);
+        if (i == 0u && !at_last) continue;
         int side = region_of_ball(walk_point, margin);
         found |= place_of(side);
-        if (at_first) found |= side > 0 ? FIRST_INSIDE : side == 0 ? FIRST_UNSURE : 0u;
         if (at_last) found |= side > 0 ? LAST_INSIDE : side == 0 ? LAST_UNSURE : 0u;
         if (sampling > 0.0 && i > 0u && !settled) found |= between(before, walk_point, max(margin, margin_before));
         settled = ((known | found) & SETTLED) == SETTLED;
     }
-    if (sampling > 0.0 && !settled && !last) {
+    if (sampling > 0.0 && !settled && !ends(f)) {
         vec3 next = anchor_local(f + 1u);
         found |= between(walk_point, next, max(margin, 8.0 * EPSILON * length(next)));
     }
@@ -101,20 +103,33 @@ uint decoded_answer(uint f, uint known) {
 void main() {
     uint slot = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (slot >= (stage == CLASSIFY ? batch_size : counts[stage - 1u])) return;
-    uint f = batch_first + slot;
-    if (stage == SIFT) f = lists[slot];
-    if (stage == DECODE) f = lists[batch_size + slot];
+    uint f = stage == CLASSIFY ? batch_first + slot : lists[(stage == SIFT ? 0u : batch_size) + slot];
+    bool last_asked = (f & LAST_ASKED) != 0u;
+    f &= ~LAST_ASKED;
     uint rank = rank_of(f) - chunk_bases.x, shift = 8u * (rank & 3u);
     uint known = (answers[rank >> 2] >> shift) & 255u, found = 0u;
+    bool open = (known & SETTLED) != SETTLED || last_asked;
     if (stage == CLASSIFY) {
         Capsule c = capsule_of(f);
         int side = region_of_capsule(c.a, c.b, c.r);
-        if (side == 0) lists[atomicAdd(counts[0], 1u)] = f;
-        else found = side < 0 ? OUTSIDE : INSIDE | (begins(f) ? FIRST_INSIDE : 0u) | (ends(f) ? LAST_INSIDE : 0u);
+        bool first = begins(f), last = ends(f);
+        if (side != 0) {
+            found = side < 0 ? OUTSIDE : INSIDE | (first ? FIRST_INSIDE : 0u) | (last ? LAST_INSIDE : 0u);
+        } else {
+            float margin = 8.0 * EPSILON * (length(c.a) + length(c.b));
+            side = region_of_ball(c.a, margin);
+            found = place_of(side);
+            if (first) found |= side > 0 ? FIRST_INSIDE : side == 0 ? FIRST_UNSURE : 0u;
+            if (last && (side = region_of_ball(c.b, c.slip + margin)) != 0) {
+                found |= place_of(side) | (side > 0 ? LAST_INSIDE : 0u);
+                last = false;
+            }
+            lists[atomicAdd(counts[0], 1u)] = last ? f | LAST_ASKED : f;
+        }
     } else if (stage == SIFT) {
-        if ((known & SETTLED) != SETTLED || begins(f) || ends(f)) lists[batch_size + atomicAdd(counts[1], 1u)] = f;
-    } else {
-        found = decoded_answer(f, known);
+        if (open) lists[batch_size + atomicAdd(counts[1], 1u)] = lists[slot];
+    } else if (open) {
+        found = decoded_answer(f, last_asked, known);
     }
     if ((found & ~known) != 0u) atomicOr(answers[rank >> 2], found << shift);
 }
