@@ -18,6 +18,7 @@ from pvfiblets.plotting.scalars import Scalars, find_scalars
 from pvfiblets.plotting.selecting import Selecting
 from pvfiblets.plotting.shading import Shading
 from pvfiblets.plotting.sources import with_point_values
+from pvfiblets.plotting.transparency import Transparency
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes import VolumeSource
 
 
-class FibletActor(Engines, Filtering, Selecting, Shading, pv.Actor):
+class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -81,6 +82,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, pv.Actor):
         self._init_shading()
         self._bar_changed: Callable[[FibletActor], None] | None = None
         self._init_filtering()
+        self._init_selection()
         mapper = PlottedMapper(fiblets, options=options, progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
@@ -138,6 +140,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, pv.Actor):
         twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
         twin.visibility, twin.pickable = self.visibility, self.pickable
         twin._shade_like(self)
+        twin.transparency = self.transparency
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -336,6 +339,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, pv.Actor):
             self._mapper.colouring = Colouring()
         self._mapper.set_fiblets(fiblets)
         self._fiblets = fiblets
+        self._reselect()
 
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:

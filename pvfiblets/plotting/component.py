@@ -90,6 +90,7 @@ class FibletsComponent(Picking, Widgets):
         flip_scalars: bool = False,
         categories: bool = False,
         opacity: float = 1.0,
+        transparency: str | int | None = None,
         line_width: float | None = None,
         lighting: bool | None = True,
         name: str | None = None,
@@ -142,6 +143,9 @@ class FibletsComponent(Picking, Widgets):
             As many colours as there are different values, instead of ``n_colors``.
         opacity : float, default: 1.0
             Of all streamlines.
+        transparency : {None, "layers"} or int, optional
+            How many layers of lines show through each other where ``opacity`` is below 1:
+            ``None``, the nearest alone; ``"layers"``, four; or a number from 2 to 64.
         line_width : float, optional
             In pixels; the theme's by default.
         lighting : bool, default: True
@@ -231,6 +235,7 @@ class FibletsComponent(Picking, Widgets):
             options=engine,
             progress=progress,
         )
+        actor.transparency = transparency
         if user_matrix is not None:
             actor.user_matrix = user_matrix
         if show_scalar_bar is None:
@@ -292,6 +297,7 @@ class FibletsComponent(Picking, Widgets):
 
     def _track(self, actor: FibletActor, renderer: Any) -> None:
         self._actors.append(actor)
+        actor.entered(renderer)
         address = renderer.GetAddressAsString("")
         if address not in self._renderers:
             # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
@@ -310,11 +316,11 @@ class FibletsComponent(Picking, Widgets):
         self._actors.remove(actor)
         self._bars.pop(actor.memory_address, None)
         actor.watch(None)
-        actor.mapper.release(self._plotter.render_window)
+        actor.release(self._plotter.render_window)
 
     def _raise_pending(self, _plotter: Any = None) -> None:
         for actor in self:
-            actor.mapper.raise_pending()
+            actor.raise_pending()
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""

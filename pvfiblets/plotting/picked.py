@@ -141,7 +141,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
     where = Places.of(part)
     offsets = np.concatenate([[0], np.cumsum(where.points)])
     rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
-    return np.asarray(measured.values, np.float64)[rows], offsets
+    return np.asarray(measured.array(), np.float64)[rows], offsets
 
 
 def visible(
