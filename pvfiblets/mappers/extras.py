@@ -38,6 +38,8 @@ class Draw:
     renderer : vtkRenderer
     fiblets : FibletSet
         What is drawn.
+    actor : vtkActor
+        Of the mapper.
     """
 
     ctx: Any
@@ -48,6 +50,7 @@ class Draw:
     style: Any
     renderer: Any
     fiblets: Any
+    actor: Any
 
 
 class Kept(Protocol):

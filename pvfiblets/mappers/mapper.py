@@ -22,10 +22,12 @@ from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
 from pvfiblets.mappers.extras import Draw, Extra, prepare_extras, set_extra_uniforms, styled
+from pvfiblets.mappers.layers import layers_of, with_layers
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.questions import Questions
 from pvfiblets.mappers.scene import frame_of, others_before, world_planes
+from pvfiblets.mappers.tubes import thickened, thickness_of
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
@@ -110,8 +112,15 @@ class FibletMapper(Questions, vtkOpenGLPolyDataMapper):
         """
         self._colouring.check_count(fiblets.n_streamlines)
         self._fiblets = fiblets
-        bounds = fiblets.bounds if fiblets.n_streamlines and fiblets.n_points else None
-        self.SetInputData(proxy_polydata(bounds))
+        self._set_proxy()
+
+    def _set_proxy(self) -> None:
+        """Give VTK its geometry; setting it makes VTK build the shaders anew."""
+        drawn = self._fiblets.n_streamlines and self._fiblets.n_points
+        self._layers = layers_of(self._extras.values())
+        self._thickness = thickness_of(self._extras.values())
+        bounds = thickened(self._fiblets.bounds, self._thickness) if drawn else None
+        self.SetInputData(proxy_polydata(bounds, self._layers))
 
     @property
     def line_width(self) -> float:
@@ -176,6 +185,9 @@ class FibletMapper(Questions, vtkOpenGLPolyDataMapper):
             self._extras.pop(name, None)
         else:
             self._extras[name] = extra
+        made_for = self._layers, self._thickness
+        if (layers_of(self._extras.values()), thickness_of(self._extras.values())) != made_for:
+            self._set_proxy()
         self._install()
         self._actor_modified()
 
@@ -223,7 +235,7 @@ class FibletMapper(Questions, vtkOpenGLPolyDataMapper):
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader in use."""
         extras = frozenset().union(*(extra.features for extra in self._extras.values()))
-        return frozenset({"gbuffer", "normal"} | self._colouring.features | extras)
+        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | extras))
 
     def _install(self) -> None:
         """Bring the actor's shader pieces and its translucency up to date."""
@@ -282,10 +294,10 @@ class FibletMapper(Questions, vtkOpenGLPolyDataMapper):
         with context.foreign():
             engine = self._engine(context, slot)
             outside = None
-            if engine.needs_outside(view, style) and others_before(renderer, actor):
+            if self._layers == 1 and engine.needs_outside(view, style) and others_before(renderer, actor):
                 outside = slot.outside_depth(context.ctx).copy(viewport)
             buffer = engine.render(view, style, outside=outside)
-            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._fiblets)
+            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._fiblets, actor)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
             textures |= prepare_extras(slot, self._extras, draw)
             units = context.texture_units(len(textures))

@@ -9,8 +9,8 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 
-def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
-    """Return two triangles that have the given bounds and cover nothing until the vertex shader places them.
+def proxy_polydata(bounds: Sequence[float] | None, layers: int = 1) -> vtkPolyData:
+    """Return two triangles for each layer, which have the given bounds and cover nothing until the vertex shader does.
 
     ``reset_camera``, the clipping range and VTK's frustum culling take the bounds from them; the vertex
     shader spreads them over the part of the viewport that the bounds cover. One sits with all its
@@ -22,11 +22,13 @@ def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
     ----------
     bounds : sequence of float or None
         xmin, xmax, ymin, ymax, zmin, zmax in mm; None (nothing to draw) gives empty polydata.
+    layers : int, default 1
+        How many there are (`pvfiblets.mappers.layers`); vertex and triangle numbers tell them apart.
 
     Returns
     -------
     vtkPolyData
-        Six points and two triangles, or empty.
+        Six points and two triangles for each layer, or empty.
     """
     polydata = vtkPolyData()
     points = vtkPoints()
@@ -39,7 +41,8 @@ def proxy_polydata(bounds: Sequence[float] | None) -> vtkPolyData:
     # At least some units in the last place, so that the vertices differ however far from the origin they are.
     apart = np.maximum(max(1e-9 * extent.max(), 1e-12), 8.0 * np.spacing(np.maximum(np.abs(least), np.abs(greatest))))
     triangles = vtkCellArray()
-    for first, corner, inwards in ((0, least, apart), (3, greatest, -apart)):
+    for first in range(0, 6 * layers, 3):
+        corner, inwards = (greatest, -apart) if first % 6 else (least, apart)
         for vertex in range(3):
             points.InsertNextPoint(corner + inwards * (np.arange(3) == vertex - 1))
         triangles.InsertNextCell(3, (first, first + 1, first + 2))

@@ -23,11 +23,15 @@ from pvfiblets.engine.shaders import read_shader
 
 FEATURES = (
     "gbuffer",
+    "layers",
     "normal",
+    "tube_shading",
+    "tube_normal",
     "colour_orientation",
     "colour_solid",
     "colour_streamline",
     "colour_point_value",
+    "layers_value",
     "scale_logarithm",
     "highlight",
     "illuminated",
@@ -36,6 +40,7 @@ FEATURES = (
     "depth_cue",
     "halo",
     "silhouette",
+    "layers_covered",
 )
 """Every feature, in the order in which pieces for the same tag follow each other."""
 

@@ -35,7 +35,8 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     program.SetUniform2i("fibletOrigin", (x, y))
     program.SetUniform2i("fibletSize", (width, height))
     # Decoded points may lie outside the bounds, by as much as the promise.
-    rectangle = frame.rectangle(fiblets.bounds, fiblets.promise, style.line_width / 2.0 + 2.0)
+    slack = fiblets.promise + (style.radius or 0.0)
+    rectangle = frame.rectangle(fiblets.bounds, slack, style.line_width / 2.0 + 2.0)
     program.SetUniform4f("fibletRectangle", rectangle)
     # VTK takes matrices column by column here.
     program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())

@@ -15,6 +15,7 @@ uniform vec3 fibletTableRange;         // lo, hi, n / (hi - lo); logarithms of l
 
 //@ fragment after //VTK::Color::Impl
   float fibletValue = texelFetch(fibletPositionMap, fibletPixel, 0).g;
+//pvfiblets::Value::Impl
   int fibletEntry;
   if (isnan(fibletValue))
   {

@@ -58,6 +58,7 @@ vec3 fibletDirection(uint word)
     discard;
   }
   uvec2 fibletIds = texelFetch(fibletIdMap, fibletPixel, 0).rg;
+//pvfiblets::Ids::Impl
   float fibletDepth = float(fibletKey) / 4294967295.0;
   vec3 fibletTangent = fibletDirection(fibletIds.y);
   vec2 fibletNDC = 2.0 * (vec2(fibletPixel) + 0.5) / vec2(fibletSize) - 1.0;

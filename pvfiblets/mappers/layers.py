@@ -1,0 +1,108 @@
+"""An extra that lets lines be looked through: several layers of the picture, blended in order.
+
+The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
+engine keeps as many layers (`pvfiblets.engine.layers`). While the actor is opaque neither is drawn, and no layer behind
+the nearest is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import moderngl
+
+from pvfiblets.engine.layers import MOST_LAYERS
+
+__all__ = ["Layers", "layers_of", "with_layers"]
+
+
+class _Held:
+    """What is kept in one window: the engine that has layers, or empty textures in their place."""
+
+    def __init__(self, ctx: Any) -> None:
+        self._ctx = ctx
+        self._engine: Any = None
+        self._empty: dict[str, Any] = {}
+        self.count = 1
+
+    def layers(self, draw: Any, count: int) -> dict[str, Any]:
+        """Return texture arrays by what they hold."""
+        self._engine, self.count = draw.engine, count
+        return dict(draw.engine.render_layers(draw.view, draw.style, count).arrays)
+
+    def empty(self) -> dict[str, Any]:
+        """Return what samplers of arrays may look at where there is nothing; no other kind of texture will do."""
+        self.count = 1
+        self._drop_layers()
+        if not self._empty:
+            for name, components, dtype in (("depth", 1, "u4"), ("ids", 2, "u4"), ("position", 2, "f4")):
+                self._empty[name] = array = self._ctx.texture_array((1, 1, 1), components, dtype=dtype)
+                array.filter = moderngl.NEAREST, moderngl.NEAREST
+        return self._empty
+
+    def _drop_layers(self) -> None:
+        if self._engine is not None:
+            self._engine.drop_layers()
+            self._engine = None
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        self._drop_layers()
+        for array in self._empty.values():
+            array.release()
+        self._empty.clear()
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Where the actor is translucent, several layers show.
+
+    Parameters
+    ----------
+    count : int, default 4
+        Layers, 2 to 64. What lies behind the last is not seen. Each takes 20 bytes a pixel and a pass over all
+        fiblets in view, whenever the camera, the data or the style has changed.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer or more.
+    """
+
+    count: int = 4
+    features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered"})
+    style: ClassVar[Mapping[str, Any]] = {}
+
+    def __post_init__(self) -> None:
+        if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:
+            raise ValueError(f"{self.count!r} layers are asked for; give a whole number from 2 to {MOST_LAYERS}")
+        object.__setattr__(self, "count", int(self.count))
+
+    def make(self, ctx: Any) -> _Held:
+        """Make room for a window's textures."""
+        return _Held(ctx)
+
+    def prepare(self, kept: _Held, draw: Any) -> Mapping[str, Any]:
+        """Have the engine draw the layers, unless nothing shows through or VTK selects."""
+        through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
+        arrays = kept.layers(draw, self.count) if through else kept.empty()
+        names = {"fibletDepthLayers": "depth", "fibletIdLayers": "ids", "fibletPositionLayers": "position"}
+        return {sampler: arrays[name] for sampler, name in names.items()}
+
+    def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all extras
+        """Say how many there are."""
+        program.SetUniformi("fibletLayerCount", kept.count)
+
+
+def layers_of(extras: Iterable[Any]) -> int:
+    """Return how many layers a mapper's geometry must have."""
+    return max((extra.count for extra in extras if isinstance(extra, Layers)), default=1)
+
+
+def with_layers(features: frozenset[str]) -> frozenset[str]:
+    """Return the pieces of the resolve, with those that layers need beside others."""
+    if {"layers", "colour_point_value"} <= features:
+        return features | {"layers_value"}
+    return features
