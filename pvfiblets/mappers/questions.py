@@ -78,7 +78,7 @@ class Questions:
         -------
         dict
             Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
-            shader; ``textures``: name and bytes of the mapper's own textures.
+            shader; ``textures``: name and bytes of the mapper's own textures and those of its extras.
         """
         windows, textures = [], []
         for context in contexts_with(self):
@@ -87,6 +87,11 @@ class Questions:
                 context.window.MakeCurrent()
                 with context.foreign():
                     windows.append(slot.renderer.explain())
+                    for _, kept in slot.extras.values():
+                        if hasattr(kept, "explain"):
+                            costs = kept.explain()
+                            windows[-1]["passes"] += costs["passes"]
+                            textures += costs["buffers"]
             textures += [
                 {"name": name, "bytes": texture.width * texture.height * texture.components}
                 for name, texture in slot.textures.items()

@@ -23,6 +23,9 @@ __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silho
 
 Colour = tuple[float, float, float]
 
+LEAST_HALO = 2.5
+"""Pixels of the window by default: as wide as a thin line's halo must be to be told from it."""
+
 MAX_OUTLINE = 16.0
 """Pixels of the window; an outline's cost grows with the square of its width."""
 
@@ -179,7 +182,7 @@ class Halos(_Piece):
     ----------
     width : float, optional
         mm from a line's edge to its halo's, at most 32 pixels on the screen. By default a 250th of the diagonal of the
-        data's bounds.
+        data's bounds, or what 2.5 pixels of the window take in the middle of the data, if that is more.
     depth : float, optional
         mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each
         other alone. By default a 20th of the diagonal.
@@ -217,7 +220,10 @@ class Halos(_Piece):
 
     def sizes(self, draw: Draw) -> tuple[float, float]:
         """Return width and depth in mm."""
-        width = extent(draw) / 250.0 if self.width is None else self.width
+        width = self.width
+        if width is None:
+            pixel = _enlarged(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
+            width = max(extent(draw) / 250.0, LEAST_HALO * pixel)
         return width, extent(draw) / 20.0 if self.depth is None else self.depth
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
@@ -300,7 +306,7 @@ def extent(draw: Draw) -> float:
 def distances(draw: Draw) -> tuple[float, float]:
     """Return the distances in mm of the nearest and the farthest corner of the bounds; not behind the viewer."""
     bounds = np.asarray(draw.fiblets.bounds, np.float64)
-    slack = np.array([-draw.fiblets.promise, draw.fiblets.promise])
+    slack = (draw.fiblets.promise + (draw.style.radius or 0.0)) * np.array([-1.0, 1.0])
     ends = [bounds[axis : axis + 2] + slack for axis in (0, 2, 4)]
     corners = np.array([[x, y, z, 1.0] for x in ends[0] for y in ends[1] for z in ends[2]])
     away = -(corners @ draw.frame.model_view[2])
@@ -316,7 +322,8 @@ def background(renderer: Any) -> tuple[Colour, Colour]:
 def widen(program: Any, draw: Draw) -> None:
     """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
     margin = draw.style.line_width / 2.0 + 2.0 + max(WIDEST, MAX_OUTLINE * _enlarged(draw))
-    rectangle = draw.frame.rectangle(draw.fiblets.bounds, draw.fiblets.promise, margin)
+    slack = draw.fiblets.promise + (draw.style.radius or 0.0)
+    rectangle = draw.frame.rectangle(draw.fiblets.bounds, slack, margin)
     program.SetUniform4f("fibletRectangle", rectangle)
 
 

@@ -75,10 +75,10 @@ class Shading:
         """Gaps that lines cut into lines behind them, the wider the farther behind (Everts et al. 2009).
 
         ``width`` (mm): from a line's edge to its halo's, at most 32 pixels; ``None``, the default,
-        is a 250th of the data's diagonal. ``depth`` (mm): by how much the halo's edge lies behind
-        its line; lines side by side whose depths differ by less do not cut each other. ``None``,
-        the default, is a 20th of the diagonal. ``color`` (``'white'``): ``'background'`` for the
-        renderer's.
+        is a 250th of the data's diagonal, or 2.5 pixels if they are more. ``depth`` (mm): by how
+        much the halo's edge lies behind its line; lines side by side whose depths differ by less do
+        not cut each other. ``None``, the default, is a 20th of the diagonal. ``color``
+        (``'white'``): ``'background'`` for the renderer's.
         """
         return self._shades.get("halos", False)
 

@@ -18,8 +18,8 @@
 // until its brightest channel is 1, which keeps its hue: clipped by channel, colours of directions would tell lies.
 
 //@ fragment after //VTK::CustomUniforms::Dec
-vec3 fibletLineTangent;            // T, and N nearest to the viewer, in view coordinates
-vec3 fibletLineNormal;
+vec3 fibletLineTangent;            // T, in view coordinates
+vec3 fibletLineNormal;             // N nearest to V
 
 float fibletSine(vec3 d)
 {
@@ -27,14 +27,17 @@ float fibletSine(vec3 d)
   return sqrt(max(0.0, 1.0 - along * along));
 }
 
+// The normal that VTK hands over is not asked for.
 vec3 fibletReflect(vec3 incoming, vec3 normal)
 {
-  return dot(fibletLineTangent, incoming) * fibletLineTangent + fibletSine(incoming) * normal;
+  return dot(fibletLineTangent, incoming) * fibletLineTangent + fibletSine(incoming) * fibletLineNormal;
 }
 
 //@ fragment after //VTK::Normal::Impl
   fibletLineTangent = fibletTangentVC;
-  fibletLineNormal = normalVCVSOutput;
+  vec3 fibletSight = normalize(-vertexVC.xyz);   // VTK's V, in parallel views too
+  fibletLineNormal = fibletSight - fibletTangentVC * dot(fibletTangentVC, fibletSight);
+  fibletLineNormal = length(fibletLineNormal) > 1e-3 ? normalize(fibletLineNormal) : normalVCVSOutput;
 
 //@ fragment replace dot(normalVCVSOutput, -
 fibletSine(-
@@ -43,7 +46,7 @@ fibletReflect(
 //@ fragment replace max(0.000001, normalVCVSOutput.z)
 fibletSine(vec3(0.0, 0.0, 1.0))
 //@ fragment replace pow(df, specularPower)
-pow(max(1e-5, dot(fibletReflect(vec3(0.0, 0.0, -1.0), fibletLineNormal), fibletToViewer)), specularPower)
+pow(max(1e-5, dot(fibletReflect(vec3(0.0, 0.0, -1.0), fibletLineNormal), fibletSight)), specularPower)
 //@ fragment replace diffuse = diffuse * diffuseColor;
 diffuse = diffuse * diffuseColor;
   diffuse /= max(1.0, max(diffuse.r, max(diffuse.g, diffuse.b)));

@@ -1,0 +1,404 @@
+"""Shading through VTK: lights against closed forms, effects in the picture, and what they leave behind."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.mappers import Colouring, windows
+from pvfiblets.mappers.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink, Silhouette
+
+ALL = {
+    "illuminated": Illuminated(),
+    "ambient_occlusion": AmbientOcclusion(radius=15.0),
+    "ink": Ink((0.2, 0.3, 0.4)),
+    "depth_cue": DepthCue(),
+    "halos": Halos(width=2.0, depth=5.0),
+}
+DISTANCE = 200.0
+
+
+# Illuminated lines
+
+COLOUR = np.array([255, 127.5, 63.75])
+AMBIENT, DIFFUSE, SPECULAR, POWER = 0.05, 0.5, 0.3, 6.0
+
+
+def unit(*vector):
+    return np.array(vector, float) / np.linalg.norm(vector)
+
+
+def lit(tangent, lights, viewer=(0.0, -1.0, 0.0)):
+    """The maximum-normal model: colour of a line under (direction to the light, intensity)."""
+    tangent, viewer = unit(*tangent), np.array(viewer)
+    diffuse = specular = 0.0
+    for light, intensity in lights:
+        lt, vt = light @ tangent, viewer @ tangent
+        diffuse += intensity * np.sqrt(1 - lt**2)
+        specular += intensity * max(0.0, np.sqrt(1 - lt**2) * np.sqrt(1 - vt**2) - lt * vt) ** POWER
+    return COLOUR * (AMBIENT + DIFFUSE * diffuse) + 255 * SPECULAR * specular
+
+
+def sun(*towards, intensity=1.0):
+    light = pv.Light(position=np.array(towards) * 1e3, focal_point=(0, 0, 0), light_type="scene light")
+    light.positional, light.intensity = False, intensity
+    return light
+
+
+def lamp(*place, intensity=1.0, attenuation=(1, 0, 0), cone=90.0):
+    light = pv.Light(position=place, focal_point=(0, 0, 0), light_type="scene light", cone_angle=cone)
+    light.positional, light.intensity, light.attenuation_values = True, intensity, attenuation
+    return light
+
+
+def headlight(intensity=1.0):
+    light = pv.Light(light_type="headlight", intensity=intensity)
+    light.positional = False
+    return light
+
+
+@pytest.fixture
+def rod(make_plotter, make_fibres, tools):
+    """Return a function: colour of a short straight rod in the middle of the view from -y."""
+
+    def run(direction, *lights, extra=None, lighting=True):
+        along = np.linspace(-10, 10, 41)[:, None] * unit(*direction)
+        fibres = make_fibres(type(tools.helices(1, 2)).from_list([along]))
+        mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=tuple(COLOUR / 255)))
+        mapper.set_extra("illuminated", Illuminated() if extra is None else extra)
+        prop = actor.GetProperty()
+        prop.SetAmbient(AMBIENT)
+        prop.SetDiffuse(DIFFUSE)
+        prop.SetSpecular(SPECULAR)
+        prop.SetSpecularPower(POWER)
+        plotter = make_plotter(lighting="none", window_size=(61, 61))
+        plotter.add_actor(actor, reset_camera=False)
+        for light in lights:
+            plotter.add_light(light)
+        plotter.camera_position = [(0, -DISTANCE, 0), (0, 0, 0), (0, 0, 1)]
+        plotter.camera.view_angle = 4.0
+        plotter.renderer.ResetCameraClippingRange()
+        image = tools.picture(plotter, mapper)
+        middle = image[28:33, 28:33]
+        return np.median(middle[tools.covered(middle)], axis=0)
+
+    return run
+
+
+RODS = [(1, 0, 0), (1, 0.7, 0.2), (0.1, 0.5, 0.9), (0.5, -2.0, 0.3)]
+
+
+@pytest.mark.parametrize("direction", RODS)
+def test_a_directional_light(rod, direction):
+    for towards in ((3, 1, 2), (-1, -4, 1)):
+        assert np.allclose(rod(direction, sun(*towards)), lit(direction, [(unit(*towards), 1.0)]), atol=2)
+
+
+@pytest.mark.parametrize("direction", RODS)
+def test_a_positional_light(rod, direction):
+    place = np.array((70.0, -90.0, 40.0))
+    seen = rod(direction, lamp(*place, attenuation=(0.5, 0, 1e-4)))
+    strength = 1 / (0.5 + 1e-4 * (place @ place))
+    assert np.allclose(seen, lit(direction, [(unit(*place), strength)]), atol=3)
+
+
+@pytest.mark.parametrize("direction", RODS)
+def test_a_headlight(rod, direction):
+    assert np.allclose(rod(direction, headlight(0.8)), lit(direction, [(np.array((0, -1.0, 0)), 0.8)]), atol=2)
+
+
+def test_lights_of_all_kinds_add(rod):
+    place = np.array((-70.0, -90.0, 40.0))
+    seen = rod((1, 0.7, 0.2), sun(3, 1, 2, intensity=0.4), lamp(*place, intensity=0.3), headlight(0.2))
+    lights = [(unit(3, 1, 2), 0.4), (unit(*place), 0.3), (np.array((0, -1.0, 0)), 0.2)]
+    assert np.allclose(seen, lit((1, 0.7, 0.2), lights), atol=2)
+
+
+def test_a_cone_that_points_elsewhere_sheds_no_light(rod):
+    light = lamp(100.0, -100.0, 0.0, cone=20.0)
+    light.focal_point = (100.0, 0.0, 0.0)
+    assert np.allclose(rod((0, 0, 1), light), COLOUR * AMBIENT, atol=1)
+
+
+def test_a_light_from_the_side_is_what_the_model_differs_in(rod):
+    """The normal nearest to the viewer gives the cosine of the light's angle, this model the whole light."""
+    light = sun(0, -1, 2)
+    ours = rod((1, 0, 0), light)
+    assert np.allclose(ours, lit((1, 0, 0), [(unit(0, -1, 2), 1.0)]), atol=2)
+
+
+def test_too_much_light_keeps_the_hue(rod):
+    """Twice as much as white, and no highlight: (L.T)(V.T) is a half, as the product of the sines."""
+    seen = rod((1, -1, 0), sun(1, 0, 0, intensity=6.0))
+    assert lit((1, -1, 0), [(unit(1, 0, 0), 6.0)])[0] > 510
+    assert np.allclose(seen, np.minimum(255, COLOUR * (1 + AMBIENT)), atol=2)
+
+
+def test_without_lighting_there_is_nothing_to_illuminate(rod):
+    expected = COLOUR * (AMBIENT + DIFFUSE)
+    assert np.allclose(rod((1, 0.7, 0.2), sun(1, 2, 3), lighting=False), expected, atol=1)
+
+
+# Scenes
+
+
+def rods(tools, *ends):
+    """Streamlines from pairs of ends."""
+    lines = [np.linspace(a, b, 60) for a, b in ends]
+    return type(tools.helices(1, 2)).from_list(lines)
+
+
+@pytest.fixture
+def scene(make_plotter, make_fibres, tools):
+    """Return a function that draws rods from -y with extras and returns the plotter, picture and mapper."""
+
+    def run(ends, extras, *, color=(1.0, 1.0, 0.0), parallel=True, prepare=None, lighting=False, **options):
+        fibres = make_fibres(rods(tools, *ends))
+        mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=color))
+        for name, extra in extras.items():
+            mapper.set_extra(name, extra)
+        plotter = make_plotter(**{"window_size": (120, 100)} | options)
+        plotter.add_actor(actor, reset_camera=False)
+        plotter.camera_position = [(0, -DISTANCE, 0), (0, 0, 0), (0, 0, 1)]
+        if parallel:
+            plotter.enable_parallel_projection()
+            plotter.camera.parallel_scale = 25.0  # 2 pixels per mm
+        if prepare:
+            prepare(plotter, actor)
+        plotter.renderer.ResetCameraClippingRange()
+        return plotter, tools.picture(plotter, mapper), mapper
+
+    return run
+
+
+CROSS = (((-20, 0, 0), (20, 0, 0)), ((0, 6, -20), (0, 6, 20)))  # the upright one 6 mm behind
+
+
+def is_color(image, *color):
+    return (np.abs(image.astype(int) - color) <= 1).all(axis=-1)
+
+
+@pytest.mark.parametrize("parallel", [True, False])
+def test_halos_show_and_cut_what_is_behind(scene, parallel):
+    _, image, _ = scene(CROSS, {"halos": Halos(width=3.0, depth=4.0, color=(1, 0, 0))}, parallel=parallel)
+    red, yellow = is_color(image, 255, 0, 0), is_color(image, 255, 255, 0)
+    assert (red | yellow | is_color(image, 0, 0, 0)).all()
+    rows = np.flatnonzero(yellow[:, 50])
+    assert len(rows) == 1
+    wide = 6 if parallel else 3.0 * 100 / (2 * np.tan(np.radians(15)) * DISTANCE)
+    above = np.flatnonzero(red[:, 50])
+    assert len(above) == 2 * int(wide)
+    crossing = np.flatnonzero(yellow.sum(axis=0) > 10)  # the column of the upright one
+    column = int(crossing[np.argmin(np.abs(crossing - 60))])
+    cut = ~yellow[:, column]
+    assert cut[rows[0] - int(wide) : rows[0]].all()
+    assert yellow[rows[0], column]
+    assert not cut[rows[0] - int(wide) - 2]
+
+
+def test_a_halo_is_as_deep_in_the_scene_as_it_says(scene):
+    def wall(plotter, _):  # and with it the far plane, beyond which nothing can lie
+        plotter.add_mesh(pv.Box((-30, 30, 40, 41, -30, 30)), color="blue", lighting=False, reset_camera=False)
+
+    plotter, image, _ = scene(CROSS[:1], {"halos": Halos(width=5.0, depth=12.0)}, prepare=wall)
+    depth = -plotter.get_image_depth(fill_value=np.nan)
+    row = int(np.flatnonzero(is_color(image, 255, 255, 0)[:, 60])[0])
+    away = np.arange(-9, 10)
+    assert np.allclose(depth[row + away, 60], DISTANCE + 12.0 * np.abs(away) / 10.0, atol=0.05)
+
+
+def test_a_mesh_between_a_line_and_its_halo_hides_the_halo(scene):
+    def wall(plotter, _):
+        plotter.add_mesh(pv.Box((-30, 30, 6, 7, -30, 30)), color="blue", lighting=False, reset_camera=False)
+
+    _, image, _ = scene(CROSS[:1], {"halos": Halos(width=5.0, depth=12.0)}, prepare=wall)
+    column = image[:, 60]
+    row = int(np.flatnonzero(is_color(column, 255, 255, 0))[0])
+    white = is_color(column, 255, 255, 255)
+    assert white[row - 4 : row].all()
+    assert is_color(column[row - 9 : row - 5], 0, 0, 255).all()
+
+
+def test_halos_without_a_colour_are_the_background(scene):
+    def shade(plotter, _):
+        plotter.set_background("red", top="blue")
+
+    _, image, _ = scene(CROSS, {"halos": Halos(width=3.0, depth=4.0, color=None)}, prepare=shade)
+    plain = image[:, 2]
+    assert not is_color(plain, *plain[0]).all()
+    inside = ~is_color(image, 255, 255, 0)
+    assert np.abs(image.astype(int) - plain[:, None])[inside].max() <= 2
+
+
+def test_halos_reach_beyond_the_bounds_of_the_data(scene):
+    flat = (((-20, 0, 0), (20, 0, 0)),)
+    _, image, _ = scene(flat, {"halos": Halos(width=10.0, depth=4.0)})
+    assert is_color(image, 255, 255, 255)[:, 60].sum() == 40
+    _, image, _ = scene(flat, {"halos": Halos(width=20.0, depth=4.0)})
+    assert is_color(image, 255, 255, 255)[:, 60].sum() == 64  # 32 pixels are the most
+
+
+def test_halos_of_a_translucent_actor_are_as_translucent(scene):
+    _, image, _ = scene(
+        CROSS, {"halos": Halos(width=3.0, depth=4.0)}, prepare=lambda _, actor: actor.GetProperty().SetOpacity(0.5)
+    )
+    assert is_color(image, 128, 128, 0).any()
+    assert is_color(image, 128, 128, 128).any()
+
+
+def test_ink_covers_all_colours_but_not_halos(scene):
+    _, image, _ = scene(CROSS, {"ink": Ink((0, 0, 1)), "halos": Halos(width=3.0, depth=4.0)}, lighting=True)
+    seen = {tuple(map(int, color)) for color in np.unique(image.reshape(-1, 3), axis=0)}
+    assert seen == {(0, 0, 0), (0, 0, 255), (255, 255, 255)}
+
+
+STAIRS = tuple(((-20, y, z), (20, y, z)) for y, z in ((-10, -8), (0, 0), (15, 8)))
+
+
+@pytest.mark.parametrize("parallel", [True, False])
+def test_depth_cueing_is_linear_in_the_distance(scene, parallel):
+    _, image, _ = scene(STAIRS, {"cue": DepthCue(0.8, (1, 0, 1), (185, 220))}, parallel=parallel, color=(1, 1, 0))
+    for y, row in zip((-10, 0, 15), np.flatnonzero(image[:, 60].any(axis=-1))[::-1], strict=True):
+        share = 0.8 * (DISTANCE + y - 185) / 35
+        assert np.allclose(image[row, 60], 255 * np.array([1, 1 - share, share]), atol=2)
+
+
+def test_depth_cueing_by_default_goes_over_the_data_to_the_background(scene):
+    _, image, _ = scene(STAIRS, {"cue": DepthCue(1.0)}, prepare=lambda plotter, _: plotter.set_background("blue"))
+    rows = np.flatnonzero(~is_color(image, 0, 0, 255)[:, 60])
+    shares = (10 / 25, 0.0)  # the farthest has become the background
+    for share, row in zip(shares, rows, strict=True):
+        assert np.allclose(image[row, 60], 255 * np.array([1 - share, 1 - share, share]), atol=2)
+
+
+def test_a_camera_in_the_data_has_no_depth_behind_it(scene):
+    def inside(plotter, _):
+        plotter.camera_position = [(0, 5, 4), (0, 20, 4), (0, 0, 1)]
+
+    _, image, _ = scene(STAIRS, {"cue": DepthCue(), "halos": Halos(), "ao": AmbientOcclusion()}, prepare=inside)
+    assert np.isfinite(image).all()
+
+
+def test_occlusion_darkens_lines_behind_a_bundle_and_nothing_else(scene):
+    wall = [((-20, 4, z / 2), (20, 4, z / 2)) for z in range(-30, 31)]
+    bar = [((x / 4, 0, -15), (x / 4, 0, 15)) for x in range(-8, 9)]
+    _, plain, _ = scene([*wall, *bar], {}, color=(1, 1, 1))
+    _, image, _ = scene([*wall, *bar], {"ao": AmbientOcclusion(radius=8.0)}, color=(1, 1, 1))
+    assert np.array_equal(plain.any(axis=-1), image.any(axis=-1))
+    strip, shown = image[35:65, :, 0], plain[35:65, :, 0] > 0
+    brightness = {x: strip[:, x][shown[:, x]].mean() for x in (60, 67, 71, 75, 95)}
+    assert brightness[60] > 250
+    assert brightness[67] < 225
+    assert brightness[67] < brightness[71] < brightness[75] <= brightness[95]
+    assert brightness[95] == 255
+
+
+def test_a_silhouette_goes_around_what_is_chosen(scene):
+    chosen = np.array([True, False])
+    _, image, _ = scene(CROSS, {"outline": Silhouette(chosen, (0, 1, 1), 2.0)})
+    cyan, yellow = is_color(image, 0, 255, 255), is_color(image, 255, 255, 0)
+    row = int(np.flatnonzero(yellow[:, 30])[0])
+    assert cyan[[row - 2, row - 1, row + 1, row + 2], 30].all()
+    assert cyan[:, 30].sum() == 4
+    # The other line is drawn over where it passes near, and stays elsewhere.
+    column = int(np.flatnonzero(yellow[row + 10])[0])
+    assert cyan[[row - 2, row + 2], column].all()
+    assert not cyan[row + 10].any()
+
+
+def test_a_silhouette_for_other_streamlines_is_refused(scene):
+    with pytest.raises(ValueError, match="3 values for 2 streamlines"):
+        scene(CROSS, {"outline": Silhouette(np.zeros(3, bool))})
+
+
+@pytest.mark.parametrize("kind", ["fxaa", "ssaa"])
+def test_anti_aliasing_keeps_the_picture(scene, kind):
+    """Widths in mm and in pixels of the window stay: the same coverage, but for smooth edges."""
+    extras = {"halos": Halos(width=3.0, depth=4.0), "outline": Silhouette([True, False], (1, 0, 0), 4.0)}
+    plain = scene(CROSS, extras)[1].astype(float)
+
+    def anti_alias(plotter, _):
+        if kind == "ssaa":
+            plotter.enable_anti_aliasing("ssaa")
+        else:
+            plotter.renderer.UseFXAAOn()  # PyVista will not have it without a screen
+
+    smooth = scene(CROSS, extras, prepare=anti_alias)[1].astype(float)
+    assert np.abs(plain.mean(axis=(0, 1)) - smooth.mean(axis=(0, 1))).max() < 6
+    assert np.abs(plain - smooth).mean() < 12
+
+
+@pytest.mark.parametrize("name", ["illuminated", "ambient_occlusion", "ink", "depth_cue", "halos"])
+def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
+    mapper, actor = lines.actor(lighting=True)
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    before, shaders = tools.picture(plotter, mapper), mapper.features
+    bare = actor.GetShaderProperty().GetNumberOfShaderReplacements()
+    mapper.set_extra(name, ALL[name])
+    with_it = tools.picture(plotter, mapper)
+    assert not np.array_equal(before, with_it)
+    slot = next(iter(windows._contexts.values())).slot(mapper)
+    assert name in slot.extras
+    mapper.set_extra(name, None)
+    assert np.array_equal(tools.picture(plotter, mapper), before)
+    assert mapper.features == shaders
+    assert actor.GetShaderProperty().GetNumberOfShaderReplacements() == bare
+    assert not slot.extras
+
+
+def test_all_at_once_and_in_a_window_of_another_size(make_plotter, lines, tools):
+    mapper, actor = lines.actor(lighting=True)
+    for name, extra in (ALL | {"outline": Silhouette(np.arange(24) < 4)}).items():
+        mapper.set_extra(name, extra)
+    plotter = make_plotter(lighting="light kit")
+    plotter.add_actor(actor)
+    plotter.enable_depth_peeling()
+    assert tools.covered(tools.picture(plotter, mapper)).any()
+    plotter.window_size = 150, 211
+    assert tools.covered(tools.picture(plotter, mapper)).any()
+    report = mapper.explain()
+    assert {"halo", "silhouette", "illuminated"} <= set(report["features"])
+
+
+def test_two_renderers_have_pictures_of_their_own(make_plotter, lines, tools):
+    mapper, actor = lines.actor()
+    mapper.set_extra("halos", Halos(width=3.0, depth=5.0, color=(1, 0, 0)))
+    plotter = make_plotter(shape=(1, 2), window_size=(301, 150))
+    for column in (0, 1):
+        plotter.subplot(0, column)
+        plotter.add_actor(actor)
+        plotter.set_background("black")
+        plotter.camera_position = [(0, -220, 0), (0, 0, 0), (0, 0, 1)]
+    image = tools.picture(plotter, mapper)
+    left, right = image[2:-2, 3:147], image[2:-2, 154:298]
+    assert is_color(left, 255, 0, 0).any()
+    assert np.abs(is_color(left, 255, 0, 0).mean() - is_color(right, 255, 0, 0).mean()) < 0.02
+
+
+# Values
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: AmbientOcclusion(radius=0.0), "radius of ambient occlusion is 0.0"),
+        (lambda: AmbientOcclusion(radius=np.nan), "radius of ambient occlusion is nan"),
+        (lambda: AmbientOcclusion(samples=0), "samples of ambient occlusion is 0"),
+        (lambda: AmbientOcclusion(samples=2.5), "samples of ambient occlusion is 2.5"),
+        (lambda: AmbientOcclusion(strength=1.5), "strength of ambient occlusion is 1.5"),
+        (lambda: DepthCue(strength=-1), "strength of depth cueing is -1"),
+        (lambda: DepthCue(range=(5, 5)), r"range of depth cueing is \(5, 5\)"),
+        (lambda: DepthCue(color=(1, 2, 3)), "color of depth cueing"),
+        (lambda: Halos(width=-1), "width of halos is -1"),
+        (lambda: Halos(depth=np.inf), "depth of halos is inf"),
+        (lambda: Halos(color=(1, 1)), "color of halos"),
+        (lambda: Ink((np.nan, 0, 0)), "color of ink"),
+        (lambda: Silhouette(np.zeros(3)), "selected of a silhouette is float64"),
+        (lambda: Silhouette([True], width=17), "width of a silhouette is 17"),
+    ],
+)
+def test_values_that_cannot_be_drawn_are_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
