@@ -65,6 +65,7 @@ class FibletsComponent(Picking, Widgets):
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
         self._actors: list[FibletActor] = []
+        self._init_widgets()
         self._renderers: dict[str, tuple[Any, int]] = {}
         self._bars: dict[str, _Bar] = {}
 

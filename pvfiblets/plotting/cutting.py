@@ -11,7 +11,7 @@ import pyvista as pv
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
 
-__all__ = ["as_region", "slab"]
+__all__ = ["as_region", "direction_of", "slab"]
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -65,7 +65,7 @@ def as_region(what: Any) -> Region:
         return regions.Box(numbers)
     if isinstance(what, (tuple, list)) and len(what) == 2:
         normal, origin = what
-        return regions.Plane(_direction(normal), origin)
+        return regions.Plane(direction_of(normal), origin)
     raise TypeError(
         f"{what!r} is no region; give one of pvfiblets.regions, a closed mesh, "
         "(xmin, xmax, ymin, ymax, zmin, zmax), or (normal, origin)"
@@ -76,7 +76,7 @@ def slab(normal: Any, origin: Any, thickness: float) -> Region:
     """Return a slab; an origin that is one number counts along the normal, which is an axis."""
     from pvfiblets import regions
 
-    direction = np.asarray(_direction(normal), float)
+    direction = np.asarray(direction_of(normal), float)
     if np.ndim(origin) == 0:
         origin = float(origin) * direction / np.linalg.norm(direction)
     return regions.Slab(direction, origin, thickness)
@@ -123,7 +123,8 @@ def _whole_numbers(volume: np.ndarray) -> np.ndarray:
     return rounded.astype(np.int64)
 
 
-def _direction(normal: Any) -> Any:
+def direction_of(normal: Any) -> Any:
+    """Return three numbers; an axis may be named ``"x"`` or ``"-x"``."""
     if isinstance(normal, str):
         sign = -1.0 if normal.startswith("-") else 1.0
         axis = normal.lstrip("+-").lower()

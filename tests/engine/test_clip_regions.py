@@ -1,4 +1,4 @@
-"""Regions of a view: what is shown lies in the region, what lies in it is shown, in every pipeline and with all culling."""
+"""Regions of a view: what is shown lies in the region, what lies in it is shown; every pipeline, all culling."""
 
 from __future__ import annotations
 
