@@ -179,7 +179,8 @@ def _field_side(row: Any, grid: Any, values: Any, u: Any, slack: Any, r: float) 
     b0 = max(-0.5 - q0, q0 - (nx - 0.5), 0.0) * grid[6]
     b1 = max(-0.5 - q1, q1 - (ny - 0.5), 0.0) * grid[7]
     b2 = max(-0.5 - q2, q2 - (nz - 0.5), 0.0) * grid[8]
-    if math.sqrt(b0 * b0 + b1 * b1 + b2 * b2) * (1.0 - _EPS) > margin:
+    beyond = b0 * b0 + b1 * b1 + b2 * b2
+    if math.sqrt(beyond) * (1.0 - _EPS) > margin:
         return -1
     # Comparisons with NaN are false, so that what is not a number ends at grid point 0 and is undecided.
     g0 = min(max(math.floor(q0 + 0.5), 0.0), nx - 1.0) if q0 == q0 else 0.0
@@ -188,9 +189,14 @@ def _field_side(row: Any, grid: Any, values: Any, u: Any, slack: Any, r: float) 
     d = values[int(grid[12] + (g2 * ny + g1) * nx + g0)]
     side = 1 if d > 0.0 else -1
     o0, o1, o2 = abs(q0 - g0), abs(q1 - g1), abs(q2 - g2)
-    p0, p1, p2 = o0 * grid[6], o1 * grid[7], o2 * grid[8]
-    if abs(d) - math.sqrt(p0 * p0 + p1 * p1 + p2 * p2) * (1.0 + _EPS) > margin:
+    p0, p1, p2 = o0 * grid[6] - b0, o1 * grid[7] - b1, o2 * grid[8] - b2
+    sure = abs(d) - math.sqrt(p0 * p0 + p1 * p1 + p2 * p2) * (1.0 + _EPS)
+    if beyond == 0.0 and sure > margin:
         return side
+    # From beyond the grid, everything in it is as far as from the nearest place of the grid's box, or farther by
+    # Pythagoras: the box is convex.
+    if side < 0 and sure > 0.0 and math.sqrt(beyond + sure * sure) * (1.0 - _EPS) > margin:
+        return -1
     if row[18] == 1.0:
         # Within one voxel all is as the voxel is.
         h0, h1, h2 = o0 + s0 + r * row[14], o1 + s1 + r * row[15], o2 + s2 + r * row[16]

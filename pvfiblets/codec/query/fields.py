@@ -110,16 +110,16 @@ def label_field(mask: npt.NDArray[np.bool_], affine: Array) -> Field:
         chosen = states == state
         if not chosen.any():
             continue
-        far = np.sqrt(squared_distances(states != state, sizes))
-        if state == 1:  # beyond the volume all is out
-            for axis, (n, size) in enumerate(zip(states.shape, sizes[::-1], strict=True)):
-                rim = np.minimum(np.arange(n), np.arange(n)[::-1]) + 1
-                shape = [1, 1, 1]
-                shape[axis] = n
-                np.minimum(far, np.float32(size) * rim.reshape(shape).astype(np.float32), out=far)
         # Float32 squares and roots err by less than a millionth. A voxel's own faces are half a voxel away; so far no
         # other voxel reaches.
+        far = np.sqrt(squared_distances(states != state, sizes))
         bound = np.maximum(far * (1.0 - 1e-6) - half_diagonal, sizes.min() / 2 * (1.0 - 1e-6))
+        if state == 1:  # beyond the grid all is out
+            for axis, (n, size) in enumerate(zip(states.shape, sizes[::-1], strict=True)):
+                rim = np.minimum(np.arange(n), np.arange(n)[::-1]) + 0.5
+                shape = [1, 1, 1]
+                shape[axis] = n
+                np.minimum(bound, (size * rim).reshape(shape).astype(np.float32), out=bound)
         signed[chosen] = (sign * unit * (1.0 - 1e-6)) * bound[chosen]
         del far, bound
     return Field(signed, first + (block - 1) / 2, np.full(3, float(block)), steps, block == 1)
