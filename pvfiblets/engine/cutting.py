@@ -17,23 +17,27 @@ Made once for a region, a size and a camera. A box, a sphere or a convex mesh ta
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.query.shapes import BOX, LABELS, MAX_LEAVES, MAX_OPS, PLANE, SLAB, SPHERE
+from ..codec.query.shapes import LABELS, SURFACE
+from .errors import EngineError
 from .frame import Array, local_frame
-from .layer_stack import LayerStack
+from .layer_stack import LayerStack, Rectangle, Squares
 from .opengl import OpenGL
-from .shaders import Programs
+from .rays import Form, rays_block, to_unit, window_matrix
+from .shaders import NEWEST, Programs, assemble
+from .surface_layers import SurfaceLayers, rectangle_of
 from .view import View
 
 if TYPE_CHECKING:
     from ..codec.query.shapes import Region
+    from ..codec.query.surfaces import Surface
 
-__all__ = ["BOUNDARIES_UNIT", "Cutter", "rays_block"]
+__all__ = ["BOUNDARIES_UNIT", "Cutter", "check_region"]
 
 BOUNDARIES_UNIT = 26
 """Texture unit of the boundaries."""
@@ -41,110 +45,13 @@ BOUNDARIES_UNIT = 26
 RAYS_BINDING = 7
 """Binding of the uniform block ``Rays``, of this module's own programs only."""
 
-_PLANES, _SPHERE, _SURFACE = range(3)
-_ROWS = 6
+_SCISSOR_TEST = 0x0C11
 
-_BLOCK = np.dtype(
-    [
-        ("info", "<i4", 4),
-        ("program", "<i4", MAX_OPS),
-        ("leaves", "<i4", (MAX_LEAVES, 4)),
-        ("centres", "<f4", (MAX_LEAVES, 4)),
-        ("rows", "<f4", (_ROWS * MAX_LEAVES, 4)),
-    ]
-)
+_FORMS = 8
+"""Programs kept."""
 
-# Of window coordinates' homogeneous unit coordinates (u, v, w, weight): planes of each kind.
-_SIDES = {
-    PLANE: np.array([[0.0, 0, 1, 0]]),
-    SLAB: np.array([[0.0, 0, 1, 1], [0, 0, -1, 1]]),
-    BOX: np.array([[1.0, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1]]),
-}
-
-
-def _window_matrix(to_clip: Array, size: tuple[int, int]) -> Array:
-    """Return (4, 4): local mm to homogeneous window coordinates, as in ``shaders/frame/blocks.glsl``."""
-    x, y, z, w = to_clip
-    return np.array([size[0] / 2 * (x + w), size[1] / 2 * (y + w), (z + w) / 2, w])
-
-
-def _expanded(rows: Array, about: Array) -> Array:
-    """Rewrite rows over (q, 1) as rows over (q - about, 1)."""
-    rows = rows.copy()
-    rows[:, 3] += rows[:, :3] @ about
-    return rows
-
-
-def _scaled(values: Array, size: tuple[int, int]) -> Array:
-    """Scale rows over (d, 1), one by one, to what float32 holds; numbers too small to matter become 0."""
-    span = np.array([*size, 1.0, 1.0])
-    largest = np.abs(values * span).max(axis=1, keepdims=True)
-    values = values / np.where(largest > 0.0, largest, 1.0)
-    return np.where(np.abs(values * span) < 1e-30, 0.0, values)
-
-
-def _centre(window: Array, place: Array, size: tuple[int, int]) -> Array:
-    """Return (3,): window coordinates of a leaf's centre, or what of the picture comes nearest to them."""
-    q = window @ place
-    if q[3] <= 0.0 or not np.isfinite(q / q[3]).all():
-        return np.array([size[0] / 2, size[1] / 2, 0.0])
-    return np.clip(q[:3] / q[3], 0.0, [*size, 1.0])
-
-
-def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, int]) -> npt.NDArray[Any]:
-    """Pack the ``Rays`` uniform block (std140), but for surfaces.
-
-    Parameters
-    ----------
-    region : Region
-    window : numpy.ndarray
-        ``(4, 4)`` local mm to homogeneous window coordinates, invertible.
-    offset : numpy.ndarray
-        ``(3,)`` data mm of local 0.
-    size : tuple of int
-        Pixels.
-
-    Returns
-    -------
-    numpy.ndarray
-        A structured scalar.
-    """
-    block: npt.NDArray[Any] = np.zeros((), _BLOCK)
-    block["info"][:2] = len(region.program), len(region.leaves)
-    block["program"][: len(region.program)] = region.program
-    inverse = np.linalg.inv(window)
-    for k, leaf in enumerate(region.leaves):
-        if leaf.kind not in _SIDES and leaf.kind != SPHERE:
-            continue
-        to_unit = np.eye(4)
-        to_unit[:3, :3] = leaf.linear
-        to_unit[:3, 3] = leaf.linear @ (offset - leaf.centre)
-        about = _centre(window, np.append(leaf.centre - offset, 1.0), size)
-        unit = _expanded(to_unit @ inverse, about)
-        first = _ROWS * k
-        if leaf.kind == SPHERE:
-            rows = _quadric(unit, size)
-            block["leaves"][k] = _SPHERE, first, len(rows), 0
-        else:
-            rows = _scaled(_SIDES[leaf.kind] @ unit, size)
-            block["leaves"][k] = _PLANES, first, len(rows), 0
-        block["rows"][first : first + len(rows)] = rows
-        block["centres"][k, :3] = about
-    return block
-
-
-def _quadric(unit: Array, size: tuple[int, int]) -> Array:
-    """Return (3, 4): the rows of a sphere, from the map (d, 1) to homogeneous unit coordinates."""
-    q = unit.T @ np.diag([1.0, 1.0, 1.0, -1.0]) @ unit
-    span = np.array([*size, 1.0, 1.0])
-    q /= np.abs(q * span * span[:, None]).max() or 1.0
-    return np.array(
-        [
-            [q[0, 0], q[1, 1], 2 * q[0, 1], q[3, 3]],
-            [2 * q[0, 3], 2 * q[1, 3], q[0, 2], q[1, 2]],
-            [q[2, 2], q[2, 3], 0.0, 0.0],
-        ]
-    )
+_LAYERS = 2
+"""Of boundaries, before any pixel is known to have more than fit in."""
 
 
 def check_region(region: Region) -> None:
@@ -157,8 +64,8 @@ def check_region(region: Region) -> None:
     """
     if any(leaf.kind == LABELS for leaf in region.leaves):
         raise ValueError(
-            "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a closed "
-            "surface around the labels, e.g. pyvista's contour_labels()"
+            "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a "
+            "closed surface around the labels, e.g. pyvista's contour_labels()"
         )
 
 
@@ -178,7 +85,11 @@ class Cutter:
         self._gl = gl
         self._programs = programs
         self._made: tuple[object, ...] | None = None
+        self._form: Form | None = None
         self._stack: LayerStack | None = None
+        self._squares = Squares(ctx, gl, programs)
+        self._surfaces: SurfaceLayers | None = None
+        self._forms: dict[tuple[Form, int], tuple[moderngl.Program, moderngl.VertexArray]] = {}
         self._block: moderngl.Buffer | None = None
         self.layers = 0
 
@@ -217,49 +128,149 @@ class Cutter:
             return True
         self._made = None
         _, to_data, to_clip = local_frame(view, origin, scale, top)
-        window = _window_matrix(to_clip, view.size)
         with self._gl.framebuffers_kept():
             self._ctx.enable_only(moderngl.NOTHING)
             self._ctx.wireframe = False
-            self._make(region, window, to_data[:3, 3], view.size)
+            self._make(region, to_clip, to_data[:3, 3], view.size)
+            self._ctx.disable_direct(_SCISSOR_TEST)
         self._made = key
         return True
 
-    def _make(self, region: Region, window: Array, offset: Array, size: tuple[int, int]) -> None:
+    def _make(self, region: Region, to_clip: Array, offset: Array, size: tuple[int, int]) -> None:
+        window = window_matrix(to_clip, size)
         try:
             block = rays_block(region, window, offset, size)
         except np.linalg.LinAlgError:
             stack = self._stack_of(size, 1)
-            stack.framebuffers[0].clear(-1.0, 2.0, 2.0, 2.0)
+            self._gl.fill(stack.framebuffers[0], 0, (-1.0, 2.0, 2.0, 2.0))
             self.layers = 1
             return
-        if self._block is None:
-            self._block = self._ctx.buffer(reserve=_BLOCK.itemsize)
+        crossings = self._draw_surfaces(region, block, to_clip, offset, size)
+        crossings += 2 * sum(leaf.kind != SURFACE for leaf in region.leaves)
+        if self._block is None or self._block.size != block.nbytes:
+            if self._block is not None:
+                self._block.release()
+            self._block = self._ctx.buffer(reserve=block.nbytes)
         self._block.write(block.tobytes())
-        needed = -(-(1 + 2 * len(region.leaves)) // 4)
-        self._combine(self._stack_of(size, needed), 0, needed)
-        self.layers = needed
+        form = Form.of(region)
+        if form != self._form:  # a simpler one needs no more than it does
+            self._form = form
+            self._drop_stack()
+        rectangle, most = (0, 0, *size), crossings + 1
+        if form.bounded:
+            rectangle = self._rectangle(region, block, to_clip, offset, size)
+            # What is beyond all crossings is known, and with it whether boundaries are even or odd in number.
+            most = crossings + (crossings + form.far) % 2
+        enough = -(-most // 4)
+        layers = min(enough, _LAYERS)
+        while True:
+            stack = self._stack_of(size, layers)
+            self.layers = stack.layers
+            self._combine(form, stack, rectangle)
+            if stack.layers >= enough or not self._overflows(stack, rectangle):
+                break
+            layers = 2 * stack.layers
 
-    def _combine(self, stack: LayerStack, start: int, stop: int) -> None:
-        """Draw some layers of the boundaries."""
+    def _rectangle(
+        self, region: Region, block: npt.NDArray[Any], to_clip: Array, offset: Array, size: tuple[int, int]
+    ) -> Rectangle:
+        """Return the pixels that the leaves of a region may touch, all bounded."""
+        found = []
+        for k, leaf in enumerate(region.leaves):
+            if leaf.kind == SURFACE:
+                found.append(block["centres"][k].astype(int).tolist())
+            else:
+                placed = to_clip @ np.linalg.inv(to_unit(leaf, offset))
+                found.append(rectangle_of(placed, np.full(3, -1.0), np.ones(3), size))
+        lefts, lowers, rights, uppers = zip(*found, strict=True)
+        return min(lefts), min(lowers), max(rights), max(uppers)
+
+    def _overflows(self, stack: LayerStack, rectangle: Rectangle) -> bool:
+        """Say whether any pixel has more boundaries than there are layers for."""
+        program = self._squares.program("regions/overflow.frag", rectangle)
+        stack.textures[0].use(BOUNDARIES_UNIT)
+        program["region_boundaries"], program["last"] = BOUNDARIES_UNIT, stack.layers - 1
+        return bool(self._squares.ask("regions/overflow.frag", rectangle).any())
+
+    def _draw_surfaces(
+        self, region: Region, block: npt.NDArray[Any], to_clip: Array, offset: Array, size: tuple[int, int]
+    ) -> int:
+        """Draw the surfaces' layers and pack where they are; return how many crossings a pixel can have of them."""
+        leaves = [k for k, leaf in enumerate(region.leaves) if leaf.kind == SURFACE]
+        if not leaves:
+            if self._surfaces is not None:
+                self._surfaces.release()
+                self._surfaces = None
+            return 0
+        if self._surfaces is None:
+            self._surfaces = SurfaceLayers(self._ctx, self._gl, self._programs)
+        surfaces = [cast("Surface", region.leaves[k]) for k in leaves]
+        peeled = self._surfaces.draw(surfaces, to_clip, offset, size)
+        for k, place in zip(leaves, peeled, strict=True):
+            block["surfaces"][k, :3] = place.first, place.layers, place.tallies
+            block["centres"][k] = place.rectangle
+        return sum(place.crossings for place in peeled)
+
+    def _combine(self, form: Form, stack: LayerStack, rectangle: Rectangle) -> None:
+        """Draw all layers of the boundaries."""
         assert self._block is not None
-        program, array = self._programs.screen("regions/combine.frag")
-        program["Rays"].binding = RAYS_BINDING  # type: ignore[union-attr]
+        program, array = self._program(form, stack.together)
+        if self._surfaces is not None:
+            self._surfaces.bind(program)
         self._block.bind_to_uniform_block(RAYS_BINDING)
-        for layer in range(start, stop):
-            program["first"] = 4 * layer
-            stack.framebuffers[layer].use()
+        program["room"] = 4 * stack.layers
+        left, lower, right, upper = rectangle
+        whole = right - left == stack.size[0] and upper - lower == stack.size[1]
+        for number, framebuffer in enumerate(stack.framebuffers):
+            if not whole:
+                framebuffer.scissor = 0, 0, *stack.size
+                for k in range(stack.together):
+                    start = -1.0 if form.far and number == k == 0 else 2.0
+                    self._gl.fill(framebuffer, k, (start, 2.0, 2.0, 2.0))
+            if left == right or lower == upper:
+                continue
+            program["first"] = 4 * stack.together * number
+            framebuffer.scissor = left, lower, right - left, upper - lower
+            framebuffer.use()
             array.render(moderngl.TRIANGLES, vertices=3)
+
+    def _program(self, form: Form, outputs: int) -> tuple[moderngl.Program, moderngl.VertexArray]:
+        """Return the program for a form of region and layers at once, and what to render three vertices of."""
+        key = form, outputs
+        if key not in self._forms:
+            while len(self._forms) >= _FORMS:
+                for thing in self._forms.pop(next(iter(self._forms)))[::-1]:
+                    thing.release()
+            version = min(self._ctx.version_code, NEWEST)
+            features = ["PEEL"] if SURFACE in form.kinds else []
+            constants = {**form.constants, "outputs": outputs}
+            fragment = assemble("regions/combine.frag", features, constants, version=version)
+            try:
+                program = self._ctx.program(
+                    vertex_shader=assemble("screen/triangle.vert", version=version), fragment_shader=fragment
+                )
+            except moderngl.Error as error:
+                raise EngineError(f"regions/combine.frag does not compile: {error}\n{fragment}") from error
+            block = program["Rays"]
+            assert isinstance(block, moderngl.UniformBlock)
+            block.binding = RAYS_BINDING
+            self._forms[key] = program, self._ctx.vertex_array(program, [])
+        return self._forms[key]
 
     def _stack_of(self, size: tuple[int, int], layers: int) -> LayerStack:
         """Make room for layers of a size; what is there is lost where it grows."""
         held = self._stack
         if held is None or held.size != size or held.layers < layers:
-            if held is not None:
-                held.release()
-                self._stack = None
-            self._stack = held = LayerStack(self._ctx, self._gl, size, layers, (4,))
+            self._drop_stack()
+            together = min(1 << (layers - 1).bit_length(), 8)
+            layers = -(-layers // together) * together
+            self._stack = held = LayerStack(self._ctx, self._gl, size, layers, (4,), together)
         return held
+
+    def _drop_stack(self) -> None:
+        if self._stack is not None:
+            self._stack.release()
+            self._stack = None
 
     def bind(self, program: Any) -> None:
         """Bind the boundaries and tell a program where they are, if it asks."""
@@ -273,13 +284,19 @@ class Cutter:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        return 0 if self._stack is None else self._stack.nbytes
+        return sum(thing.nbytes for thing in (self._stack, self._surfaces, self._squares) if thing is not None)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        if self._stack is not None:
-            self._stack.release()
-            self._stack = None
+        self._drop_stack()
+        if self._surfaces is not None:
+            self._surfaces.release()
+            self._surfaces = None
+        self._squares.release()
+        for program, array in self._forms.values():
+            array.release()
+            program.release()
+        self._forms.clear()
         if self._block is not None:
             self._block.release()
             self._block = None

@@ -400,6 +400,21 @@ class OpenGL:
             framebuffer.use()  # with its draw buffers, colour mask and scissor, whatever was in force
             self.function("glClearBufferuiv")(_COLOR, attachment, padded)
 
+    def fill(self, framebuffer: moderngl.Framebuffer, attachment: int, values: Sequence[float]) -> None:
+        """Fill one attachment of floats, inside the framebuffer's scissor, and leave it in use.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+        attachment : int
+            Which colour attachment.
+        values : sequence of float
+            1 to 4.
+        """
+        padded = (ctypes.c_float * 4)(*values)
+        framebuffer.use()
+        self.function("glClearBufferfv")(_COLOR, attachment, padded)
+
     def clear_depth(self, framebuffer: moderngl.Framebuffer, depth: float = 1.0) -> None:
         """Fill the depth attachment and nothing else; moderngl's ``clear`` takes the colours along.
 

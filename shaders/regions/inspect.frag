@@ -1,7 +1,7 @@
 // What the CPU asks of a surface's layers (regions/layers.glsl), by squares of pixels:
 //
 //   x   the most fragments of front or of back faces at a pixel; a layer holds two of each
-//   y   1 where fragments share a depth, so that all layers together hold fewer than there are
+//   y   the most fragments at a pixel, negative where some share a depth, so that all layers together hold fewer
 
 #version 430
 
@@ -16,7 +16,7 @@ const int SQUARE = 4;  // as in pvfiblets/engine/surface_layers.py
 
 void main() {
     ivec2 low = ivec2(gl_FragCoord.xy) * SQUARE + rectangle.xy, high = min(low + SQUARE, rectangle.zw);
-    int most = 0;
+    int most = 0, total = 0;
     bool shared_depth = false;
     for (int y = low.y; y < high.y; ++y) {
         for (int x = low.x; x < high.x; ++x) {
@@ -26,6 +26,7 @@ void main() {
             ivec2 fragments = layers_counts(ends.w);
             int larger = max(fragments.x, fragments.y);
             most = max(most, larger);
+            total = max(total, fragments.x + fragments.y);
             if (larger == 0 || larger > 2 * count) continue;
             int left = fragments.x + fragments.y;
             for (int layer = base; left > 0; ++layer) {
@@ -37,5 +38,5 @@ void main() {
             shared_depth = shared_depth || left > 0;
         }
     }
-    found = vec2(most, shared_depth);
+    found = vec2(most, shared_depth ? -total : total);
 }

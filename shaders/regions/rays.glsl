@@ -17,7 +17,7 @@
 layout(std140, binding = 7) uniform Rays {
     vec4 rays_rows[6 * {{ leaves }}];        // six a leaf
     vec4 rays_centres[{{ leaves }}];         // c; of a surface: the rectangle of pixels that it may touch
-    ivec4 rays_surfaces[{{ leaves }}];       // of a surface: first layer, layers, first of its tallies or -1
+    ivec4 rays_surfaces[{{ leaves }}];       // of a surface: first layer, layers; first of its tallies, or -1
 };
 
 const int RAYS_PLANES = 0, RAYS_SPHERE = 1, RAYS_SURFACE = 2;
