@@ -38,8 +38,8 @@ Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 
 PAGES = 8  # looked at together
-FIBLETS = 1 << 14  # decoded together: at most 24 MB of points
-SAMPLES = 1 << 22  # positions tested together
+FIBLETS = 1 << 12  # decoded together: at most 6 MB of points, which caches keep
+SAMPLES = 1 << 20  # positions tested together
 MOST_SAMPLES = 1 << 28
 """Positions on one fiblet, beyond which a sampling is refused."""
 
