@@ -188,6 +188,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
 
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
+        scalars = self._values_of_criterion(scalars)
         fiblets, scalars = with_point_values(self._fiblets, scalars)
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:

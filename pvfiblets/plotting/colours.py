@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.scalars import Scalars
 
 
+LABEL_CMAP = "tab20"
+"""Of labels, unless another is asked for."""
+
+
 @dataclass
 class ColourSettings:
     """What a user may set about an actor's colours; ``None`` means PyVista's theme or the data.
@@ -102,18 +106,21 @@ def update_table(
     if int(settings.n_colors) != settings.n_colors or settings.n_colors < 1:
         raise ValueError(f"n_colors is {settings.n_colors!r}; give a whole number above zero")
     low, high = limits(settings, scalars)
-    cmap = theme.cmap if settings.cmap is None else settings.cmap
+    labels = scalars.categories is not None
+    usual = LABEL_CMAP if labels else theme.cmap
+    cmap = usual if settings.cmap is None else settings.cmap
     if isinstance(cmap, pv.LookupTable):
         table.DeepCopy(cmap)
     else:
         count = int(settings.n_colors)
-        if settings.categories and fiblets is not None:
+        if (settings.categories or labels) and fiblets is not None:
             count = scalars.distinct(fiblets)
         table.apply_cmap(cmap, count, flip=settings.flip_scalars)
     # The order matters: VTK refuses a logarithmic scale while the range touches zero.
     table.log_scale = False
     table.scalar_range = (low, high)
     table.log_scale = bool(settings.log_scale)
+    table.annotations = scalars.categories
     table.nan_color = theme.nan_color if settings.nan_color is None else settings.nan_color
     table.below_range_color = settings.below_color
     table.above_range_color = settings.above_color

@@ -119,8 +119,11 @@ class FibletsComponent(Picking, Widgets):
         scalars : str, array or volume, optional
             What colours the streamlines: ``"orientation"`` (the default: the absolute value of
             the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
-            ``"arc_length"``), the name of per-streamline or per-point data, or an array with one
+            ``"arc_length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"``,
+            ``"group"``), the name of per-streamline or per-point data, or an array with one
             value per streamline or per point, or one colour (3 or 4 columns) per streamline.
+            ``"coding_error"`` shows how far each point is from where it was, if ``source`` is not
+            compressed yet; ``regions.Distance(…)`` how far it is from a region or position.
 
             Or a volume, in the coordinates of the streamlines' data: a
             :class:`pyvista.ImageData`, ``(array, affine)``, or a NIfTI image or its path. It is

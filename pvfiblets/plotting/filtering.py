@@ -308,6 +308,12 @@ class Filtering:
         if filtering:
             self._mapper.filtering = self._choices.filter(self._data)
 
+    def _values_of_criterion(self, scalars: Any) -> Any:
+        """Return what a criterion was made of, where its name colours; all else as it is."""
+        if isinstance(scalars, str) and scalars in self._choices.criteria:
+            return self._choices.criteria[scalars].what
+        return scalars
+
     def _choose_as(self, other: Filtering) -> None:
         """Take over the choices of another actor of the same fiblets."""
         self._choices = other._choices.copy()

@@ -7,11 +7,12 @@ with three or four columns are colours, all others are numbers for a colour map.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.codec.query.measures import COMPUTED, Distance, measure
 from pvfiblets.engine.volumes import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 
@@ -19,8 +20,18 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 ORIENTATION = "orientation"
-BUILT_IN = (ORIENTATION, "length", "curvature", "arc_length")
-UNITS = {"length": "length [mm]", "curvature": "curvature [1/mm]", "arc_length": "arc length [mm]"}
+GROUP = "group"
+BUILT_IN = (ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)
+UNITS = {
+    "length": "length [mm]",
+    "curvature": "curvature [1/mm]",
+    "arc_length": "arc length [mm]",
+    "mean_curvature": "mean curvature [1/mm]",
+    "end_distance": "distance of ends [mm]",
+    "n_points": "points",
+    "coding_error": "coding error [mm]",
+    "distance": "distance [mm]",
+}
 UNNAMED = "Data"
 
 _SAMPLE = 2000  # streamlines whose points give curvature its default range
@@ -42,6 +53,8 @@ class Scalars:
         Least and largest finite value.
     positive : float
         Least value above zero, where a logarithmic scale may begin.
+    categories : dict, optional
+        Of numbers that are labels: what each stands for.
     volume : VolumeSource, optional
         To be sampled at the points, where ``kind`` is ``"point_value"``.
     """
@@ -52,6 +65,7 @@ class Scalars:
     range: tuple[float, float] = (0.0, 1.0)
     positive: float = 1e-6
     volume: VolumeSource | None = None
+    categories: dict[int, str] | None = None
 
     @property
     def mapped(self) -> bool:
@@ -71,6 +85,8 @@ class Scalars:
         ValueError
             If they come of the geometry at every point, as arc length and curvature do.
         """
+        if self.categories is not None:
+            return max(len(self.categories), 1)
         if self.volume is not None:
             return max(self.volume.distinct, 1)
         if self.values is not None:
@@ -84,16 +100,18 @@ class Scalars:
         return max(int(np.count_nonzero(np.bincount(stored.codes)[: stored.levels])), 1)
 
 
-def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | None) -> Scalars:
+def find_scalars(
+    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None
+) -> Scalars:
     """Find what ``scalars`` means for ``fiblets``.
 
     Parameters
     ----------
     fiblets : FibletSet
         The data.
-    scalars : str, array, VolumeSource or None
-        A name, one value or colour per streamline, or a volume to be sampled; ``None`` means
-        orientation.
+    scalars : str, array, VolumeSource, Distance or None
+        A name, one value or colour per streamline, a volume to be sampled, or what distances are
+        to; ``None`` means orientation.
 
     Returns
     -------
@@ -114,6 +132,9 @@ def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | 
         return Scalars(
             scalars.name, "point_value", None, (low, high), scalars.least_positive, scalars
         )
+    if isinstance(scalars, Distance):
+        values = measure(fiblets, scalars)
+        return per_streamline(values.name, values.array(), fiblets.n_streamlines)
     if not isinstance(scalars, str):
         return per_streamline(UNNAMED, scalars, fiblets.n_streamlines)
     if scalars in fiblets.per_point:
@@ -133,7 +154,34 @@ def find_scalars(fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | 
     if scalars == "curvature":
         least, most = _curvature_range(fiblets)
         return Scalars("curvature", "point_value", None, (least, most), most / 1e3)
+    if scalars in COMPUTED["streamline"]:
+        return per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
+    if scalars == GROUP:
+        return by_group(fiblets)
+    if scalars == "coding_error":
+        raise KeyError(
+            "the coding error is known only while streamlines are compressed: give "
+            "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
+        )
     raise KeyError(missing_message(fiblets, scalars))
+
+
+def by_group(fiblets: FibletSet) -> Scalars:
+    """Number the streamlines by the first of the groups that they are in; NaN for those in none.
+
+    Raises
+    ------
+    KeyError
+        If there are no groups.
+    """
+    if not fiblets.groups:
+        raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
+    numbers = np.full(fiblets.n_streamlines, np.nan)
+    for index, members in reversed(list(enumerate(fiblets.groups.values()))):
+        numbers[np.asarray(members)] = index
+    found = per_streamline(GROUP, numbers, fiblets.n_streamlines)
+    names = dict(enumerate(fiblets.groups))
+    return replace(found, range=(-0.5, len(names) - 0.5), categories=names)
 
 
 def missing_message(fiblets: FibletSet, name: str) -> str:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -15,10 +15,14 @@ from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.codec.query.measures import Distance, measure
 from pvfiblets.engine.volumes import VolumeSource
 from pvfiblets.plotting.scalars import UNNAMED
 from pvfiblets.plotting.volumes import as_volume
 from pvfiblets.streamlines import Streamlines
+
+CODING_ERROR = "coding_error"
+Colours: TypeAlias = str | np.ndarray | VolumeSource | Distance | None
 
 
 def as_fiblets(
@@ -29,7 +33,7 @@ def as_fiblets(
     max_error: float | None = None,
     progress: bool = False,
     **options: Any,
-) -> tuple[FibletSet, str | np.ndarray | VolumeSource | None]:
+) -> tuple[FibletSet, Colours]:
     """Compress ``source`` unless it is compressed already.
 
     Parameters
@@ -81,7 +85,7 @@ def as_fiblets(
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
             keep.append(scalars)
-    elif scalars is not None and volume is None:
+    elif scalars is not None and volume is None and not isinstance(scalars, Distance):
         values = np.asarray(scalars)
         if len(values) == streamlines.n_points != len(streamlines):
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
@@ -94,12 +98,15 @@ def as_fiblets(
         progress=progress,
         **options,
     )
-    return fiblets, scalars
+    if isinstance(scalars, str) and scalars == CODING_ERROR and CODING_ERROR not in fiblets.per_point:
+        error = measure(fiblets, CODING_ERROR, original=streamlines)
+        fiblets = _with_coded(fiblets, CODING_ERROR, error.array())
+    return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
 
 
 def with_point_values(
     fiblets: FibletSet, scalars: Any
-) -> tuple[FibletSet, str | np.ndarray | VolumeSource | None]:
+) -> tuple[FibletSet, Colours]:
     """Store ``scalars`` with the fiblets if they are an array with one number per point.
 
     Parameters
@@ -121,14 +128,24 @@ def with_point_values(
         return fiblets, volume
     if scalars is None or isinstance(scalars, str):
         return fiblets, scalars
+    if isinstance(scalars, Distance):
+        if scalars.per == "streamline":
+            return fiblets, scalars
+        found = measure(fiblets, scalars)
+        return _with_coded(fiblets, found.name, found.array()), found.name
     values = np.asarray(scalars)
     if values.shape != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
         return fiblets, values
+    return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
+
+
+def _with_coded(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
+    """Return a set with one more number per point, in the order in which points are coded."""
     numbers = values.astype(np.float64)
     finite = numbers[np.isfinite(numbers)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    stored = {**fiblets.per_point, UNNAMED: quantise_values(fiblets.in_coded_order(numbers), low, high)}
-    return replace(fiblets, per_point=stored), UNNAMED
+    stored = {**fiblets.per_point, name: quantise_values(numbers, low, high)}
+    return replace(fiblets, per_point=stored)
 
 
 def as_streamlines(source: Any) -> Streamlines:
