@@ -39,3 +39,15 @@ flat in int fibletLayer;
   {
     fibletIds = texelFetch(fibletIdLayers, ivec3(fibletPixel, fibletLayer), 0).rg;
   }
+
+// Without depth peeling VTK does not blend in any order: of all that is translucent in a pixel it takes the mean, weighted by
+// opacity a, and its alpha from all opacities (vtkOrderIndependentTranslucentPass, of which the text below is). Weighted by what
+// reaches the viewer besides, layer k by a (1 - a)^k, that mean is the layers' colour blended in order:
+//
+//   sum a (1 - a)^k c_k / sum a (1 - a)^k * (1 - (1 - a)^n) = sum a (1 - a)^k c_k
+//
+// exactly where all of them have the same opacity. Among other translucent things they then weigh as one thing does.
+//@ fragment replace gl_FragData[1].r = gl_FragData[0].a;
+float fibletReaching = fibletLayer == 0 ? 1.0 : pow(max(1.0 - gl_FragData[0].a, 0.0), float(fibletLayer));
+  gl_FragData[0].rgb *= fibletReaching;
+  gl_FragData[1].r = fibletReaching * gl_FragData[0].a;
