@@ -299,3 +299,61 @@ def test_a_smooth_set_of_one_page_and_one_fiblet() -> None:
     for region in some_regions(1.0, tuple(one.decompress().points[30])).values():
         assert_flags(one, region)
         assert_flags(one, region, 0.1)
+
+
+def a_torus() -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a torus about z, radii 30 and 14 mm."""
+    n, m = 48, 24
+    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
+    ring = 30 + 14 * np.cos(v)
+    points = np.stack([ring * np.cos(u), ring * np.sin(u), 14 * np.sin(v)], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    a, b = i * m + j, (i + 1) % n * m + j
+    c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
+    return points, np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+
+
+def some_volumes() -> dict[str, regions.Region]:
+    rng = np.random.default_rng(5)
+    affine = np.array([[3.0, 0.4, 0, -60], [0, 2.5, 0, -75], [0, 0, 4, -40], [0, 0, 0, 1]])
+    blobs = rng.random((40, 60, 30))
+    for axis in range(3):
+        blobs = sum(np.roll(blobs, k, axis) for k in range(-3, 4))
+    labels = (blobs > np.quantile(blobs, 0.6)).astype(np.int16) + (blobs > np.quantile(blobs, 0.9))
+    torus = regions.Surface(*a_torus())
+    every = regions.Labels(labels, affine)
+    return {
+        "torus": torus, "labels": every, "label": regions.Labels(labels, affine, labels=[2]),
+        "torus and labels": torus & every, "labels without torus or plane": every - torus | some_regions()["plane"],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", some_volumes())
+@pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
+def test_surfaces_and_labels(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
+    found = assert_flags(brains[how], some_volumes()[name])
+    assert len(np.unique(found)) > 2, "the region tells streamlines apart"
+    if how == "input":
+        assert_flags(brains[how].extract(slice(0, 40)), some_volumes()[name], 0.21)
+
+
+def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet]) -> None:
+    """Against closed forms: a torus, but for what lies within the coarseness of its mesh; and a slab of voxels."""
+    whole = brains["input"]
+    decoded = whole.decompress(dtype=np.float64)
+    p = decoded.points
+    depth = 14 - np.hypot(np.hypot(p[:, 0], p[:, 1]) - 30, p[:, 2])
+    clear = [np.abs(depth[a:b]).min() > 0.4 for a, b in pairwise(decoded.offsets)]  # sagitta of 1/24 of a circle: 0.4
+    wanted = expected_flags(
+        decoded.points, decoded.offsets, lambda q: 14 > np.hypot(np.hypot(q[:, 0], q[:, 1]) - 30, q[:, 2])
+    )
+    found = region_flags(whole, regions.Surface(*a_torus()))
+    assert sum(clear) > 50
+    np.testing.assert_array_equal(found[clear], wanted[clear])
+    volume = np.zeros((200, 200, 200), bool)
+    volume[90:120, :, 60:99] = True
+    slabs = regions.Labels(volume, np.array([[1.0, 0, 0, -100], [0, 1, 0, -100], [0, 0, 1, -80], [0, 0, 0, 1]]))
+    voxels = np.floor(p + [100.5, 100.5, 80.5]).astype(int)
+    inside = (voxels[:, 0] >= 90) & (voxels[:, 0] < 120) & (voxels[:, 2] >= 60) & (voxels[:, 2] < 99)
+    each = np.logical_or.reduceat(inside, decoded.offsets[:-1])
+    np.testing.assert_array_equal(whole.select(regions.passes(slabs)), each)
