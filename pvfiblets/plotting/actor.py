@@ -208,6 +208,11 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
 
     @property
+    def shows_labels(self) -> bool:
+        """Whether the numbers that colour the actor are labels, each with a name."""
+        return self._scalars is not None and self._scalars.categories is not None
+
+    @property
     def color(self) -> pv.Color | None:
         """One colour for all streamlines; setting it puts scalars out of use."""
         return None if self._settings.color is None else pv.Color(self._settings.color)

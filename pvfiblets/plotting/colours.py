@@ -20,8 +20,12 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.scalars import Scalars
 
 
-LABEL_CMAP = "tab20"
-"""Of labels, unless another is asked for."""
+def label_colours(count: int) -> list[Any]:
+    """Return so many colours that are easily told apart, over again after twenty."""
+    import matplotlib as mpl
+
+    colours = mpl.colormaps["tab10" if count <= 10 else "tab20"].colors
+    return [mpl.colors.to_hex(colours[i % len(colours)]) for i in range(count)]
 
 
 @dataclass
@@ -107,7 +111,7 @@ def update_table(
         raise ValueError(f"n_colors is {settings.n_colors!r}; give a whole number above zero")
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None
-    usual = LABEL_CMAP if labels else theme.cmap
+    usual = label_colours(len(scalars.categories)) if scalars.categories else theme.cmap
     cmap = usual if settings.cmap is None else settings.cmap
     if isinstance(cmap, pv.LookupTable):
         table.DeepCopy(cmap)

@@ -349,7 +349,8 @@ class FibletsComponent(Picking, Widgets):
             self._plotter.scalar_bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
         if wanted is not None:
             self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
-            arguments = {**state.arguments, "title": wanted}
+            usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}
+            arguments = {**usual, **state.arguments, "title": wanted}
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
         state.title = wanted
 
