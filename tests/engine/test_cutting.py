@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -11,7 +15,6 @@ import pyvista as pv
 
 from pvfiblets import regions
 from pvfiblets.engine.cutting import Cutter
-from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, assemble
@@ -130,7 +133,7 @@ def check(gl, cutter, region, view, *, seed=0, least=0.9, rounds=2, box=(ORIGIN,
 
 def surface(mesh):
     mesh = mesh.triangulate().clean()
-    mesh = mesh.compute_normals(cell_normals=True, point_normals=False, auto_orient_normals=True, consistent_normals=True)
+    mesh = mesh.compute_normals(point_normals=False, auto_orient_normals=True, consistent_normals=True)
     return regions.Surface(np.asarray(mesh.points, float), mesh.regular_faces)
 
 
@@ -181,7 +184,8 @@ SHAPES = {
     "not a box": ~BOX,
     "difference": BOX - BALL,
     "either": BOX | BALL | regions.Slab((0, 0, 1), (0, 0, -40), 6.0),
-    "deep": ((BALL - TURNED) | (BOX & TURNED)) & ~regions.Sphere((0, -20, 0), 18) | regions.Plane((0, 0, -1), (0, 0, -55)),
+    "deep": ((BALL - TURNED) | (BOX & TURNED)) & ~regions.Sphere((0, -20, 0), 18)
+    | regions.Plane((0, 0, -1), (0, 0, -55)),
 }
 
 
@@ -208,3 +212,196 @@ def test_surfaces_in_expressions(gl, cutter, camera, torus, bumpy):
 def test_compute_shaders_say_the_same(gl, cutter, camera, torus):
     view = View(SIZE, camera(SIZE))
     check(gl, cutter, torus - BOX, view, compute=True)
+
+
+def block(low, high):
+    """Points and triangles of a box."""
+    mesh = pv.Box(np.ravel(np.stack([low, high], axis=1))).triangulate()
+    return np.asarray(mesh.points, float), mesh.regular_faces
+
+
+def joined(*meshes):
+    points = np.concatenate([p for p, _ in meshes])
+    firsts = np.cumsum([0, *[len(p) for p, _ in meshes]])
+    return regions.Surface(points, np.concatenate([f + n for (_, f), n in zip(meshes, firsts, strict=False)]))
+
+
+def test_coinciding_faces_are_counted(gl, cutter, camera):
+    corner = (-20, -20, -20)
+    a, b, c = block(corner, (0, 20, 20)), block(corner, (30, 20, 20)), block((0, -20, -20), (30, 9, 20))
+    for region in (joined(a, b), joined(a, c), joined(a, a), joined(b, a, a, c)):
+        for view in cameras(camera):
+            check(gl, cutter, region, view, rounds=1)
+    assert cutter._surfaces._tallies is not None
+    check(gl, cutter, joined(b), View(SIZE, camera(SIZE)), rounds=1)
+    assert cutter._surfaces._tallies is None
+
+
+def test_a_surface_that_runs_through_itself(gl, cutter, camera):
+    ball = pv.Icosphere(radius=40.0, nsub=3)
+    points, triangles = np.asarray(ball.points, float), ball.regular_faces
+    several = [(points + shift, triangles) for shift in ([0, 0, 0], [25, 3, 1], [10, -30, 5])]
+    for view in cameras(camera):
+        check(gl, cutter, joined(*several), view, rounds=1)
+
+
+def test_many_shells_take_many_layers(gl, cutter, camera):
+    ball = pv.Icosphere(radius=1.0, nsub=2)
+    points, triangles = np.asarray(ball.points, float), ball.regular_faces
+    shells = [
+        (radius * points, triangles if k % 2 == 0 else triangles[:, ::-1])
+        for k, radius in enumerate(np.linspace(60, 10, 11))
+    ]
+    for view in cameras(camera):
+        check(gl, cutter, joined(*shells), view, rounds=1, least=0.8)
+    assert cutter.layers >= 6
+
+
+def test_more_boundaries_than_expected(gl, cutter, camera):
+    row = regions.Sphere((0, -80, 0), 3)
+    for y in np.linspace(-72, 80, 20):
+        row = row | regions.Sphere((0, y, 0), 3)
+    view = View(SIZE, camera(SIZE, eye=(0, -200, 1), angle=15))
+    check(gl, cutter, row, view)
+    assert cutter.layers > 8
+    check(gl, cutter, ~row, view)
+    check(gl, cutter, BALL, view)
+    assert cutter.layers == 1
+
+
+def test_mirrors(gl, cutter, camera, torus):
+    mirror = np.diag([-1.0, 1, 1, 1])
+    for view in cameras(camera):
+        check(gl, cutter, torus.moved(mirror), view, rounds=1)
+        mirrored = View(view.size, view.model_view_projection @ mirror)
+        check(gl, cutter, torus.moved(np.eye(4) + 20 * np.eye(4, k=3)), mirrored, rounds=1)
+        check(gl, cutter, TURNED - BALL, mirrored, rounds=1)
+
+
+@pytest.mark.parametrize(("size", "where"), [(1.0, 1e6), (1e-6, 0.0), (1e-6, 1e-3), (1e5, 0.0), (1e4, 1e6)])
+def test_far_away_tiny_and_huge(gl, cutter, camera, torus, size, where):
+    placed = np.diag([size, size, size, 1.0])
+    placed[:3, 3] = where
+    box = (size * ORIGIN + where, size * SCALE, TOP)
+    for region in (torus, TURNED, BALL, regions.Plane((1, 2, 0.5), (4, 5, 6))):
+        for view in cameras(camera):
+            there = View(view.size, view.model_view_projection @ np.linalg.inv(placed))
+            check(gl, cutter, region.moved(placed), there, rounds=1, box=box, slack=6e-7)
+
+
+def test_sizes_far_from_that_of_the_data(gl, cutter, camera):
+    view = View(SIZE, camera(SIZE))
+    for radius in (1e-3, 0.5, 1e4, 1e7):
+        centre = (5 + radius, 3, 1)
+        for region in (regions.Sphere(centre, radius), regions.Box(center=centre, size=2 * radius)):
+            check(gl, cutter, region, view, rounds=1)
+
+
+def test_a_surface_beside_or_behind_is_nowhere(gl, cutter, camera, torus):
+    view = View(SIZE, camera(SIZE))
+    for shift in ([0, -400, 60], [500, 0, 0], [0, 900, 0]):
+        away = np.eye(4)
+        away[:3, 3] = shift
+        for region in (torus.moved(away), ~torus.moved(away), BALL - torus.moved(away), BALL.moved(away)):
+            check(gl, cutter, region, view, rounds=1)
+
+
+def test_a_flattening_matrix_keeps_everything(gl, cutter, camera, torus):
+    flat = camera(SIZE)
+    flat[2] = 0.0
+    for region in (BOX, torus):
+        assert cutter.prepare(View(SIZE, flat, region=region), ORIGIN, SCALE, TOP)
+        assert asked(gl, cutter, np.full(SIZE[::-1], 0.7)).all()
+
+
+def test_labels_cannot_cut(gl, cutter, camera):
+    labels = regions.Labels(np.ones((2, 2, 2), np.uint8), np.eye(4))
+    with pytest.raises(ValueError, match="label volume cannot cut"):
+        cutter.prepare(View(SIZE, camera(SIZE), region=BOX - labels), ORIGIN, SCALE, TOP)
+
+
+def test_nothing_is_done_twice_and_nothing_is_left(gl, cutter, camera, torus, monkeypatch):
+    drawn = []
+    combine = Cutter._combine
+    monkeypatch.setattr(Cutter, "_combine", lambda self, *a: (drawn.append(1), combine(self, *a)))
+    view = View(SIZE, camera(SIZE), region=torus - BOX)
+    for _ in range(3):
+        assert cutter.prepare(view, ORIGIN, SCALE, TOP)
+        assert cutter.prepare(View(SIZE, camera(SIZE), region=torus - BOX), ORIGIN, SCALE, TOP)
+    assert len(drawn) == 1
+    before = cutter.nbytes
+    assert before >= SIZE[0] * SIZE[1] * (16 + 40)
+    cutter.prepare(View(SIZE, camera(SIZE), region=BOX), ORIGIN, SCALE, TOP)
+    assert len(drawn) == 2
+    assert cutter.nbytes == SIZE[0] * SIZE[1] * 16
+    assert not cutter.prepare(View(SIZE, camera(SIZE)), ORIGIN, SCALE, TOP)
+    assert cutter.nbytes == 0
+
+
+def test_sizes_change(gl, cutter, camera, torus):
+    for size in ((90, 120), (33, 17), (1, 1), (150, 40)):
+        check(gl, cutter, torus - BOX, View(size, camera(size)), rounds=1, least=0.5)
+
+
+def test_state_is_left_as_it_is(gl, cutter, camera, torus):
+    texture = gl.texture((8, 8), 4)
+    target = gl.framebuffer([texture])
+    target.use()
+    functions = OpenGL(gl)
+    cutter.prepare(View(SIZE, camera(SIZE), region=torus - BOX), ORIGIN, SCALE, TOP)
+    assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == target.glo
+    # Blending, clipping, scissor and clamps would show in this picture.
+    program = gl.program(
+        vertex_shader=assemble("screen/triangle.vert", version=330),
+        fragment_shader="#version 330\nout vec4 c; void main() { c = vec4(0.25); }",
+    )
+    array = gl.vertex_array(program, [])
+    gl.clear(1.0, 1.0, 1.0, 1.0)
+    target.use()
+    array.render(moderngl.TRIANGLES, vertices=3)
+    assert set(texture.read()) == {64}
+    for thing in (array, program):
+        thing.release()
+    gl.detect_framebuffer(0).use()
+    target.release()
+    texture.release()
+
+
+DRAW_ELSEWHERE = """
+import importlib.util, sys
+import moderngl, numpy as np
+here = sys.argv[1]
+load = lambda name: importlib.util.spec_from_file_location(name, f"{here}/{name}.py")
+modules = []
+for name in ("conftest", "test_cutting"):
+    spec = load(name)
+    modules.append(importlib.util.module_from_spec(spec))
+    spec.loader.exec_module(modules[-1])
+conftest, tests = modules
+ctx = moderngl.create_standalone_context(require=330, backend="egl")
+assert ctx.version_code == 330, ctx.version_code
+camera = conftest.camera
+tests.draw_all(ctx, getattr(camera, "__wrapped__", None) or camera.__pytest_wrapped__.obj)
+assert ctx.error == "GL_NO_ERROR"
+"""
+
+
+def draw_all(ctx, wrapped):
+    """Check some regions without fixtures."""
+    programs = Programs(ctx, CONSTANTS)
+    cutter = Cutter(ctx, OpenGL(ctx), programs)
+    ring = surface(pv.ParametricTorus(ringradius=40, crosssectionradius=15, u_res=31, v_res=31, w_res=31))
+    a, b = block((-20, -20, -20), (0, 20, 20)), block((-20, -20, -20), (30, 20, 20))
+    for region in (BOX - BALL, ring - BOX, joined(a, b) | BALL):
+        for view in cameras(wrapped()):
+            check(ctx, cutter, region, view, rounds=1)
+    cutter.release()
+    programs.release()
+
+
+def test_opengl_3_3_suffices(older_opengl):
+    here = Path(__file__).resolve().parent
+    environment = {**older_opengl("3.3"), "PYTHONPATH": os.pathsep.join([str(here.parents[1]), *sys.path])}
+    command = [sys.executable, "-W", "error", "-c", DRAW_ELSEWHERE, str(here)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert result.returncode == 0, result.stderr
