@@ -74,11 +74,11 @@ class TubeShading:
 
 @dataclass(frozen=True)
 class Tubes:
-    """An `pvfiblets.mappers.extras.Extra` that draws streamlines as tubes: bodies with round ends, lit by their surface.
+    """An `pvfiblets.mappers.extras.Extra` that draws streamlines as tubes: bodies with round ends.
 
-    Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and into
-    VTK's meshes, and lights, ambient occlusion and selection take them for surfaces. Those thinner than a pixel are
-    drawn a pixel wide. ``line_width`` is not looked at. It costs four bytes for each pixel.
+    Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and
+    into VTK's meshes, and lights, ambient occlusion and selection take them for surfaces. Those thinner than a pixel
+    are drawn a pixel wide. ``line_width`` is not looked at. It costs four bytes for each pixel.
 
     Parameters
     ----------

@@ -88,13 +88,15 @@ def entries(lines, radius, matrix, size, planes=()):
                 face[later] = -plane[:3]
                 first = np.where(rise > 0, np.maximum(first, at), first)
                 last = np.where(rise < 0, np.minimum(last, at), last)
+            run = b - a
             hit = np.isfinite(first) & (first <= last)
             p = o + np.where(hit, first, 0.0)[..., None] * d
             clip = np.concatenate([p, np.ones((*p.shape[:2], 1))], -1) @ matrix.T
             with np.errstate(divide="ignore", invalid="ignore"):
                 depth = (clip[..., 2] / clip[..., 3] + 1) / 2
             hit &= (clip[..., 3] > 0) & (depth >= 0) & (depth <= 1) & (depth < found.depth)
-            run = b - a
+            if k > 0:  # the ball at a is the end of the segment before
+                hit &= (p - a) @ run >= 0
             t = np.clip((p - a) @ run / max(run @ run, 1e-300), 0, 1)
             normal = p - a - t[..., None] * run
             normal = np.where(face.any(-1, keepdims=True), face, normal / radius)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 import pyvista as pv
 
 from pvfiblets.engine import Style, View
 from pvfiblets.mappers import Colouring
-from pvfiblets.mappers.tubes import TubeShading, Tubes
+from pvfiblets.mappers.tubes import Tubes, TubeShading
 
 RADIUS = 3.0
 RODS = [[(-18, 0, 0), (18, 4, 6)], [(5, -12, -10), (0, 10, 12)]]
@@ -21,7 +23,9 @@ def rods(tools):
     def make(extra, line_width=1.0, curves=RODS):
         lines = [np.linspace(a, b, 31) for a, b in curves]
         fibres = tools.fibres("engine", type(tools.helices(1, 2)).from_list(lines))
-        mapper, actor = fibres.actor(lighting=True, line_width=line_width, colouring=Colouring("solid", color=(1, 1, 1)))
+        mapper, actor = fibres.actor(
+            lighting=True, line_width=line_width, colouring=Colouring("solid", color=(1, 1, 1))
+        )
         actor.GetProperty().SetAmbient(0.1)
         actor.GetProperty().SetDiffuse(0.9)
         mapper.set_extra("tubes", extra)
@@ -46,10 +50,15 @@ def scene(make_plotter, actor, place=None, light=(60, -100, 40)):
 def capsules(fibres):
     """Yield the rods as VTK's surfaces, finely cut: cylinders and balls."""
     offsets, points = fibres.reference.offsets, fibres.reference.points.astype(float)
-    for s, e in zip(offsets[:-1], offsets[1:], strict=True):
+    for s, e in itertools.pairwise(offsets):
         a, b = points[s], points[e - 1]
         yield pv.Cylinder(
-            center=(a + b) / 2, direction=b - a, radius=RADIUS, height=np.linalg.norm(b - a), resolution=240, capping=False
+            center=(a + b) / 2,
+            direction=b - a,
+            radius=RADIUS,
+            height=np.linalg.norm(b - a),
+            resolution=240,
+            capping=False,
         )
         for end in (a, b):
             yield pv.Sphere(radius=RADIUS, center=end, theta_resolution=120, phi_resolution=120)
@@ -57,7 +66,11 @@ def capsules(fibres):
 
 @pytest.mark.parametrize(
     "place",
-    [None, lambda actor: actor.SetScale(1.5, 1.0, 0.7), lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30))],
+    [
+        None,
+        lambda actor: actor.SetScale(1.5, 1.0, 0.7),
+        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
+    ],
     ids=["plain", "stretched", "mirrored"],
 )
 def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place):
@@ -86,10 +99,13 @@ def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place
 
 def test_tubes_cut_into_meshes(rods, make_plotter, tools):
     """A plane through the axis hides the far half of the tube: less shows than without it, and more than of a line."""
+
     def shown(extra, line_width=1.0):
         _, mapper, actor = rods(extra, line_width, [[(-15, 0, 0), (15, 0, 0)]])
         plotter = scene(make_plotter, actor)
-        plotter.add_mesh(pv.Plane(center=(0, 0, 0), direction=(0, 0, 1), i_size=60, j_size=60), color="red", lighting=False)
+        plotter.add_mesh(
+            pv.Plane(center=(0, 0, 0), direction=(0, 0, 1), i_size=60, j_size=60), color="red", lighting=False
+        )
         image = tools.picture(plotter, mapper)
         return (image[..., 1] > 10).sum(), (image[..., 1] > 10)
 
