@@ -85,7 +85,7 @@ class Cutter:
         self._gl = gl
         self._programs = programs
         self._made: tuple[object, ...] | None = None
-        self._form: Form | None = None
+        self._form: tuple[Form, tuple[int, ...]] | None = None
         self._stack: LayerStack | None = None
         self._squares = Squares(ctx, gl, programs)
         self._surfaces: SurfaceLayers | None = None
@@ -153,8 +153,9 @@ class Cutter:
             self._block = self._ctx.buffer(reserve=block.nbytes)
         self._block.write(block.tobytes())
         form = Form.of(region)
-        if form != self._form:  # a simpler one needs no more than it does
-            self._form = form
+        meshes = tuple(id(cast("Surface", leaf).mesh) for leaf in region.leaves if leaf.kind == SURFACE)
+        if (form, meshes) != self._form:  # a simpler one needs no more than it does
+            self._form = form, meshes
             self._drop_stack()
         rectangle, most = (0, 0, *size), crossings + 1
         if form.bounded:

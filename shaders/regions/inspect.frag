@@ -20,20 +20,17 @@ void main() {
     bool shared_depth = false;
     for (int y = low.y; y < high.y; ++y) {
         for (int x = low.x; x < high.x; ++x) {
-            vec4 ends;
-            float end;
-            layers_fetch(ivec3(x, y, base), ends, end);
-            ivec2 fragments = layers_counts(ends.w);
-            int larger = max(fragments.x, fragments.y);
+            ivec2 fragments = layers_counts(texelFetch(layers_even, ivec3(x, y, base >> 1), 0).w);
+            int larger = max(fragments.x, fragments.y), left = fragments.x + fragments.y;
             most = max(most, larger);
-            total = max(total, fragments.x + fragments.y);
-            if (larger == 0 || larger > 2 * count) continue;
-            int left = fragments.x + fragments.y;
-            for (int layer = base; left > 0; ++layer) {
+            total = max(total, left);
+            if (larger < 2 || larger > 2 * count) left = 0;  // no two to share a depth, or not all layers are there
+            for (int layer = base; left > 0 && layer < base + count; ++layer) {
+                vec4 ends;
+                float end;
+                layers_fetch(ivec3(x, y, layer), ends, end);
                 ivec4 there = layers_there(layers_ends(ends, end));
                 left -= there.x + there.y + there.z + there.w;
-                if (layer + 1 == base + count) break;
-                layers_fetch(ivec3(x, y, layer + 1), ends, end);
             }
             shared_depth = shared_depth || left > 0;
         }

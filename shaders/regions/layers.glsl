@@ -35,6 +35,13 @@ vec4 layers_ends(vec4 ends, float end) {
 // Of such depths, 1 for those that there are.
 ivec4 layers_there(vec4 depths) { return ivec4(greaterThan(depths, vec4(0.0))) * ivec4(lessThan(depths, vec4(2.0))); }
 
+// The first layer of a surface, which is always an even one.
+void layers_first(ivec3 at, out vec4 ends, out float end) {
+    ivec3 place = ivec3(at.xy, at.z >> 1);
+    ends = texelFetch(layers_even, place, 0);
+    end = texelFetch(layers_even_end, place, 0).x;
+}
+
 void layers_fetch(ivec3 at, out vec4 ends, out float end) {
     ivec3 place = ivec3(at.xy, at.z >> 1);
     if ((at.z & 1) == 0) {

@@ -18,7 +18,7 @@ SurfaceHere surface_at(int k, ivec2 pixel) {
     if (any(lessThan(pixel, rectangle.xy)) || any(greaterThanEqual(pixel, rectangle.zw))) return here;
     vec4 ends;
     float end;
-    layers_fetch(ivec3(pixel, surface.x), ends, end);
+    layers_first(ivec3(pixel, surface.x), ends, end);
     ivec2 fragments = layers_counts(ends.w);
     here.winding = fragments.y - fragments.x;
     here.layers = min(surface.y, (max(fragments.x, fragments.y) + 1) / 2);
