@@ -9,6 +9,7 @@ from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 from vtkmodules.vtkFiltersModeling import vtkSelectEnclosedPoints
 
 from pvfiblets import regions
+from pvfiblets.codec.query import surfaces
 
 from .test_shapes import SHEAR, place, placement, rotation
 
@@ -213,7 +214,9 @@ def test_balls_near_a_surface(concave):
     assert (sides != 0)[settled].mean() > 0.98
 
 
-def test_the_field_is_a_lower_bound_at_every_grid_point(concave):
+@pytest.mark.parametrize("loss", [0.0, 0.03])
+def test_the_field_is_a_lower_bound_at_every_grid_point(concave, loss, monkeypatch):
+    monkeypatch.setattr(surfaces, "FEW", 0 if loss else 10**9)
     _, surface = concave
     field = surface.field
     nz, ny, nx = field.values.shape
@@ -225,7 +228,7 @@ def test_the_field_is_a_lower_bound_at_every_grid_point(concave):
     signed = surface.signed_distance(nodes)
     assert (np.sign(values) == np.sign(signed)).all()
     assert (np.abs(values) <= np.abs(signed)).all()
-    assert values == pytest.approx(signed, abs=1e-6)
+    assert (np.abs(values) >= np.abs(signed) * (1.0 - loss) - 1e-6).all()
     # Two cells of margin all around.
     low, high = surface.bounds[::2], surface.bounds[1::2]
     assert (field.origin <= low - 2 * field.spacing + 1e-9).all()

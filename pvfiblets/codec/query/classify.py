@@ -94,7 +94,7 @@ def pack_rows(region: Region) -> tuple[npt.NDArray[np.int32], Array]:
     return np.array(region.program, np.int32), rows
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=4)
 def pack(region: Region) -> Packed:
     """Return a region as arrays, for kernels; the last few are kept. Makes the fields that are not there yet."""
     ops, rows = pack_rows(region)

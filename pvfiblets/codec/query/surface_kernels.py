@@ -214,16 +214,19 @@ def triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: 
 
 
 @kernel
-def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, guess: int, stack: Any, reach: Any,
-            x: float, y: float, z: float) -> Any:  # fmt: skip
-    """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch."""
+def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, guess: int, share: float, stack: Any,
+            reach: Any, x: float, y: float, z: float) -> Any:  # fmt: skip
+    """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch.
+
+    With a ``share`` below 1 no triangle is nearer than that share of the square that is found.
+    """
     found = guess
     best = triangle_square(points, triangles[guess, 0], triangles[guess, 1], triangles[guess, 2], x, y, z)
     stack[0], reach[0] = 0, _box_square(boxes, 0, x, y, z)
     waiting = 1
     while waiting > 0:
         waiting -= 1
-        if not reach[waiting] < best:
+        if not reach[waiting] < best * share:
             continue
         node = stack[waiting]
         left, right = links[node, 0], links[node, 1]
@@ -237,10 +240,10 @@ def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, gue
         near, far = _box_square(boxes, left, x, y, z), _box_square(boxes, right, x, y, z)
         if near > far:
             left, right, near, far = right, left, far, near
-        if far < best:
+        if far < best * share:
             stack[waiting], reach[waiting] = right, far
             waiting += 1
-        if near < best:
+        if near < best * share:
             stack[waiting], reach[waiting] = left, near
             waiting += 1
     return best, found
@@ -254,16 +257,19 @@ def distances(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, p
         stack, reach = np.empty(_DEEPEST, np.int64), np.empty(_DEEPEST)
         last = 0
         for i in range(block * _BLOCK, min((block + 1) * _BLOCK, n)):
-            best, last = nearest(
-                points, triangles, boxes, links, order, last, stack, reach, places[i, 0], places[i, 1], places[i, 2]
-            )
+            x, y, z = places[i, 0], places[i, 1], places[i, 2]
+            best, last = nearest(points, triangles, boxes, links, order, last, 1.0, stack, reach, x, y, z)
             out[i] = math.sqrt(best)
 
 
 @parallel_kernel
 def nodes_of_grid(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int,
-                  ny: int, boxes: Any, links: Any, order: Any, origin: Any, step: float, out: Any) -> None:  # fmt: skip
-    """Signed distances at grid points into ``out`` (nz, ny, nx) float64: positive where the winding number is not 0."""
+                  ny: int, boxes: Any, links: Any, order: Any, share: float, origin: Any, step: float,
+                  out: Any) -> None:  # fmt: skip
+    """Signed distances at grid points into ``out`` (nz, ny, nx) float64: positive where the winding number is not 0.
+
+    They are lower bounds, of at least the root of ``share`` of the distance.
+    """
     size_z, size_y, size_x = out.shape
     for row in numba.prange(size_z * size_y):
         stack, reach = np.empty(_DEEPEST, np.int64), np.empty(_DEEPEST)
@@ -272,6 +278,7 @@ def nodes_of_grid(points: Any, triangles: Any, first: Any, members: Any, low: An
         last = 0
         for i in range(size_x):
             x = origin[0] + step * i
-            best, last = nearest(points, triangles, boxes, links, order, last, stack, reach, x, y, z)
+            best, last = nearest(points, triangles, boxes, links, order, last, share, stack, reach, x, y, z)
+            best *= share
             turns = _winding(points, triangles, first, members, low, high, steps, nx, ny, x, y, z)
             out[k, j, i] = math.sqrt(best) if turns != 0 else -math.sqrt(best)

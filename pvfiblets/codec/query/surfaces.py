@@ -21,6 +21,10 @@ __all__ = ["Mesh", "Surface"]
 Array = npt.NDArray[np.float64]
 Corners = npt.NDArray[np.int64]
 
+FEW, LOSS = 50_000, 0.03
+"""Of more triangles than that, a field's values may fall short of the distance by this share: of a sphere of 700,000 it
+takes a quarter of the time."""
+
 _MOST_CELLS = 2048
 _SIMILAR = 1e-12
 
@@ -73,7 +77,8 @@ class Mesh:
 
         first, step, (nx, ny, nz) = surface_grid(self.low, self.high)
         signed = np.empty((nz, ny, nx))
-        nodes_of_grid(*self.cells, *self.tree, first, step, signed)
+        share = 1.0 if len(self.triangles) <= FEW else (1.0 - LOSS) ** 2
+        nodes_of_grid(*self.cells, *self.tree, share, first, step, signed)
         # Distances are computed to within a few units of the last place of the coordinates.
         lost = 1e-14 * float(max(np.abs(self.low).max(), np.abs(self.high).max()))
         signed = np.sign(signed) * np.maximum(np.abs(signed) * (1.0 - 1e-12) - lost, 0.0)
