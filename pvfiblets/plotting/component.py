@@ -68,6 +68,7 @@ class FibletsComponent(Picking, Widgets):
         self._init_widgets()
         self._renderers: dict[str, tuple[Any, int]] = {}
         self._bars: dict[str, _Bar] = {}
+        self._init_picking()
 
     def __iter__(self) -> Iterator[FibletActor]:
         return iter(tuple(self._actors))
@@ -328,6 +329,7 @@ class FibletsComponent(Picking, Widgets):
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""
+        self.disable_picking()
         for renderer, tag in self._renderers.values():
             renderer.RemoveObserver(tag)
         self._renderers.clear()

@@ -193,15 +193,18 @@ def everything(
         return None
     drawn, enlarged = shown.drawn, shown.enlarged
     view, filtering = drawn.view, shown.slot.versions.get("filtering")
+    matrix = view.model_view_projection
+    # What lies beside the picture is not under an area that reaches beyond it.
+    sides = np.array([matrix[3] + sign * matrix[axis] for axis in (0, 1) for sign in (1.0, -1.0)])
     under = under_polygon(
         actor.fiblets,
-        view.model_view_projection,
+        matrix,
         drawn.viewport[2:],
         shown.to_viewport(polygon),
         tolerance * float(enlarged.max()),
         streamlines=None if filtering is None else filtering.streamlines,
         points=None if filtering is None else filtering.points,
-        planes=view.clip_planes,
+        planes=np.concatenate([sides, np.asarray(view.clip_planes).reshape(-1, 4)]),
         region=view.region,
     )
     ids, places, depths = under.ids, under.places, under.depths
@@ -217,7 +220,7 @@ def everything(
         return None
     data = _context(actor)
     data |= {
-        "from_world": view.model_view_projection @ np.linalg.inv(data["model"]),
+        "from_world": matrix @ np.linalg.inv(data["model"]),
         "size": drawn.viewport[2:],
         "enlarged": enlarged,
         "origin": shown.renderer.GetOrigin(),
