@@ -9,6 +9,7 @@ from typing import Any
 import pyvista as pv
 
 from pvfiblets.mappers.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink
+from pvfiblets.mappers.tubes import Tubes, TubeShading
 
 STYLES = ("surface", "halo")
 """What :attr:`Shading.style` may be."""
@@ -42,6 +43,33 @@ class Shading:
     @illuminated.setter
     def illuminated(self, illuminated: bool) -> None:
         self._shade("illuminated", Illuminated, bool(illuminated))
+
+    @property
+    def tube_shading(self) -> bool:
+        """Whether light falls on lines wider than a pixel as on round tubes.
+
+        Only the light changes: their depth stays that of flat lines. ``illuminated`` goes before it.
+        Nothing to be seen without ``lighting``.
+        """
+        return "tube_shading" in self._shades
+
+    @tube_shading.setter
+    def tube_shading(self, wanted: bool) -> None:
+        self._shade("tube_shading", TubeShading, bool(wanted))
+
+    @property
+    def tube_radius(self) -> float | None:
+        """Radius (mm) of tubes in place of lines of ``line_width`` pixels; ``None``, the default, for lines.
+
+        Tubes are exact bodies: each pixel shows the point of the surface that it sees, they cut into
+        each other and into meshes, and ends are round. Those thinner than a pixel are a pixel wide.
+        """
+        settings = self._shades.get("tubes")
+        return None if settings is None else float(settings["radius"])
+
+    @tube_radius.setter
+    def tube_radius(self, radius: float | None) -> None:
+        self._shade("tubes", Tubes, None if radius is None else {"radius": float(radius)})
 
     @property
     def ambient_occlusion(self) -> dict[str, Any] | bool:
@@ -131,5 +159,5 @@ class Shading:
     def _shade_like(self, other: Shading) -> None:
         """Take over all settings of another actor."""
         self.style = other.style
-        for name in ("illuminated", "ambient_occlusion", "depth_cue", "halos"):
+        for name in ("illuminated", "tube_shading", "tube_radius", "ambient_occlusion", "depth_cue", "halos"):
             setattr(self, name, getattr(other, name))

@@ -215,3 +215,24 @@ def test_what_the_engine_was_asked(rods):
     assert Style(**TubeShading().style).relief is None
     assert Style(**Tubes(0.5).style).relief == "normal"
     assert View((4, 4), np.eye(4)) == View((4, 4), np.eye(4))
+
+
+def test_an_actor_of_the_plotter_has_tubes_and_round_shading(make_plotter, tools):
+    """Live, each on its own and both; copies by `name` and settings that are refused leave things as they were."""
+    plotter = make_plotter()
+    actor = plotter.add_fiblets(tools.helices(6), line_width=5)
+    assert (actor.tube_shading, actor.tube_radius) == (False, None)
+    actor.prop.lighting = True
+    areas = []
+    for shading, radius in ((False, None), (True, None), (True, 2.0), (False, 0.5), (False, None)):
+        actor.tube_shading, actor.tube_radius = shading, radius
+        assert (actor.tube_shading, actor.tube_radius) == (shading, radius)
+        image = tools.picture(plotter, actor.mapper)
+        areas.append((tools.covered(image).sum(), image.astype(int).sum()))
+    assert areas[0] == areas[4]
+    assert areas[1][0] == areas[0][0]
+    assert areas[1][1] < areas[0][1]  # edges turn away from the light
+    assert areas[3][0] < areas[2][0]
+    with pytest.raises(ValueError, match="radius of tubes is -1"):
+        actor.tube_radius = -1
+    assert actor.tube_radius is None
