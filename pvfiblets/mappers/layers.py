@@ -15,6 +15,15 @@ import moderngl
 
 from pvfiblets.engine.layers import MOST_LAYERS
 
+_BESIDE = {
+    "colour_point_value": "layers_value",
+    "tube_normal": "layers_normal",
+    "tube_shading": "layers_across",
+}
+"""Pieces of the resolve that others need where there are layers."""
+
+_EMPTY = {"depth": (1, "u4"), "ids": (2, "u4"), "position": (2, "f4"), "across": (1, "f2"), "normal": (1, "u4")}
+
 __all__ = ["Layers", "layers_of", "with_layers"]
 
 
@@ -36,11 +45,16 @@ class _Held:
         """Return what samplers of arrays may look at where there is nothing; no other kind of texture will do."""
         self.count = 1
         self._drop_layers()
-        if not self._empty:
-            for name, components, dtype in (("depth", 1, "u4"), ("ids", 2, "u4"), ("position", 2, "f4")):
-                self._empty[name] = array = self._ctx.texture_array((1, 1, 1), components, dtype=dtype)
-                array.filter = moderngl.NEAREST, moderngl.NEAREST
-        return self._empty
+        return {name: self.blank(name) for name in ("depth", "ids", "position")}
+
+    def blank(self, name: str) -> Any:
+        """Return a texture of one texel, zero."""
+        if name not in self._empty:
+            components, dtype = _EMPTY[name]
+            data = bytes(components * int(dtype[1]))
+            self._empty[name] = self._ctx.texture_array((1, 1, 1), components, data, alignment=1, dtype=dtype)
+            self._empty[name].filter = moderngl.NEAREST, moderngl.NEAREST
+        return self._empty[name]
 
     def _drop_layers(self) -> None:
         if self._engine is not None:
@@ -89,7 +103,11 @@ class Layers:
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
         arrays = kept.layers(draw, self.count) if through else kept.empty()
         names = {"fibletDepthLayers": "depth", "fibletIdLayers": "ids", "fibletPositionLayers": "position"}
-        return {sampler: arrays[name] for sampler, name in names.items()}
+        textures = {sampler: arrays[name] for sampler, name in names.items()}
+        for sampler, relief in (("fibletAcrossLayers", "across"), ("fibletNormalLayers", "normal")):
+            held = "across" in arrays and draw.style.relief == relief
+            textures[sampler] = arrays["across"] if held else kept.blank(relief)
+        return textures
 
     def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all extras
         """Say how many there are."""
@@ -103,6 +121,6 @@ def layers_of(extras: Iterable[Any]) -> int:
 
 def with_layers(features: frozenset[str]) -> frozenset[str]:
     """Return the pieces of the resolve, with those that layers need beside others."""
-    if {"layers", "colour_point_value"} <= features:
-        return features | {"layers_value"}
-    return features
+    if "layers" not in features:
+        return features
+    return features | {piece for other, piece in _BESIDE.items() if other in features}

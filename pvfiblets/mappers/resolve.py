@@ -27,6 +27,8 @@ FEATURES = (
     "normal",
     "tube_shading",
     "tube_normal",
+    "layers_across",
+    "layers_normal",
     "colour_orientation",
     "colour_solid",
     "colour_streamline",

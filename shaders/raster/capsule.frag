@@ -26,6 +26,9 @@ void main() {
 #if FEATURE_ACROSS
     shown_across = packed_direction(hit.normal);
 #endif
+#if FEATURE_PEEL
+    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((handed_ids.w >> 8u) & 255u));
+#endif
     shade(hit.t, 1.0, hit.z);
 }
 #else

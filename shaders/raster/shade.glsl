@@ -77,7 +77,7 @@ void shade(float s, float ratio, float depth) {
     float t = clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0), steps = float((handed_ids.w >> 8u) & 255u);
 #if FEATURE_PEEL
     begin_peel(handed_ids.x, handed_first);
-#if FEATURE_WIDE_LINES
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
     peel_segment(handed_start.xy, handed_end.xy, viewport.z, steps);
 #endif
     if (!behind_layers(ivec2(gl_FragCoord.xy), key, segment)) discard;

@@ -7,4 +7,6 @@ uniform usampler2D fibletNormalMap;
 uniform mat3 fibletNormalToView;       // normals: data -> view coordinates
 
 //@ fragment after //VTK::Normal::Impl
-  normalVCVSOutput = normalize(fibletNormalToView * fibletDirection(texelFetch(fibletNormalMap, fibletPixel, 0).r));
+  uint fibletNormalWord = texelFetch(fibletNormalMap, fibletPixel, 0).r;
+//pvfiblets::NormalWord::Impl
+  normalVCVSOutput = normalize(fibletNormalToView * fibletDirection(fibletNormalWord));

@@ -12,6 +12,7 @@ uniform sampler2D fibletAcrossMap;
 
 //@ fragment after //VTK::Normal::Impl
   float fibletAcross = texelFetch(fibletAcrossMap, min(fibletPixel, textureSize(fibletAcrossMap, 0) - 1), 0).r;
+//pvfiblets::Across::Impl
   vec3 fibletSide = cross(fibletToViewer, fibletTangentVC);
   float fibletSideLength = length(fibletSide);
   if (fibletSideLength > 1e-3)

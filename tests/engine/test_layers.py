@@ -9,7 +9,7 @@ from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.filtering import Filter
 from pvfiblets.engine.layers import MOST_LAYERS
 
-from .pictures import EMPTY, SIZE, near, read
+from .pictures import EMPTY, SIZE, near, read, unpacked_tangent
 
 
 def bent_lines(n, seed=0, points=90):
@@ -205,3 +205,26 @@ def test_a_picture_of_another_size(gl, fabricate, camera):
         assert buffer.size == size
         assert (near(depth[0] != EMPTY, 0) | (depth[1] == EMPTY)).all(), "a layer where the first has none"
     renderer.release()
+
+
+@pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
+def test_tubes_are_one_surface_each(gl, fabricate, camera, pipeline):
+    lines = bent_lines(5, seed=5, points=40)
+    fiblets = fabricate(lines, kind=2, per_fiblet=20)
+    renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
+    size = (100, 80)
+    view, style = View(size, camera(size, eye=(0, -200, 60))), Style(radius=4.0, across=True, tolerance=0.0)
+    depths, _ = one_by_one(renderer, fiblets, view, style)
+    expected, streamline = sorted_layers(depths, 4)
+    buffer = renderer.render_layers(view, style, 4)
+    depth, ids, _ = read_layers(buffer)
+    normals = np.frombuffer(buffer.across.read(), "<u4").reshape(4, *size[::-1])
+    renderer.release()
+    drawn = expected != EMPTY
+    assert drawn[2].sum() > 30
+    # At the edge of one tube another segment of it may show behind, a hand's breadth along: few pixels.
+    wrong = (depth != expected) | (drawn & (ids[..., 0] != streamline))
+    assert wrong.mean(axis=(1, 2)).max() < 0.02 * drawn.mean()
+    facing = unpacked_tangent(normals[depth != EMPTY]) @ np.array([0, -200, 60]) / np.hypot(200, 60)
+    assert (facing > -0.3).all()
+    assert np.median(facing) > 0.55

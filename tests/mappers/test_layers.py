@@ -234,3 +234,53 @@ def test_the_proxy_keeps_its_bounds():
 def test_a_number_of_layers_that_makes_no_sense(count):
     with pytest.raises(ValueError, match="whole number from 2 to 64"):
         Layers(count)
+
+
+@pytest.mark.parametrize("kind", ["tubes", "tube shading"])
+def test_every_layer_has_its_own_surface(scene, tools, kind):
+    """Crossing lines with bodies, each lit on its own: the crossing is made of both pictures."""
+    from pvfiblets.mappers.tubes import Tubes, TubeShading
+
+    extra = Tubes(4.0) if kind == "tubes" else TubeShading()
+    t = np.linspace(-40, 40, 161)
+    front, back = np.c_[t, 0 * t - 20, 0.3 * t], np.c_[0.2 * t, 0.2 * t + 20, t]
+    white = np.full((1, 3), 255, np.uint8)
+    alone = []
+    for line in (front, back):
+        plotter, mapper, _ = scene(
+            Streamlines.from_list([line]), lighting=True, opacity=1.0, layers=None, colours=white, line_width=14.0
+        )
+        mapper.set_extra("tubes", extra)
+        alone.append(tools.picture(plotter, mapper).astype(float))
+    two = Streamlines.from_list([front, back])
+    both, mapper, _ = scene(two, lighting=True, opacity=0.5, colours=white, line_width=14.0)
+    mapper.set_extra("tubes", extra)
+    image = tools.picture(both, mapper)
+    crossing = tools.covered(alone[0]) & tools.covered(alone[1])
+    assert crossing.sum() > 150
+    assert np.ptp(alone[1][crossing]) > 40, "lit flat: nothing is shown"
+    assert np.percentile(np.abs(image - 0.5 * alone[0] - 0.25 * alone[1])[crossing], 90) <= 4
+
+
+def test_both_kinds_of_bodies_at_once(scene, tools):
+    from pvfiblets.mappers.tubes import Tubes, TubeShading
+
+    plotter, mapper, _ = scene(rows(), line_width=6.0)
+    mapper.set_extra("tubes", Tubes(3.0))
+    mapper.set_extra("tube shading", TubeShading())
+    image = tools.picture(plotter, mapper)
+    assert np.abs(image[100, 70:170] - blended(COLOURS[:4], 0.4)).max() <= 3
+
+
+def test_a_halo_is_there_once(scene, tools):
+    """Around the front line a halo hides what is behind it, and it is blended with the background once."""
+    from pvfiblets.mappers.shading import Halos
+
+    plotter, mapper, _ = scene(rows((0, 10)), line_width=3.0)
+    mapper.set_extra("halo", Halos())
+    column = tools.picture(plotter, mapper)[90:112, 120].astype(float)
+    line = np.abs(column - blended(COLOURS[:2], 0.4)).max(axis=1) <= 3
+    halo = np.abs(column - 0.4 * 255).max(axis=1) <= 3
+    assert line.any()
+    assert halo.any()
+    assert (line | halo | (column == 0).all(axis=1)).all(), column

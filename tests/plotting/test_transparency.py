@@ -1,0 +1,98 @@
+"""``transparency`` of an actor: what may be given, and that layers and volumes work on old OpenGL."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+FLAT = {"lighting": False, "line_width": 6.0, "color": "white"}
+
+
+@pytest.fixture
+def lines():
+    """Three lines along x, one behind the other for who looks along -z."""
+    x = np.linspace(-10, 10, 61)
+    return [np.c_[x, 0 * x, 0 * x + z] for z in (0.0, -5.0, -10.0)]
+
+
+def middle(plotter):
+    plotter.view_xy()
+    picture = plotter.screenshot(None)
+    return picture[picture.shape[0] // 2, picture.shape[1] // 2].astype(float)
+
+
+@pytest.mark.parametrize(("transparency", "layers"), [(None, 1), ("layers", 3), (2, 2), (3, 3), (16, 3)])
+def test_layers_show_through_each_other(plotter, lines, transparency, layers):
+    actor = plotter.add_fiblets(lines, opacity=0.5, transparency=transparency, **FLAT)
+    assert actor.transparency == transparency
+    assert np.abs(middle(plotter) - 255 * (1 - 0.5**layers)).max() <= 3
+
+
+def test_it_can_be_changed_at_any_time_and_is_copied(plotter, lines):
+    actor = plotter.add_fiblets(lines, opacity=0.5, **FLAT)
+    assert np.abs(middle(plotter) - 127).max() <= 3
+    actor.transparency = "layers"
+    assert np.abs(middle(plotter) - 223).max() <= 3
+    assert actor.copy().transparency == "layers"
+    actor.opacity = 0.25
+    assert np.abs(middle(plotter) - 255 * (1 - 0.75**3)).max() <= 3
+    assert any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
+    actor.transparency = None
+    assert np.abs(middle(plotter) - 64).max() <= 3
+    assert not any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
+
+
+def test_the_nearest_is_picked(plotter, lines):
+    actor = plotter.add_fiblets(lines, opacity=0.5, transparency=3, **FLAT)
+    middle(plotter)
+    assert actor.pick_at(100, 100)[0] == 0
+
+
+@pytest.mark.parametrize("transparency", ["peeling", 1, 0, -2, 65, 2.5, True, [4]])
+def test_nonsense_is_refused_in_words(plotter, lines, transparency):
+    with pytest.raises(ValueError, match="give None, 'layers', or a number of layers from 2 to 64"):
+        plotter.add_fiblets(lines, transparency=transparency)
+    assert not plotter.actors
+
+
+SCENE = """
+import sys
+import numpy as np
+import pyvista as pv
+plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+plotter.set_background("black")
+plotter.disable_anti_aliasing()
+x = np.linspace(-10, 10, 61)
+lines = [np.c_[x, 0 * x, 0 * x + z] for z in (0.0, -5.0, -10.0)]
+volume = np.fromfunction(lambda i, j, k: 1.0 + 0.0 * i + 0.0 * j - k / 40, (5, 5, 41))
+affine = np.array([[10.0, 0, 0, -20], [0, 10, 0, -20], [0, 0, -0.5, 5], [0, 0, 0, 1]])
+actor = plotter.add_fiblets(
+    lines, scalars=(volume, affine), clim=(0, 1), cmap="gray", lighting=False, line_width=6, opacity=0.5,
+    transparency="layers", pipeline=sys.argv[1], show_scalar_bar=False,
+)
+plotter.view_xy()
+plotter.show(auto_close=False)
+found = plotter.screenshot(None)[100, 100].astype(float)
+# z = 0, -5, -10 are voxels 10, 20 and 30: values 3/4, 1/2 and 1/4
+expected = 255 * (0.5 * 0.75 + 0.25 * 0.5 + 0.125 * 0.25)
+assert abs(found - expected).max() < 4, (found, expected)
+print("drawn")
+"""
+
+
+def draws(environment, pipeline):
+    command = [sys.executable, "-c", SCENE, pipeline]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=280)
+    assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-3000:]
+
+
+def test_layers_of_a_volumes_values_by_this_opengl():
+    draws(None, "auto")
+
+
+@pytest.mark.parametrize(("version", "pipeline"), [("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "geometry")])
+def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipeline):
+    draws(older_opengl(version), pipeline)
