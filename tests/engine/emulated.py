@@ -62,18 +62,18 @@ void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) 
     uint at = mesh + HANDED_AT + 24u * primitive;
     for (uint a = 0u; a < 4u; ++a) meshes[at + a] = handed_ids[a];
     meshes[at + 4u] = floatBitsToUint(handed_first);
-#if FEATURE_WIDE_LINES
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
     for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(handed_start[a]);
     for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(handed_end[a]);
-#else
+#elif !FEATURE_TUBES
     for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = handed_cells[a];
     for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(handed_depths[a]);
     meshes[at + 9u] = floatBitsToUint(handed_ratio);
 #endif
-#if FEATURE_CLIPPING
+#if FEATURE_CLIPPING && !FEATURE_TUBES
     meshes[at + 13u] = handed_part;
 #endif
-#if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
+#if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
     for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(handed_from[a]);
     for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(handed_to[a]);
 #endif
@@ -118,18 +118,18 @@ void main() {
     gl_Position = vec4(value(vertex), value(vertex + 1u), value(vertex + 2u), value(vertex + 3u));
     handed_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
     handed_first = value(at + 4u);
-#if FEATURE_WIDE_LINES
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
     handed_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
     handed_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
-#else
+#elif !FEATURE_TUBES
     handed_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
     handed_depths = vec2(value(at + 7u), value(at + 8u));
     handed_ratio = value(at + 9u);
 #endif
-#if FEATURE_CLIPPING
+#if FEATURE_CLIPPING && !FEATURE_TUBES
     handed_part = meshes[at + 13u];
 #endif
-#if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
+#if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
     handed_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
     handed_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
 #endif

@@ -13,6 +13,7 @@ from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.pipelines.compute import _tube_shares
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
+from .emulated import emulated_renderer
 from .pictures import SIZE, assert_same, draw, near, read, unpacked_tangent
 from .polylines import to_clip, to_window
 from .test_mesh import link
@@ -313,6 +314,23 @@ def test_mesh_stages_link(tmp_path, kind, asked):
     features = {*ASKED[asked], *RECORDS, "PER_PRIMITIVE"}
     done = link(tmp_path, {s: assemble(name, features, CONSTANTS, version=EXTENDED) for s, name in files.items()})
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
+@pytest.mark.parametrize("planes", [[], SLAB], ids=["whole", "cut"])
+@pytest.mark.parametrize("name", ["perspective", "close"])
+def test_mesh_stages_draw_the_same_tubes(gl, monkeypatch, knots, camera, name, planes, serial):
+    """Run as compute shaders, where there are no mesh shaders."""
+    view, style = View(SMALL, camera(SMALL, **VIEWS[name]), planes), Style(radius=3.0, tolerance=0.0, across=True)
+    expected, normals = pictured(gl, knots, view, style, pipeline="geometry", culling=None)
+    renderer = emulated_renderer(monkeypatch, gl, knots, serial=serial, culling=None)
+    target = renderer.render(view, style)
+    picture, packed = read(target), np.frombuffer(target.across.read(), "<u4").reshape(expected.depth.shape)
+    renderer.release()
+    both = picture.drawn & expected.drawn
+    assert (picture.drawn ^ expected.drawn).sum() <= 2
+    assert (np.abs(picture.window_depth - expected.window_depth)[both] < 1e-5).mean() > 0.999
+    assert (np.linalg.norm(unpacked_tangent(packed) - unpacked_tangent(normals), axis=-1)[both] < 1e-2).mean() > 0.99
 
 
 @pytest.mark.parametrize("name", ["geometry, wide", "tessellation, wide"])
