@@ -41,7 +41,7 @@ int region_of_fiblet(Capsule c) {
     vec3 middle = 0.5 * (c.a + c.b);
     float ball = ball_of(c), w = window_from_local[3].w + ball * detail.y;
     w += window_from_local[0].w * middle.x + window_from_local[1].w * middle.y + window_from_local[2].w * middle.z;
-    return region_of_ball(middle, ball + max(w, 0.0) * guard.x);
+    return region_of_capsule(c.a, c.b, c.r + max(w, 0.0) * guard.x);
 }
 #endif
 

@@ -40,7 +40,7 @@ def test_groups_are_labels(streamlines):
     finally:
         plotter.close()
     with pytest.raises(KeyError, match="no groups"):
-        find_scalars(compress([np.zeros((3, 3))]), "group")
+        find_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
 
 
 def test_measures_of_streamlines(streamlines):

@@ -1,0 +1,47 @@
+"""Pick and select: what lies in an area of the picture, more of the same, drawn as tubes, measured along the way.
+
+Run it as ``python examples/11_select.py [FOLDER]``. In a window, ``plotter.fiblets.enable_picking(mode="lasso")`` does
+with the mouse what ``pick_box`` does here.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.synthetic import brain_streamlines
+
+mpl.use("Agg")
+
+
+def main(folder: Path) -> None:
+    """Write a picture of a selection and a profile along it."""
+    streamlines = brain_streamlines(6_000)
+    x, y, z = streamlines.points.T
+    streamlines.per_point = {"fa": (0.5 + 0.3 * np.cos(z / 20) * np.cos(y / 30)).astype(np.float32)}
+    plotter = pv.Plotter(off_screen=True, window_size=(900, 700))
+    actor = plotter.add_fiblets(streamlines, per_point=["fa"])
+    plotter.view_vector((-1, 0.3, 0.3), viewup=(0, 0, 1))
+    plotter.camera.zoom(1.4)
+    plotter.show(auto_close=False)
+
+    seen = actor.pick_box((430, 330, 470, 370))
+    everything = actor.pick_box((430, 330, 470, 370), through=True)
+    print(f"{len(seen.ids)} streamlines are seen in the box, {len(everything.ids)} lie under it")
+
+    actor.select(seen.ids)
+    actor.grow_selection(8.0)  # those with ends within 8 mm of the ends of any
+    actor.selection_style(color="gold", as_tubes=True, radius=0.8, dim=0.75)
+    print(actor.selection_statistics("fa"))
+    plotter.render()
+    plotter.screenshot(folder / "selection.png")
+    axes = actor.selection_profile("fa").plot()
+    axes.figure.savefig(folder / "profile.png", dpi=100)
+    actor.save_selection(folder / "selection.trx")
+    plotter.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
