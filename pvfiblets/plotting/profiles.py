@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -204,7 +205,7 @@ class SelectionMeasures:
         name = scalars if isinstance(scalars, str) else str(getattr(scalars, "name", "Data"))
         return Profile(mean, std, np.linspace(0.0, 1.0, n), name, len(self.selection))
 
-    def save_selection(self, path: str | PathLike[str]) -> None:
+    def save_selection(self, path: str | PathLike[str]) -> list[str]:
         """Write the selected streamlines to a file; its suffix says in which format.
 
         Parameters
@@ -213,9 +214,18 @@ class SelectionMeasures:
             ``.fiblets`` takes them as they are; ``.trk``, ``.tck``, ``.trx``, ``.vtk`` and the
             others take them decompressed. None at all is a file too.
 
+        Returns
+        -------
+        list of str
+            What the format cannot hold and was left out.
+
         Raises
         ------
-        ValueError
-            If no format has such a suffix.
+        UnknownFormatError
+            If no format that can be written has such a suffix.
         """
-        self.fiblets.extract(self.selection).save(path)
+        if Path(path).suffix.lower() != ".fiblets":
+            from pvfiblets.formats import registry
+
+            registry.module_for(path, "write")
+        return self.fiblets.extract(self.selection).save(path)
