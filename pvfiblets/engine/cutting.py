@@ -131,8 +131,10 @@ class Cutter:
         with self._gl.framebuffers_kept():
             self._ctx.enable_only(moderngl.NOTHING)
             self._ctx.wireframe = False
-            self._make(region, to_clip, to_data[:3, 3], view.size)
-            self._ctx.disable_direct(_SCISSOR_TEST)
+            try:
+                self._make(region, to_clip, to_data[:3, 3], view.size)
+            finally:
+                self._ctx.disable_direct(_SCISSOR_TEST)
         self._made = key
         return True
 
@@ -142,6 +144,7 @@ class Cutter:
             block = rays_block(region, window, offset, size)
         except np.linalg.LinAlgError:
             stack = self._stack_of(size, 1)
+            stack.framebuffers[0].scissor = 0, 0, *size
             self._gl.fill(stack.framebuffers[0], 0, (-1.0, 2.0, 2.0, 2.0))
             self.layers = 1
             return
@@ -170,7 +173,7 @@ class Cutter:
             self._combine(form, stack, rectangle)
             if stack.layers >= enough or not self._overflows(stack, rectangle):
                 break
-            layers = 2 * stack.layers
+            layers = min(2 * stack.layers, enough)
 
     def _rectangle(
         self, region: Region, block: npt.NDArray[Any], to_clip: Array, offset: Array, size: tuple[int, int]

@@ -134,7 +134,9 @@ class SurfaceLayers:
         self._gl = gl
         self._programs = programs
         self._meshes: dict[int, tuple[object, _Mesh]] = {}
-        self._counts: list[int] = []
+        self._drawn: list[int] = []  # meshes
+        self._counts: list[int] = []  # layers of the last picture
+        self._room: list[int] = []  # layers that there is room for
         self._stacks: list[LayerStack] = []  # even layers, odd layers
         self._tallies: LayerStack | None = None
         self._squares = Squares(ctx, gl, programs)
@@ -171,25 +173,44 @@ class SurfaceLayers:
             matrix = to_clip @ _placement(surface, mesh.middle, offset)
             matrices.append(matrix / (np.abs(matrix).max() or 1.0))
             rectangles.append(rectangle_of(matrix, mesh.low - mesh.middle, mesh.high - mesh.middle, size))
-        counts = [*self._counts, *[1] * len(surfaces)][: len(surfaces)]
+        meshes = [id(surface.mesh) for surface in surfaces]
+        if meshes != self._drawn:
+            self._drawn, self._counts, self._room = meshes, [1] * len(meshes), [1] * len(meshes)
+            self._drop_stacks()
         while True:
-            firsts = np.cumsum([0, *[(count + 1) // 2 * 2 for count in counts]]).tolist()
+            firsts = np.cumsum([0, *[(room + 1) // 2 * 2 for room in self._room]]).tolist()
             self._make_room(size, firsts[-1])
-            found = [(0, 0, False)] * len(surfaces)
-            for k, surface in enumerate(surfaces):
-                left, lower, right, upper = rectangles[k]
-                if left < right and lower < upper:
-                    self._peel(self._mesh(surface), matrices[k], rectangles[k], firsts[k], counts[k])
-                    found[k] = self._inspect(rectangles[k], firsts[k], counts[k])
-            if all(needed <= count for (needed, _, _), count in zip(found, counts, strict=True)):
+            found = [
+                self._draw_one(k, self._mesh(surface), matrices[k], rectangles[k], firsts[k])
+                for k, surface in enumerate(surfaces)
+            ]
+            needed = [layers for layers, _, _ in found]
+            self._counts = [max(layers, 1) for layers in needed]
+            if all(layers <= room for layers, room in zip(needed, self._room, strict=True)):
                 break
-            counts = [max(needed, count) for (needed, _, _), count in zip(found, counts, strict=True)]
-        self._counts = [max(needed, 1) for needed, _, _ in found]
+            self._room = [max(pair) for pair in zip(needed, self._room, strict=True)]
         peeled = [
-            Peeled(rectangle, first, needed, -1, crossings)
-            for rectangle, first, (needed, crossings, _) in zip(rectangles, firsts, found, strict=False)
+            Peeled(rectangle, first, layers, -1, crossings)
+            for rectangle, first, (layers, crossings, _) in zip(rectangles, firsts, found, strict=False)
         ]
         return self._tally(surfaces, matrices, peeled, [shared for _, _, shared in found])
+
+    def _draw_one(
+        self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int
+    ) -> tuple[int, int, bool]:
+        """Draw as many layers as the last picture had, and then those that are missing, as far as there is room.
+
+        Returns what :meth:`_inspect` does.
+        """
+        if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
+            return 0, 0, False
+        count = self._counts[k]
+        self._peel(mesh, matrix, rectangle, first, range(count))
+        found = self._inspect(rectangle, first, count)
+        if count < found[0] <= self._room[k]:
+            self._peel(mesh, matrix, rectangle, first, range(count, found[0]))
+            found = self._inspect(rectangle, first, found[0])
+        return found
 
     def _mesh(self, surface: Surface) -> _Mesh:
         return self._meshes[id(surface.mesh)][1]
@@ -207,9 +228,7 @@ class SurfaceLayers:
         held = self._stacks
         if held and held[0].size == size and held[0].layers >= layers // 2:
             return
-        for stack in held:
-            stack.release()
-        held.clear()
+        self._drop_stacks()
         for _ in range(2):
             held.append(LayerStack(self._ctx, self._gl, size, max(layers // 2, 1), (4, 1)))
 
@@ -218,10 +237,10 @@ class SurfaceLayers:
         program["clip_from_surface"] = tuple(matrix.T.ravel())
         return program
 
-    def _peel(self, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, count: int) -> None:
-        """Draw some layers of one surface."""
+    def _peel(self, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, wanted: range) -> None:
+        """Draw some layers of one surface, whose first is number `first`."""
         ctx = self._ctx
-        for layer in range(first, first + count):
+        for layer in range(first + wanted.start, first + wanted.stop):
             program = self._program("regions/peel.frag", ["PEEL"] if layer > first else [], matrix)
             if layer > first:
                 before = self._stacks[(layer - 1) & 1]
@@ -324,17 +343,22 @@ class SurfaceLayers:
         meshes = [mesh for _, mesh in self._meshes.values()]
         return sum(thing.nbytes for thing in (*stacks, *meshes) if thing is not None)
 
+    def _drop_stacks(self) -> None:
+        for stack in self._stacks:
+            stack.release()
+        self._stacks.clear()
+
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         for _, mesh in self._meshes.values():
             mesh.release()
         self._meshes.clear()
-        for stack in (*self._stacks, self._tallies, self._squares):
-            if stack is not None:
-                stack.release()
-        self._stacks.clear()
-        self._tallies = None
-        self._counts.clear()
+        self._drop_stacks()
+        self._squares.release()
+        if self._tallies is not None:
+            self._tallies.release()
+            self._tallies = None
+        self._drawn.clear()
 
 
 def _placement(surface: Surface, middle: Array, offset: Array) -> Array:

@@ -312,6 +312,7 @@ def test_a_flattening_matrix_keeps_everything(gl, cutter, camera, torus):
     flat = camera(SIZE)
     flat[2] = 0.0
     for region in (BOX, torus):
+        check(gl, cutter, region, View(SIZE, camera(SIZE)), rounds=1)
         assert cutter.prepare(View(SIZE, flat, region=region), ORIGIN, SCALE, TOP)
         assert asked(gl, cutter, np.full(SIZE[::-1], 0.7)).all()
 
