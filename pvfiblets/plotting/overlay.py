@@ -11,6 +11,12 @@ from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D, vtkText
 _BESIDE = (14, 10)  # pixels from the mouse to its text
 
 
+def standing_out(background: Any) -> str:
+    """Return black or white, whichever can be seen on a colour (luma of ITU-R BT.601)."""
+    red, green, blue = pv.Color(background).float_rgb
+    return "black" if 0.299 * red + 0.587 * green + 0.114 * blue > 0.5 else "white"
+
+
 class Outline:
     """A closed line over one renderer.
 

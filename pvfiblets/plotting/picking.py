@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.plotting.overlay import Tooltip
+from pvfiblets.plotting.overlay import Tooltip, standing_out
 from pvfiblets.plotting.picked import Picked, everything, visible
 from pvfiblets.plotting.pointing import Pointing
 
@@ -89,7 +89,8 @@ class Picking:
         font_size : int, default: 18
             Of the message.
         color : color-like, optional
-            Of the outline of areas; the theme's font colour by default.
+            Of the outline of areas and of the message; black or white by default, whichever stands
+            out against the background.
 
         Raises
         ------
@@ -113,6 +114,8 @@ class Picking:
         self.disable_picking()
 
         def found(corners: np.ndarray, click: bool, selecting: str) -> None:
+            if self._tooltip is not None and self._tooltip.remove():
+                self._plotter.render()  # or what it covered would count as hidden
             results = self._pick(corners, click, through, float(tolerance))
             if select:
                 self._select(results, selecting)
@@ -127,7 +130,7 @@ class Picking:
             self._tooltip = Tooltip()
             hovered = self._hover(self._tooltip, say, float(tolerance))
         if color is None:
-            color = self._plotter.theme.font.color
+            color = standing_out(self._plotter.renderer.background_color)
         self._pointing = Pointing(
             self._plotter,
             mode=mode,
@@ -139,7 +142,9 @@ class Picking:
         )
         if show_message:
             text = MESSAGES[mode].format(button.capitalize()) if show_message is True else show_message
-            self._plotter.add_text(text, font_size=font_size, name=_MESSAGE, render=False)
+            self._plotter.add_text(
+                text, font_size=font_size, color=color, name=_MESSAGE, render=False
+            )
             self._message = True
 
     def disable_picking(self) -> None:
