@@ -32,6 +32,11 @@ def box_distance(linear: Array, unit: Array) -> Array:
     as each is the distance to a point of the box, and the true nearest point is one of them.
     """
     edges = np.linalg.inv(linear)  # mm per unit coordinate, columns
+    lengths = np.linalg.norm(edges, axis=0)
+    axes = edges / lengths
+    if np.abs(axes.T @ axes - np.eye(3)).max() <= 1e-14:  # not sheared: along each axis by itself
+        straight: Array = np.linalg.norm(np.maximum(np.abs(unit) - 1.0, 0.0) * lengths, axis=1)
+        return straight
     found = np.full(len(unit), np.inf)
     found[(np.abs(unit) <= 1.0).all(axis=1)] = 0.0
     for pattern in np.ndindex(3, 3, 3):
