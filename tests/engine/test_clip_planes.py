@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
 from .gl_lines import gl_lines

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pvfiblets.engine import EngineError
-from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import FEATURES, Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
