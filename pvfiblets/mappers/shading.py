@@ -181,7 +181,7 @@ class Halos(_Piece):
     Parameters
     ----------
     width : float, optional
-        mm from a line's edge to its halo's, at most 32 pixels on the screen. By default a 250th of the diagonal of the
+        mm from a line's edge to its halo's, at most 24 pixels on the screen. By default a 250th of the diagonal of the
         data's bounds, or what 2.5 pixels of the window take in the middle of the data, if that is more.
     depth : float, optional
         mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import pyvista as pv
@@ -100,9 +100,11 @@ class Shading:
 
     @property
     def halos(self) -> dict[str, Any] | bool:
-        """Gaps that lines cut into lines behind them, the wider the farther behind (Everts et al. 2009).
+        """Gaps that lines cut into what is behind them, the wider the farther it is behind.
 
-        ``width`` (mm): from a line's edge to its halo's, at most 32 pixels; ``None``, the default,
+        Depth-dependent halos of Everts et al. 2009.
+
+        ``width`` (mm): from a line's edge to its halo's, at most 24 pixels; ``None``, the default,
         is a 250th of the data's diagonal, or 2.5 pixels if they are more. ``depth`` (mm): by how
         much the halo's edge lies behind its line; lines side by side whose depths differ by less do
         not cut each other. ``None``, the default, is a 20th of the diagonal. ``color``
@@ -118,7 +120,7 @@ class Shading:
     def style(self) -> str:
         """``'surface'``, lines in their colours, or ``'halo'``, black lines in white halos.
 
-        ``'halo'`` is a drawing in ink (Everts et al. 2009), best on a white background: it draws all
+        ``'halo'`` is a drawing in ink (Everts et al. 2009), best on white: it draws all
         lines black and without light, and sets default halos where none are. Colours and
         ``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.
         """
@@ -143,7 +145,7 @@ class Shading:
             return
         if wanted is not True and not isinstance(wanted, Mapping):
             raise ValueError(f"{name} is {wanted!r}; give True, False or a dict of settings")
-        known = [field.name for field in fields(kind)] if hasattr(kind, "__dataclass_fields__") else []
+        known = [field.name for field in fields(kind)] if is_dataclass(kind) else []
         settings = {} if wanted is True else dict(wanted)
         if unknown := sorted(set(settings) - set(known)):
             raise ValueError(f"{name} has no settings {unknown}; it has {known}")

@@ -12,7 +12,7 @@ from .screen import ScreenEffect
 
 __all__ = ["WIDEST", "HaloPass"]
 
-WIDEST = 32.0
+WIDEST = 24.0
 """Pixels: a halo of more, of a line near the viewer, is drawn with so many."""
 
 TILE = 8
