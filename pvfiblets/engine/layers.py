@@ -5,8 +5,9 @@ Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pix
 what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they reach;
 what lies behind the last one is not there.
 
-Each layer takes a pass over all fiblets in the view volume: earlier depth hides nothing that is behind it, so that
-there is no other culling. The layers are kept until the picture changes.
+Each layer is drawn from all fiblets in the view volume. What hides a fiblet of a layer is that layer's own depth so
+far, by two-phase culling as of the picture itself; what the last picture's same layer showed is drawn first. So each
+layer has a pipeline and a pyramid of its own. The layers are kept until the picture changes.
 """
 
 from __future__ import annotations
@@ -17,13 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
-from .errors import EngineError, GPUMemoryError
+from .errors import GPUMemoryError
 from .gbuffer import RELIEF, GBuffer
 
 if TYPE_CHECKING:
+    from .culling import Occlusion
     from .opengl import OpenGL
     from .pipelines import Job, Pipeline
     from .shaders import Programs
+    from .view import Style, View
 
 __all__ = ["MOST_LAYERS", "PEEL_UNITS", "LayeredBuffer", "Layers", "Peel"]
 
@@ -143,6 +146,46 @@ class Peel:
             self.layers.position.use(PEEL_UNITS["peeled_position"])
 
 
+class _Stage:
+    """What draws one layer, and remembers its last picture."""
+
+    def __init__(self, ctx: moderngl.Context, pipeline: Pipeline, occlusion: Occlusion | None) -> None:
+        self._ctx = ctx
+        self.pipeline = pipeline
+        self.occlusion = occlusion
+        self.target: GBuffer | None = None
+
+    def draw(self, job: Job, peel: Peel, view: View, style: Style) -> GBuffer:
+        """Draw what lies behind some layers."""
+        if self.target is not None and self.target.size != job.target.size:
+            self.target.release()
+            self.target = None
+        if self.target is None:
+            self.target = GBuffer(self._ctx, job.target.size)
+        self.target.want_relief(self._ctx, job.target.relief)
+        if self.occlusion is not None:
+            self.occlusion.before(self.target, view, style)
+        self.pipeline.draw(replace(job, target=self.target, occlusion=self.occlusion, peel=peel))
+        if self.occlusion is not None:
+            self.occlusion.after(self.target, view, style)
+        self.target.generation += 1
+        return self.target
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        held = sum(buffer.size for buffer in self.pipeline.buffers.values())
+        return held + sum(thing.nbytes for thing in (self.target, self.occlusion) if thing is not None)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        self.pipeline.release()
+        for thing in (self.target, self.occlusion):
+            if thing is not None:
+                thing.release()
+        self.target = None
+
+
 class Layers:
     """Draws layers behind a picture and keeps them.
 
@@ -151,22 +194,28 @@ class Layers:
     ctx : moderngl.Context
     gl : OpenGL
     programs : Programs
-    make_pipeline : callable
-        Makes a pipeline of its own: what one remembers of the last picture serves the first layer alone.
+    make : callable
+        Makes a pipeline, and what it culls by, if anything.
     """
 
     def __init__(
-        self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, make_pipeline: Callable[[], Pipeline]
+        self,
+        ctx: moderngl.Context,
+        gl: OpenGL,
+        programs: Programs,
+        make: Callable[[], tuple[Pipeline, Occlusion | None]],
     ) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
-        self._pipeline = make_pipeline()
-        self._scratch: GBuffer | None = None
+        self._make = make
+        self._stages: list[_Stage] = []
         self._held: LayeredBuffer | None = None
         self._drawn: tuple[int, int] | None = None
 
-    def of(self, nearest: GBuffer, count: int, make_job: Callable[[], Job]) -> LayeredBuffer:
+    def of(
+        self, nearest: GBuffer, count: int, view: View, style: Style, make_job: Callable[[], Job]
+    ) -> LayeredBuffer:
         """Return the layers of a picture, drawn unless they are there.
 
         Parameters
@@ -175,6 +224,8 @@ class Layers:
             The picture.
         count : int
             Layers, itself included.
+        view, style
+            Of the picture.
         make_job : callable
             Returns the job that it was drawn by, with everything bound.
 
@@ -191,44 +242,40 @@ class Layers:
             return self._held
         self._drawn = None
         held = self._resize(nearest, count)
-        scratch = self._scratch
-        if scratch is None:
-            raise EngineError("these layers have been released")
+        while len(self._stages) < count - 1:
+            self._stages.append(_Stage(self._ctx, *self._make()))
+        while len(self._stages) >= count:
+            self._stages.pop().release()
         job = make_job()
         held.keep(self._ctx, self._gl, self._programs, nearest, 0)
-        for layer in range(1, count):
-            self._pipeline.draw(replace(job, target=scratch, occlusion=None, peel=Peel(held, layer)))
-            held.keep(self._ctx, self._gl, self._programs, scratch, layer)
+        for layer, stage in enumerate(self._stages, 1):
+            drawn = stage.draw(job, Peel(held, layer), view, style)
+            held.keep(self._ctx, self._gl, self._programs, drawn, layer)
         self._drawn = nearest.generation, count
         return held
 
     def _resize(self, nearest: GBuffer, count: int) -> LayeredBuffer:
         """Have textures for a picture like this one."""
-        if self._scratch is not None and self._scratch.size != nearest.size:
-            self._scratch.release()
-            self._scratch = None
-        if self._scratch is None:
-            self._scratch = GBuffer(self._ctx, nearest.size)
-        self._scratch.want_relief(self._ctx, nearest.relief)
         held = self._held
         wanted = nearest.size, count, nearest.relief
         if held is None or (held.size, held.count, held.relief) != wanted:
             if held is not None:
                 held.release()
                 self._held = None
-            self._held = held = LayeredBuffer(self._ctx, self._gl, self._scratch, count)
+            self._held = held = LayeredBuffer(self._ctx, self._gl, nearest, count)
         return held
 
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        own = sum(buffer.size for buffer in self._pipeline.buffers.values())
-        return own + sum(buffer.nbytes for buffer in (self._scratch, self._held) if buffer is not None)
+        held = 0 if self._held is None else self._held.nbytes
+        return held + sum(stage.nbytes for stage in self._stages)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        self._pipeline.release()
-        for buffer in (self._scratch, self._held):
-            if buffer is not None:
-                buffer.release()
-        self._scratch = self._held = self._drawn = None
+        for stage in self._stages:
+            stage.release()
+        self._stages.clear()
+        if self._held is not None:
+            self._held.release()
+        self._held = self._drawn = None

@@ -6,20 +6,16 @@ from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import moderngl
-import numpy as np
-import numpy.typing as npt
 from tqdm import tqdm
 
-from ..codec import layout, tables
 from .capabilities import check_choices, choose
 from .census import Census
 from .chunks import Chunk
-from .clipping import BLOCK_BYTES, clip_planes_block
 from .culling import Occlusion, make_occlusion
 from .errors import EngineError, GPUMemoryError
 from .filtering import Filter
 from .fit import Fitted, Room
-from .frame import FRAME_BYTES, frame_block, local_frame, segment_pixels
+from .frame import local_frame
 from .gbuffer import GBuffer
 from .kept import Kept
 from .layers import LayeredBuffer, Layers
@@ -27,8 +23,8 @@ from .opengl import OpenGL
 from .passes import Passes
 from .pipelines import CONSTANTS, Job, Limits, Pipeline, make_measurer, make_pipeline
 from .reporting import buffer_sizes, count_fiblets, no_counts
-from .shaders import BLOCKS, Programs
-from .tubes import TUBES_BYTES, tubes_block
+from .shaders import Programs
+from .shared import SharedBlocks, decoding_features
 from .upload import upload_chunk
 from .values import ValueSources
 from .view import Style, View
@@ -103,7 +99,7 @@ class FibletRenderer:
         self._ctx = ctx
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
-        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._shared: SharedBlocks | None = None
         self._gl = OpenGL(ctx)
         self._occlusion: Occlusion | None = None
         self._pipeline: Pipeline | None = None
@@ -113,27 +109,25 @@ class FibletRenderer:
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
-        self._segment = 0.0
         self._features: list[str] = []
         self._values: ValueSources | None = None
         self._kept: Kept | None = None
         self._layers: Layers | None = None
         self._query: RegionQuery | None = None
-        self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         try:
             whole = fiblets
             fitted = self._upload(Room.of(ctx, self._gl, limits, max_total_bytes), fit, progress)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
-            self._make_shared()
+            self._shared = SharedBlocks(ctx, fiblets)
             self._kept = Kept(ctx, self._gl, self._programs, whole, fiblets, self._chunks)
             self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
             self._pipeline = self._make_pipeline()
             self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
             measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
-            self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._forget_camera)
+            self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._shared.forget_camera)
         except BaseException:
             self.release()
             raise
@@ -155,17 +149,6 @@ class FibletRenderer:
             # A driver that did not say how much memory is free says now that it was less.
             self._release_chunks()
             fitted = room.fitted(self._fiblets, fit, fitted.share / 2.0)
-
-    def _make_shared(self) -> None:
-        """Make the uniform blocks that all chunks share."""
-        fiblets = self._fiblets
-        self._buffers["rotations"] = self._ctx.buffer(np.ascontiguousarray(tables.packed(), "<u4").tobytes())
-        coding = np.zeros((6, 4), "<f4")
-        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
-        coding[1] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice, fiblets.parameters.end_scale
-        coding[2:] = tables.packed_scales().reshape(4, 4)
-        self._buffers["coding"] = self._ctx.buffer(coding.tobytes())
-        self._buffers["frame"] = self._ctx.buffer(bytes(FRAME_BYTES))
 
     def render(
         self, view: View, style: Style | None = None, *, outside: moderngl.Texture | None = None
@@ -244,14 +227,20 @@ class FibletRenderer:
         style = style or Style()
         nearest = self.render(view, style)
         if self._layers is None:
-            self._layers = Layers(self._ctx, self._gl, self._programs, self._make_pipeline)
-        return self._layers.of(nearest, count, lambda: self._job(view, style, nearest))
+            self._layers = Layers(self._ctx, self._gl, self._programs, self._make_stage)
+        return self._layers.of(nearest, count, view, style, lambda: self._job(view, style, nearest))
 
     def drop_layers(self) -> None:
         """Give back what :meth:`render_layers` keeps; twice is harmless."""
         if self._layers is not None:
             self._layers.release()
             self._layers = None
+
+    def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
+        # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
+        culling = None if self._occlusion is None else "two-phase"
+        occlusion = make_occlusion(culling, self._ctx, self._gl, self._programs, self._fiblets)
+        return self._make_pipeline(), occlusion
 
     def _make_pipeline(self) -> Pipeline:
         return make_pipeline(
@@ -266,13 +255,13 @@ class FibletRenderer:
 
     def _job(self, view: View, style: Style, target: GBuffer) -> Job:
         """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
-        _, values, kept = self._alive()
-        self._bind_shared()
+        _, values, kept, shared = self._alive()
+        shared.bind()
         decoding = self._decoding_features()
         source = values.activate(style.values, decoding)
-        clipping, planes = self._write_frame(view, style)
-        kept.update(view, *self._place(), self._top)
-        values.locate(local_frame(view, *self._place(), self._top)[1])
+        clipping, planes = shared.write_camera(view, style)
+        kept.update(view, *shared.place)
+        values.locate(local_frame(view, *shared.place)[1])
         return Job(
             chunks=self._chunks,
             target=target,
@@ -283,7 +272,7 @@ class FibletRenderer:
             planes=("CLIP_PLANES",) if planes else (),
             detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
             line_width=style.line_width,
-            segment=self._segment,
+            segment=shared.segment,
             occlusion=self._occlusion,
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
@@ -297,38 +286,6 @@ class FibletRenderer:
         """
         two_phase = self._occlusion is not None and self._occlusion.halfway
         return two_phase and self._last != (view, style)
-
-    def _place(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Where anchors count from, and mm per anchor integer."""
-        return np.asarray(self._fiblets.origin, np.float64), np.asarray(self._fiblets.anchor_scale, np.float64)
-
-    def _write_frame(self, view: View, style: Style) -> tuple[bool, bool]:
-        """Bring the uniform blocks of the camera up to date; say whether anything may cross the edges, or planes."""
-        origin, scale = self._place()
-        # Where steps vary, four times their mean stands for the longest.
-        self._segment = segment_pixels(view, origin, scale, self._top, 4.0 * self._fiblets.step)
-        block, margin = frame_block(view, style, origin, scale, self._top)
-        radius = self._fiblets.parameters.largest_radius
-        self._buffers["frame"].write(block)
-        if style.radius is None:
-            if "tubes" in self._buffers:
-                self._buffers.pop("tubes").release()
-        else:
-            if "tubes" not in self._buffers:
-                self._buffers["tubes"] = self._ctx.buffer(reserve=TUBES_BYTES)
-            self._buffers["tubes"].write(tubes_block(view, style.radius, origin, scale, self._top))
-            self._buffers["tubes"].bind_to_uniform_block(BLOCKS["Tubes"])
-            radius += style.radius
-        planes = clip_planes_block(view, 2.0 * style.half_width or 1.0, origin, scale, self._top, radius)
-        if planes is None:
-            if "clip_planes" in self._buffers:
-                self._buffers.pop("clip_planes").release()
-            return margin < radius, False
-        if "clip_planes" not in self._buffers:
-            self._buffers["clip_planes"] = self._ctx.buffer(reserve=BLOCK_BYTES)
-        self._buffers["clip_planes"].write(planes)
-        self._buffers["clip_planes"].bind_to_uniform_block(3)
-        return margin < radius, True
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.
@@ -348,13 +305,9 @@ class FibletRenderer:
         EngineError
             If there is no such array, or after :meth:`release`.
         """
-        sources = self._alive()[1]
-        self._bind_shared()
+        _, sources, _, shared = self._alive()
+        shared.bind()
         return sources.range(values, self._decoding_features())
-
-    def _forget_camera(self) -> None:
-        """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
-        self._buffers["frame"].write(bytes(FRAME_BYTES))
 
     @property
     def filtering(self) -> Filter | None:
@@ -393,36 +346,23 @@ class FibletRenderer:
         """
         from .querying import RegionQuery
 
-        self._alive()
+        shared = self._alive()[3]
         if self._query is None:
             self._query = RegionQuery(
                 self._ctx, self._gl, self._programs, self._whole, self._chunks, self._max_groups
             )
-        self._bind_shared()
+        shared.bind()
         found = self._query.flags(self._decoding_features(), region, sampling)
-        self._bind_shared()
+        shared.bind()
         return found
 
-    def _alive(self) -> tuple[Pipeline, ValueSources, Kept]:
-        if self._pipeline is None or self._values is None or self._kept is None:
+    def _alive(self) -> tuple[Pipeline, ValueSources, Kept, SharedBlocks]:
+        if self._pipeline is None or self._values is None or self._kept is None or self._shared is None:
             raise EngineError("this renderer has been released; make a new one")
-        return self._pipeline, self._values, self._kept
-
-    def _bind_shared(self) -> None:
-        self._buffers["frame"].bind_to_uniform_block(0)
-        self._buffers["coding"].bind_to_uniform_block(1)
-        self._buffers["rotations"].bind_to_uniform_block(4)
+        return self._pipeline, self._values, self._kept, self._shared
 
     def _decoding_features(self) -> list[str]:
-        kinds = frozenset().union(*(chunk.kinds for chunk in self._chunks))
-        wanted = {
-            "ANCHORS_LOW": self._fiblets.anchors_low is not None,
-            "DIRECTION": layout.Kind.DIRECTION in kinds,
-            "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
-            "WIDE_LATTICE": layout.Kind.WIDE in kinds,
-            "RANK_TO_ID": self._fiblets.rank_to_id is not None,
-        }
-        return [name for name, on in wanted.items() if on]
+        return decoding_features(self._fiblets, self._chunks)
 
     def explain(self, *, counts: bool = True) -> dict[str, object]:
         """Say what the last redraw was made of, and wait for it to end.
@@ -442,7 +382,7 @@ class FibletRenderer:
             "passes": self._passes.report(),
             "features": list(self._features),
             "buffers": buffer_sizes(
-                self._buffers,
+                {} if self._shared is None else self._shared.buffers,
                 self._chunks,
                 self._pipeline,
                 self._occlusion,
@@ -461,9 +401,9 @@ class FibletRenderer:
         total = int(self._fiblets.n_fiblets)
         if self._target is None or self._last is None:
             return no_counts(total)
-        pipeline, _, kept = self._alive()
-        self._bind_shared()
-        _, planes = self._write_frame(*self._last)
+        pipeline, _, kept, shared = self._alive()
+        shared.bind()
+        _, planes = shared.write_camera(*self._last)
         features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else [])]
         culled = self._occlusion is not None
         return count_fiblets(self._census, total, self._chunks, features, pipeline, self._target, kept, culled)
@@ -476,9 +416,9 @@ class FibletRenderer:
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
         self._release_chunks()
-        for buffer in self._buffers.values():
-            buffer.release()
-        self._buffers.clear()
+        if self._shared is not None:
+            self._shared.release()
+            self._shared = None
         if self._pipeline is not None:
             self._pipeline.release()
             self._pipeline = None

@@ -76,7 +76,7 @@ class Layers:
     Parameters
     ----------
     count : int, default 4
-        Layers, 2 to 64. What lies behind the last is not seen. Each takes 20 bytes a pixel and a pass over all
+        Layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all
         fiblets in view, whenever the camera, the data or the style has changed.
 
     Raises

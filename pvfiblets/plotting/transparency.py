@@ -22,7 +22,7 @@ class Transparency:
         ``None``: the nearest alone, through which one sees the rest of the scene. ``"layers"``:
         four, each with its own colour, light and depth, blended in order. A number from 2 to 64:
         as many. What lies behind the last does not show. A layer costs a drawing of all
-        streamlines in view, and 20 bytes of GPU memory a pixel; opaque actors pay for none.
+        streamlines in view, and 44 bytes of GPU memory a pixel; opaque actors pay for none.
         """
         extra = self._mapper.extras.get(_NAME)
         if extra is None:

@@ -113,12 +113,18 @@ vec2 values_at_ends(uint segment) { return vec2(curvatures[segment], curvatures[
 vec3 volume_from;
 vec3 volume_to;
 float volume_steps;
-float volume_value;  // at volume_to, where that is
-bool volume_known;
+vec2 volume_values_at;   // values at both, where they are
+bvec2 volume_known;
 
 void begin_values(uint f) {
     volume_from = volume_to = anchor_local(f);
-    volume_known = false;
+    volume_known = bvec2(false);
+}
+
+float value_of_point(uint i) {
+    if (!volume_known.y) volume_values_at.y = volume_at(volume_to);
+    volume_known.y = true;
+    return volume_values_at.y;
 }
 
 // The walk is at the segment's end.
@@ -126,17 +132,15 @@ void start_values(uint segment, vec3 delta, float steps) {
     volume_from = volume_to;
     volume_to = walk_point;
     volume_steps = steps;
-    volume_known = false;
+    volume_values_at.x = volume_values_at.y;
+    volume_known = bvec2(volume_known.y, false);
 }
 
 float value_along(uint segment, float t, uint step, float rest) {
-    return volume_between(volume_from, volume_to, volume_steps, step, rest);
-}
-
-float value_of_point(uint i) {
-    if (!volume_known) volume_value = volume_at(volume_to);
-    volume_known = true;
-    return volume_value;
+    if (volume_steps > 1.0) return volume_between(volume_from, volume_to, volume_steps, step, rest);
+    if (!volume_known.x) volume_values_at.x = volume_at(volume_from);
+    volume_known.x = true;
+    return value_between(volume_values_at.x, value_of_point(segment + 1u), rest);
 }
 
 // Of a whole fiblet drawn as one segment, where fragments look it up.

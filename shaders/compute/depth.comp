@@ -36,9 +36,10 @@ void plot(ivec2 pixel, float z, float s, uint segment) {
 #if FEATURE_INT64_ATOMICS
     uint at = pixel_index(pixel);
     uint64_t word = nearest_word(depth_key(z), owner);
-    if (word < nearest[at]) atomicMin(nearest[at], word);
+    if (word < nearest[at] && new_surface(pixel, segment)) atomicMin(nearest[at], word);
 #else
     uint key = depth_key(z), there = imageLoad(depth_image, pixel).x;
+    if (key > there || !new_surface(pixel, segment)) return;
     if (key < there) there = imageAtomicMin(depth_image, pixel, key);
     if (key <= there) won = true;
 #endif

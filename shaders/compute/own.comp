@@ -30,7 +30,7 @@ bool kept;
 bool tied;
 
 void plot(ivec2 pixel, float z, float s, uint segment) {
-    if (depth_key(z) != imageLoad(depth_image, pixel).x) return;
+    if (depth_key(z) != imageLoad(depth_image, pixel).x || !new_surface(pixel, segment)) return;
     kept = true;
     uint before = imageAtomicMin(owner_image, pixel, owner);
     if (before < owner) return;

@@ -24,6 +24,7 @@ uint owner;
 
 void plot(ivec2 pixel, float z, float s, uint segment) {
     if (imageLoad(owner_image, pixel).x != owner || depth_key(z) != imageLoad(depth_image, pixel).x) return;
+    if (!new_surface(pixel, segment)) return;
     imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
     imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
     store_across(pixel);

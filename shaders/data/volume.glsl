@@ -29,6 +29,12 @@ float voxel_value(ivec3 at) {
     return volume_values.x + (volume_values.z > 0.0 ? floor(v + 0.5) : v);
 }
 
+// A voxel's part in a sum. Infinity times nothing would be NaN.
+float voxel_part(ivec3 at, float weight) {
+    float v = voxel_value(at);
+    return weight <= 0.0 || (weight < LIGHT && is_nan(v)) ? 0.0 : weight * v;
+}
+
 // Value at a point in local millimetres; NaN outside.
 float volume_at(vec3 p) {
     vec3 at = (voxel_from_local * vec4(p, 1.0)).xyz, top = volume_size.xyz - 1.0;
@@ -36,16 +42,12 @@ float volume_at(vec3 p) {
     at = clamp(at, vec3(0.0), top);
     if (volume_size.w > 0.0) return voxel_value(ivec3(min(floor(at + 0.5), top)));
     vec3 low = min(floor(at), max(top - 1.0, 0.0)), t = at - low;
-    float sum = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        ivec3 side = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-        vec3 weights = mix(1.0 - t, t, vec3(side));
-        float weight = weights.x * weights.y * weights.z;
-        if (weight <= 0.0) continue;
-        float v = voxel_value(ivec3(low) + side);
-        if (weight >= LIGHT || !is_nan(v)) sum += weight * v;
-    }
-    return sum;
+    ivec3 first = ivec3(low), last = ivec3(min(low + 1.0, top));
+    vec2 wx = vec2(1.0 - t.x, t.x), wy = vec2(1.0 - t.y, t.y), wz = vec2(1.0 - t.z, t.z);
+    return voxel_part(first, wx.x * wy.x * wz.x) + voxel_part(ivec3(last.x, first.yz), wx.y * wy.x * wz.x)
+         + voxel_part(ivec3(first.x, last.y, first.z), wx.x * wy.y * wz.x) + voxel_part(ivec3(last.xy, first.z), wx.y * wy.y * wz.x)
+         + voxel_part(ivec3(first.xy, last.z), wx.x * wy.x * wz.y) + voxel_part(ivec3(last.x, first.y, last.z), wx.y * wy.x * wz.y)
+         + voxel_part(ivec3(first.x, last.yz), wx.x * wy.y * wz.y) + voxel_part(last, wx.y * wy.y * wz.y);
 }
 
 // Between the values at two points.

@@ -9,8 +9,8 @@
 //                either side a straight line covers the pixel still, a bent one for longer. A line seen end on has no
 //                pixels to a point: all of it is one surface.
 //
-// Use: begin_peel() for a fiblet, peel_segment() for a segment, then behind_layers() for every pixel. Bounds, not
-// places, are compared: all passes find the same.
+// Use: begin_peel() for a fiblet, peel_segment() for a segment, then behind_layers() and new_surface() for every pixel.
+// Bounds, not places, are compared: all passes find the same.
 
 #if FEATURE_PEEL
 #if FEATURE_TEXTURE_DATA
@@ -48,9 +48,14 @@ void peel_segment(vec2 a, vec2 b, float r, float steps) {
     peel_reach = 2.0 * WIDTHS * r * max(steps, 1.0) / max(length(run), 1e-3);
 }
 
-bool behind_layers(ivec2 pixel, uint key, uint segment) {
-    if (key <= texelFetch(peeled_depth, ivec3(pixel, peeled_layers - 1), 0).x) return false;
-#if FEATURE_WIDE_LINES
+bool behind_layers(ivec2 pixel, uint key) {
+    return key > texelFetch(peeled_depth, ivec3(pixel, peeled_layers - 1), 0).x;
+}
+#endif
+
+// Whether what is drawn there is no part of an earlier layer's surface. It is asked last, of what would show.
+bool new_surface(ivec2 pixel, uint segment) {
+#if FEATURE_PEEL && FEATURE_WIDE_LINES
     precise float from = peel_first + float(segment), to = from + peel_steps;
     for (int layer = 0; layer < peeled_layers; ++layer) {
         if (texelFetch(peeled_ids, ivec3(pixel, layer), 0).x != peel_streamline) continue;
@@ -60,4 +65,3 @@ bool behind_layers(ivec2 pixel, uint key, uint segment) {
 #endif
     return true;
 }
-#endif

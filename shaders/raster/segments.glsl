@@ -61,7 +61,7 @@ void put(ivec2 pixel, float z, float s, uint segment) {
     if (!region_keeps(pixel, z)) return;
 #endif
 #if FEATURE_PEEL
-    if (!behind_layers(pixel, depth_key(z), segment)) return;
+    if (!behind_layers(pixel, depth_key(z))) return;
 #endif
     plot(pixel, z, s, segment);
 }

@@ -80,7 +80,7 @@ void shade(float s, float ratio, float depth) {
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
     peel_segment(handed_start.xy, handed_end.xy, viewport.z, steps);
 #endif
-    if (!behind_layers(ivec2(gl_FragCoord.xy), key, segment)) discard;
+    if (!behind_layers(ivec2(gl_FragCoord.xy), key) || !new_surface(ivec2(gl_FragCoord.xy), segment)) discard;
 #endif
 #if FEATURE_CLIPPING && !FEATURE_TUBES
     t = mix(float(handed_part & 0xFFFFu), float(handed_part >> 16u), t) / 65535.0;

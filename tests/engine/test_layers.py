@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.filtering import Filter
-from pvfiblets.engine.layers import MOST_LAYERS
+from pvfiblets.engine.layers import MOST_LAYERS, _Stage
 
 from .pictures import EMPTY, SIZE, near, read, unpacked_tangent
 
@@ -163,9 +163,13 @@ def test_nothing_is_done_twice_and_the_next_picture_is_unharmed(gl, fabricate, c
     first = renderer.render_layers(view, style, 3)
     before = read_layers(first)
     calls = []
-    pipeline = renderer._layers._pipeline
-    draw = pipeline.draw
-    monkeypatch.setattr(pipeline, "draw", lambda job: (calls.append(job.peel.drawn), draw(job))[1])
+    draw = _Stage.draw
+
+    def counted(self, job, peel, *rest):
+        calls.append(peel.drawn)
+        return draw(self, job, peel, *rest)
+
+    monkeypatch.setattr(_Stage, "draw", counted)
     assert renderer.render_layers(view, style, 3) is first
     assert not calls
     renderer.render_layers(view, style, 4)
