@@ -12,7 +12,7 @@ from ..capsule_kernels import end_part
 from ..jit import kernel, parallel_kernel
 from .predicates import ALL, ANY, FIRST, LAST
 
-__all__ = ["balls", "count_samples", "fill_samples", "merge", "reduce_fiblets", "settle"]
+__all__ = ["balls", "count_samples", "fill_samples", "merge", "reduce_fiblets", "run_balls", "settle"]
 
 
 @parallel_kernel
@@ -159,6 +159,28 @@ def merge(found: Any, which: Any, anchors: Any, ranks: Any, flags: Any) -> None:
         if not found[m] & ALL:
             together &= ~ALL
         flags[ranks[f]] = together
+
+
+@parallel_kernel
+def run_balls(points: Any, run: int, centres: Any, radii: Any) -> None:
+    """Balls about runs of consecutive points, ``(n_points, 3)`` float64; the last run may be shorter.
+
+    ``centres`` ``(n, 3)`` and ``radii`` ``(n,)`` float64 are filled, mm.
+    """
+    for k in numba.prange(len(radii)):
+        first, last = run * k, min(run * (k + 1), len(points))
+        for axis in range(3):
+            low = high = points[first, axis]
+            for i in range(first + 1, last):
+                low, high = min(low, points[i, axis]), max(high, points[i, axis])
+            centres[k, axis] = 0.5 * low + 0.5 * high
+        widest = 0.0
+        for i in range(first, last):
+            squares = 0.0
+            for axis in range(3):
+                squares += (points[i, axis] - centres[k, axis]) ** 2
+            widest = max(widest, squares)
+        radii[k] = math.sqrt(widest) * (1.0 + 2.0**-40)
 
 
 @parallel_kernel
