@@ -31,7 +31,7 @@ def torus(scale: float) -> Any:
     return pv.ParametricTorus(ringradius=0.6 * scale, crosssectionradius=0.25 * scale).clean()
 
 
-def features(fiblets, plotter) -> dict[str, tuple[Step, Callable[[Any], Any]]]:
+def features(fiblets) -> dict[str, tuple[Step, Callable[[Any], Any]]]:
     """Return, by name, what turns a feature on, or changes it for the n-th time, and what turns it off."""
     box = np.array(fiblets.bounds).reshape(3, 2)
     centre, half = box.mean(1), (box[:, 1] - box[:, 0]).max() / 2
@@ -68,22 +68,22 @@ def features(fiblets, plotter) -> dict[str, tuple[Step, Callable[[Any], Any]]]:
         actor.selection_style(as_tubes=False)
 
     def set_to(name: str, on: Any = True, off: Any = False):
-        return (lambda actor, n: setattr(actor, name, on)), (lambda actor: setattr(actor, name, off))
+        return (lambda actor, _: setattr(actor, name, on)), (lambda actor: setattr(actor, name, off))
 
-    def wide_tubes(actor, n):
+    def wide_tubes(actor, _):
         actor.line_width, actor.tube_shading = 3, True
 
     def thin(actor):
         actor.tube_shading, actor.line_width = False, 1
 
-    def layers(actor, n):
+    def layers(actor, _):
         actor.opacity, actor.transparency = 0.4, "layers"
 
     def opaque(actor):
         actor.transparency, actor.opacity = None, 1.0
 
     def colour(name: str):
-        def on(actor, n):
+        def on(actor, _):
             actor.scalars = name
 
         return on, lambda actor: setattr(actor, "scalars", None)
@@ -171,7 +171,7 @@ def measure_all(plotter, actor, fiblets, options) -> list[dict]:
     for _ in range(3):
         frame(plotter)
     results = []
-    for name, (on, off) in features(fiblets, plotter).items():
+    for name, (on, off) in features(fiblets).items():
         if options.only and options.only not in name:
             continue
         base, with_it, changes = [], [], []

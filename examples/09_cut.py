@@ -19,7 +19,8 @@ def anatomy() -> pv.ImageData:
     image = pv.ImageData(dimensions=(80, 96, 80), spacing=(2.0, 2.0, 2.0), origin=(-79.0, -95.0, -70.0))
     x, y, z = image.points.T
     radius = np.sqrt((x / 70) ** 2 + (y / 85) ** 2 + ((z - 10) / 62) ** 2)
-    image["T1"] = np.clip(1.2 - radius, 0.0, 1.0) + 0.1 * np.cos(0.4 * x) * np.cos(0.3 * y) * np.cos(0.35 * z) * (radius < 1)
+    texture = np.cos(0.4 * x) * np.cos(0.3 * y) * np.cos(0.35 * z) * (radius < 1)
+    image["T1"] = np.clip(1.2 - radius, 0.0, 1.0) + 0.1 * texture
     return image
 
 

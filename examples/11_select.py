@@ -19,7 +19,7 @@ mpl.use("Agg")
 def main(folder: Path) -> None:
     """Write a picture of a selection and a profile along it."""
     streamlines = brain_streamlines(6_000)
-    x, y, z = streamlines.points.T
+    _, y, z = streamlines.points.T
     streamlines.per_point = {"fa": (0.5 + 0.3 * np.cos(z / 20) * np.cos(y / 30)).astype(np.float32)}
     plotter = pv.Plotter(off_screen=True, window_size=(900, 700))
     actor = plotter.add_fiblets(streamlines, per_point=["fa"])

@@ -53,6 +53,16 @@ class Illuminated(_Piece):
 
     features = frozenset({"illuminated"})
 
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set what the lights of the scene add up to."""
+        lights = draw.renderer.GetLights()
+        strengths = [
+            light.GetIntensity() * max(light.GetDiffuseColor())
+            for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems()))
+            if light.GetSwitch()
+        ]
+        program.SetUniformf("fibletLightSum", max(1.0, sum(strengths)))
+
 
 @dataclass(frozen=True)
 class Ink(_Piece):

@@ -24,7 +24,8 @@ def label_colours(count: int) -> list[Any]:
     """Return so many colours that are easily told apart, over again after twenty."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["tab10" if count <= 10 else "tab20"].colors
+    chosen: Any = mpl.colormaps["tab10" if count <= 10 else "tab20"]
+    colours = chosen.colors
     return [mpl.colors.to_hex(colours[i % len(colours)]) for i in range(count)]
 
 

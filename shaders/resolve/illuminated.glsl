@@ -14,10 +14,11 @@
 // reflections that comes nearest to V: it keeps the part of -L along T, and N turns the rest towards the viewer. The last
 // sections but one are for a single headlight, for which VTK writes L = (0, 0, 1) out and takes N.L in the place of R.V.
 //
-// Lights from behind count as much as any, so several soon add up to more than white. The diffuse light is then scaled
-// until its brightest channel is 1, which keeps its hue: clipped by channel, colours of directions would tell lies.
+// Lights from behind count as much as any, so several soon add up to more than white, and then no shape would be left. All
+// are therefore dimmed alike until together they are no brighter than one: `fibletLightSum` is what they add up to.
 
 //@ fragment after //VTK::CustomUniforms::Dec
+uniform float fibletLightSum;      // at least 1
 vec3 fibletLineTangent;            // T, in view coordinates
 vec3 fibletLineNormal;             // N nearest to V
 
@@ -49,4 +50,4 @@ fibletSine(vec3(0.0, 0.0, 1.0))
 pow(max(1e-5, dot(fibletReflect(vec3(0.0, 0.0, -1.0), fibletLineNormal), fibletSight)), specularPower)
 //@ fragment replace diffuse = diffuse * diffuseColor;
 diffuse = diffuse * diffuseColor;
-  diffuse /= max(1.0, max(diffuse.r, max(diffuse.g, diffuse.b)));
+  diffuse /= fibletLightSum;

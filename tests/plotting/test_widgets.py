@@ -142,8 +142,8 @@ def test_without_fiblets_there_is_nothing_to_cut():
     try:
         with pytest.raises(ValueError, match="add_fiblets"):
             plotter.fiblets.add_clip_plane_widget()
+        actor = plotter.add_fiblets([[(0, 0, 0), (1, 1, 1)]])
         with pytest.raises(ValueError, match="open"):
-            actor = plotter.add_fiblets([[(0, 0, 0), (1, 1, 1)]])
             plotter.fiblets.add_clip_mesh_widget(pv.Plane(), actor)
     finally:
         plotter.close()
