@@ -163,8 +163,8 @@ class FilterTextures:
         held, self._points = self._points, []
         for index, chunk in enumerate(self._chunks):
             first, last = chunk.plan.points
-            texture = held[index] if index < len(held) else None
-            self._points.append(self._texture(texture, _stretch(words, first, last + AHEAD)))
+            there = held[index] if index < len(held) else None
+            self._points.append(self._texture(there, _stretch(words, first, last + AHEAD)))
 
     def _texture(self, held: moderngl.Texture | None, words: Words) -> moderngl.Texture:
         """Words in rows, in the texture that is there if it is as large."""

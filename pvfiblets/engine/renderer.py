@@ -30,6 +30,9 @@ from .values import ValueSources
 from .view import Style, View
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from ..codec.fibletset import FibletSet
     from ..codec.query.region import Region
     from .querying import RegionQuery

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
 CLASSES = 4

@@ -18,7 +18,7 @@ from pvfiblets.engine.chunks import storage_buffer
 from pvfiblets.engine.culling.coverage import CoverageBuffer, dilation_radius
 from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.engine.pipelines.compute import CONSTANTS
+from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,7 +86,7 @@ def hidden_flags(gl, renderer):
     for name, binding in {"anchors": 0, "bounds": 3, "pages": 4, "anchors_low": 6}.items():
         if name in chunk.buffers:
             chunk.buffers[name].bind_to_storage_buffer(binding)
-    renderer._bind_shared()
+    renderer._shared.bind()
     chunk.buffers["chunk"].bind_to_uniform_block(2)
     out.bind_to_storage_buffer(5)
     occlusion.bind(program)

@@ -51,12 +51,12 @@ def decoded_by_shader(gl, fiblets, source, threads):
     renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])), Style(tolerance=0.0))
     program = gl.compute_shader(assemble("test", renderer._decoding_features(), source=source))
     out = storage_buffer(gl, np.zeros((fiblets.n_fiblets, 64, 3), np.float32), "points")
-    block = np.frombuffer(renderer._buffers["frame"].read(), "<u4").copy()
+    block = np.frombuffer(renderer._shared.buffers["frame"].read(), "<u4").copy()
     block[40:43] = 0
-    renderer._buffers["frame"].write(block.tobytes())
+    renderer._shared.buffers["frame"].write(block.tobytes())
     (chunk,) = renderer._chunks
     chunk.bind_storage()
-    renderer._bind_shared()
+    renderer._shared.bind()
     out.bind_to_storage_buffer(5)
     program.run(-(-fiblets.n_fiblets // threads))
     gl.memory_barrier(moderngl.ALL_BARRIER_BITS)
