@@ -136,6 +136,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
         )
         twin.prop = self.prop.copy() if deep else self.prop
         twin._choose_as(self)
+        twin._select_like(self)
         twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
         twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
         twin.visibility, twin.pickable = self.visibility, self.pickable
@@ -153,10 +154,13 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``fiblets_total``; ``pipeline``; ``culling``; ``share``: how many of the
             streamlines are drawn; ``fiblets``: of the last redraw ``total``, ``in_frustum``,
-            ``drawn`` and ``visible``, ``None`` where not known.
+            ``drawn`` and ``visible``, ``None`` where not known; ``streamlines``: ``total`` and
+            ``shown``; ``criteria``, ``conditions``, ``clips``, ``groups_shown``; ``selection``:
+            how many streamlines, and what drawing them apart takes.
         """
         return {
             **added_up(self._mapper.explain()),
+            "selection": self._explain_selection(),
             "fiblets_total": self._fiblets.n_fiblets,
             "pipeline": self.pipeline_in_use,
             "culling": self.culling,

@@ -12,6 +12,7 @@ from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.picked import Picked, checked_box, everything, visible
 from pvfiblets.plotting.profiles import SelectionMeasures
+from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.standout import Standout
 
 if TYPE_CHECKING:
@@ -325,6 +326,20 @@ class Selecting(SelectionMeasures):
         if self._standout is not None:
             self._standout.leave_with_owner()
             self._standout.mapper.release(window)
+
+    def _select_like(self, other: Selecting) -> None:
+        """Take over the selection of another actor of the same fiblets."""
+        self._selection_style = other._selection_style
+        self._select(None if other._selected is None else other._selected.copy())
+
+    def _explain_selection(self) -> dict[str, Any]:
+        """How many are selected; where they are drawn apart, wider or as tubes, what that takes."""
+        apart = None if self._standout is None else added_up(self._standout.mapper.explain())
+        return {
+            "streamlines": len(self.selection),
+            "passes": [] if apart is None else apart["passes"],
+            "gpu_bytes": 0 if apart is None else apart["gpu_bytes"],
+        }
 
     def _reselect(self) -> None:
         """Follow other fiblets: ids of as many streamlines stay, else nothing is selected."""

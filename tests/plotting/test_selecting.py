@@ -356,3 +356,23 @@ def test_saved_selections_come_back(plotter, three_lines, tmp_path, suffix):
         assert np.asarray(back.per_streamline["weight"]).ravel().tolist() == [1.0, 100.0]
     with pytest.raises(UnknownFormatError, match="obj"):
         actor.save_selection(tmp_path / "chosen.obj")
+
+
+def test_a_copy_selects_the_same_and_explain_tells():
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    try:
+        actor = plotter.add_fiblets([[(0, y, 0), (5, y, 1), (10, y, 0)] for y in range(6)])
+        plotter.show(auto_close=False)
+        assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "gpu_bytes": 0}
+        actor.select([1, 4])
+        actor.selection_style(as_tubes=True, radius=0.3)
+        plotter.render()
+        report = actor.explain()["selection"]
+        assert report["streamlines"] == 2
+        assert report["gpu_bytes"] > 0
+        twin = actor.copy()
+        assert twin.selection.tolist() == [1, 4]
+        twin.deselect()
+        assert actor.selection.tolist() == [1, 4]
+    finally:
+        plotter.close()
