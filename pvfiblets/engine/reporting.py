@@ -82,6 +82,6 @@ def count_fiblets(
     culled : bool
         Whether fiblets behind others were left out.
     """
-    marks = pipeline.buffers["marks"] if isinstance(pipeline, ComputePipeline) else None
+    marks = pipeline.buffers["marks"] if isinstance(pipeline, ComputePipeline) and pipeline.planned else None
     in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marks, kept)
     return no_counts(total, in_frustum, drawn if culled else in_frustum, census.visible(target))

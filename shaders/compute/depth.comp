@@ -16,7 +16,6 @@ layout(local_size_x = {{ group_size }}) in;
 #include "raster/segments.glsl"
 
 #include "compute/marks.glsl"
-#include "compute/budget.glsl"
 
 #if FEATURE_INT64_ATOMICS
 #include "compute/nearest.glsl"

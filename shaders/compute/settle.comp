@@ -8,7 +8,6 @@ layout(local_size_x = {{ group_size }}) in;
 #include "raster/segments.glsl"
 
 #include "compute/marks.glsl"
-#include "compute/budget.glsl"
 #include "compute/bits.glsl"
 #include "attributes/pixel.glsl"
 

@@ -108,18 +108,14 @@ bool brush_kept(float s, vec2 away) {
 }
 #endif
 
-#if FEATURE_WIDE_LINES
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pipelines/compute.py
 #endif
 
 #if FEATURE_TUBES
-uniform ivec2 band;   // rows of the picture: the first, and the one after the last
-
-bool affordable();    // whether one more pixel may be tested: compute/budget.glsl
-
 void draw_tube(vec3 from, vec3 to, vec4 c0, vec4 c1, uint segment, bool start) {
     Outline outline;
-    if (segment < share.x || segment >= share.y || !outline_of(c0, c1, outline)) return;
+    if (!outline_of(c0, c1, outline)) return;
     Tube body = tube_of(from, to, c0, start);
     float r = outline.reach;
     vec2 run = outline.b.xy - outline.a.xy;
@@ -128,16 +124,14 @@ void draw_tube(vec3 from, vec3 to, vec4 c0, vec4 c1, uint segment, bool start) {
 #endif
     bool steep = abs(run.y) > abs(run.x);
     vec2 a = steep ? outline.a.yx : outline.a.xy, b = steep ? outline.b.yx : outline.b.xy;
-    vec2 low = steep ? vec2(band.x, 0.0) : vec2(0.0, band.x), high = steep ? vec2(band.y, viewport.x) : vec2(viewport.x, band.y);
+    vec2 size = steep ? viewport.yx : viewport.xy;
     float slope = abs(b.x - a.x) > 1e-6 ? (b.y - a.y) / (b.x - a.x) : 0.0, height = r * sqrt(1.0 + slope * slope);
     vec2 ends = vec2(min(a.x, b.x), max(a.x, b.x));
-    int column0 = int(max(ceil(ends.x - r - 0.5), low.x)), column1 = int(min(floor(ends.y + r - 0.5), high.x - 1.0));
+    int column0 = int(max(ceil(ends.x - r - 0.5), 0.0)), column1 = int(min(floor(ends.y + r - 0.5), size.x - 1.0));
     for (int column = column0; column <= column1; ++column) {
-        if (!affordable()) return;
         float x = float(column) + 0.5, y = a.y + slope * (clamp(x, ends.x, ends.y) - a.x);
-        int row0 = int(max(ceil(y - height - 0.5), low.y)), row1 = int(min(floor(y + height - 0.5), high.y - 1.0));
+        int row0 = int(max(ceil(y - height - 0.5), 0.0)), row1 = int(min(floor(y + height - 0.5), size.y - 1.0));
         for (int row = row0; row <= row1; ++row) {
-            if (!affordable()) return;
             ivec2 pixel = steep ? ivec2(row, column) : ivec2(column, row);
             Hit hit;
             if (tube_at(body, c0, outline, vec2(pixel) + 0.5, hit)) {

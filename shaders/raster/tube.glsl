@@ -134,7 +134,9 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
     precise float s = sqrt(h / dd), first = middle - s, last = middle + s;
     precise float y0 = ou + first * du, y1 = ou + last * du;
     if (y0 < 0.0) {
+#if !FEATURE_CLIP_PLANES
         if (!t.start) return false;
+#endif
         first = sphere_range(o, d).x;
     } else if (y0 > t.size) {
         first = sphere_range(o - t.size * t.axis, d).x;
@@ -162,7 +164,11 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
     if (c0.w + dot(window_gradient(3), v) <= 0.0) return false;
     hit.z = depth_at(t, c0, v);
     if (!(hit.z >= 0.0 && hit.z <= 1.0)) return false;
-    precise float y = clamp(dot(v, t.axis), 0.0, t.size);
+    precise float y = dot(v, t.axis);
+#if FEATURE_CLIP_PLANES
+    if (y < 0.0 && !t.start) return false;  // only now: a plane may have cut the ball off, and the tube behind it shows
+#endif
+    y = clamp(y, 0.0, t.size);
     hit.t = t.size > 0.0 ? y / t.size : 0.0;
     hit.normal = face != vec3(0.0) ? face : normalize(v - y * t.axis);
     return true;

@@ -9,8 +9,7 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.pipelines import CONSTANTS
-from pvfiblets.engine.pipelines.compute import _tube_shares
+from pvfiblets.engine.pipelines import CONSTANTS, compute
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 from .emulated import emulated_renderer
@@ -23,6 +22,9 @@ from .tubes import entries
 
 PIPELINES = ["compute", "geometry", "tessellation"]
 SMALL = (160, 120)
+TINY = (64, 48)
+"""Of so few pixels that the compute pipeline draws any tube under software OpenGL within the loops it is given."""
+
 VIEWS = {
     "perspective": {},
     "parallel": {"height": 130.0},
@@ -30,15 +32,29 @@ VIEWS = {
     "from inside": {"eye": (3, -2, 1), "target": (30, 10, 0), "near": 0.05, "far": 200.0, "angle": 80.0},
     "cut by near and far": {"eye": (0, -60, 10), "near": 55.0, "far": 70.0},
 }
+CLOSER = {"perspective": {"angle": 14.0}, "parallel": {"height": 50.0}, "close": {}}
 SLAB = [(0.2, 1, -0.1, 4), (0, -1, 0.3, 9), (1.0, 0, 0, 20)]
+
+
+@pytest.fixture
+def really(monkeypatch):
+    """Have the compute pipeline draw tubes itself, which it leaves to another one under software OpenGL."""
+    monkeypatch.setattr(compute, "TUBES_BY_RASTER", False)
 
 
 @pytest.fixture(scope="module")
 def knots(fabricate):
     """Six tangled lines with long segments, sharp bends, and a single point."""
     rng = np.random.default_rng(0)
-    lines = [np.cumsum(rng.normal(0, 6, (16, 3)), axis=0) for _ in range(6)]
+    lines = [np.cumsum(rng.normal(0, 6, (14, 3)), axis=0) for _ in range(6)]
     return fabricate([*(line - line.mean(0) for line in lines), np.array([[12.0, -20.0, 15.0]])], kind=3)
+
+
+@pytest.fixture(scope="module")
+def few(fabricate):
+    """Six lines of three segments around the origin."""
+    rng = np.random.default_rng(7)
+    return fabricate([np.cumsum(rng.normal(0, 9, (4, 3)), axis=0) - 5.0 for _ in range(6)], kind=3)
 
 
 @pytest.fixture(scope="module")
@@ -67,46 +83,46 @@ def pictured(gl, fiblets, view, style, **options):
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
-@pytest.mark.parametrize("radius", [1.5, 6.0])
+@pytest.mark.parametrize("radius", [2.5, 6.0])
 @pytest.mark.parametrize("name", VIEWS)
-def test_every_pixel_shows_where_its_ray_enters(gl, knots, known, camera, name, radius, pipeline):
+def test_every_pixel_shows_where_its_ray_enters(gl, knots, known, really, camera, name, radius, pipeline):
     """Depth, streamline, place and normal against rays and capsules in float64."""
-    view = View(SMALL, camera(SMALL, **VIEWS[name]))
+    view = View(TINY, camera(TINY, **VIEWS[name]))
     style = Style(radius=radius, tolerance=0.0, across=True)
     picture, packed = pictured(gl, knots, view, style, pipeline=pipeline)
-    expected = known(("every", name, radius), knots.lines, radius, view.model_view_projection, SMALL)
+    expected = known(("every", name, radius), knots.lines, radius, view.model_view_projection, TINY)
     hit = np.isfinite(expected.depth)
-    assert hit.sum() > 300
+    assert hit.sum() > 60
     both = hit & picture.drawn
     # half a pixel's brush around the axis may add to the thinner parts; the rays of silhouettes may round either way
     extra = picture.drawn & ~hit
     assert (hit & ~picture.drawn).sum() <= 2
     assert near(hit)[extra].all()
-    assert extra.sum() <= 0.05 * hit.sum()
+    assert extra.sum() <= 0.06 * hit.sum()
     error = np.abs(picture.window_depth - expected.depth)
-    assert (error[both] <= 1e-5).mean() > 0.999
+    assert (error[both] <= 1e-5).mean() > 0.998
     agreed = both & (error <= 2e-5)
     assert agreed.sum() >= both.sum() - 2
     same = agreed & (picture.ids[..., 0] == expected.line)
     assert same.sum() >= agreed.sum() - 2
     placed = np.abs(picture.position[..., 0] - expected.place) < 1e-3
-    assert placed[same].mean() > 0.999  # where two segments meet either may be nearer by a digit
+    assert placed[same].mean() > 0.998  # where two segments meet either may be nearer by a digit
     same &= placed
     normals = np.linalg.norm(unpacked_tangent(packed) - expected.normal, axis=-1)[same]
     steep = expected.margin[same] > 0.02  # at a silhouette the place on the tube is a root's root
-    assert (normals[steep] < 1e-3).mean() > 0.999  # at joints the other segment may be the nearer one
+    assert (normals[steep] < 1e-3).mean() > 0.998  # at joints the other segment may be the nearer one
     assert (normals < 0.1).all()
 
 
 @pytest.mark.parametrize("name", ["perspective", "parallel", "close"])
-def test_planes_cut_tubes_as_solids(gl, knots, known, camera, name):
+def test_planes_cut_tubes_as_solids(gl, few, known, really, camera, name):
     """A cut is closed by a flat disc with the plane's normal, and nothing of a tube shows beyond a plane."""
-    matrix = camera(SMALL, **VIEWS[name])
+    matrix = camera(TINY, **{**VIEWS[name], **CLOSER[name]})
     pictures = {}
     for pipeline in PIPELINES:
         style = Style(radius=5.0, tolerance=0.0, across=True)
-        pictures[pipeline], packed = pictured(gl, knots, View(SMALL, matrix, SLAB), style, pipeline=pipeline)
-        expected = known(("planes", name), knots.lines, 5.0, matrix, SMALL, SLAB)
+        pictures[pipeline], packed = pictured(gl, few, View(TINY, matrix, SLAB), style, pipeline=pipeline)
+        expected = known(("planes", name), few.lines, 5.0, matrix, TINY, SLAB)
         hit = np.isfinite(expected.depth)
         assert (hit ^ pictures[pipeline].drawn).sum() <= 0.01 * hit.sum()
         both = hit & pictures[pipeline].drawn
@@ -116,20 +132,20 @@ def test_planes_cut_tubes_as_solids(gl, knots, known, camera, name):
         assert (normals < 1e-2).mean() > 0.98
         planes = np.array(SLAB)[:, :3] / np.linalg.norm(np.array(SLAB)[:, :3], axis=1)[:, None]
         faces = (np.abs(expected.normal[both][:, None] + planes).max(-1) < 1e-9).any(-1)
-        assert faces.sum() > 50
+        assert faces.sum() > 10
         assert (normals[faces] < 1e-3).mean() > 0.97
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("culling", ["two-phase", "coverage"])
-def test_culling_loses_no_pixel(gl, fabricate, random_lines, camera, culling, pipeline):
+def test_culling_loses_no_pixel(gl, really, fabricate, random_lines, camera, culling, pipeline):
     """A turning camera, and one inside: the pictures are those without culling."""
     fiblets = fabricate(random_lines(250, seed=2), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets, pipeline=pipeline, culling=culling)
     eyes = [(0, -160, 20), (10, -158, 20), (10, -158, 20), (120, 20, 0), (5, 5, 5)]
-    for radius, tolerance in ((0.7, 0.0), (4.0, 0.5)):
+    for radius, tolerance in ((0.4, 0.0), (1.5, 0.5)):
         for k, eye in enumerate(eyes):
-            view = View(SMALL, camera(SMALL, eye=eye, target=(0, 0, 0) if k < 4 else (30, 0, 0), near=2.0))
+            view = View(TINY, camera(TINY, eye=eye, target=(0, 0, 0) if k < 4 else (30, 0, 0), near=8.0))
             style = Style(radius=radius, tolerance=tolerance)
             whole = draw(gl, fiblets, view, style, pipeline=pipeline, culling=None)
             target = renderer.render(view, style)
@@ -140,7 +156,7 @@ def test_culling_loses_no_pixel(gl, fabricate, random_lines, camera, culling, pi
     renderer.release()
 
 
-def test_culling_hides_what_tubes_hide(gl, fabricate, camera):
+def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     """Behind a wall of thick tubes nothing is drawn in the second picture."""
     wall = [np.array([[x, 0.0, -60.0], [x, 0.0, 60.0]]) for x in np.arange(-60.0, 61.0, 2.0)]
     behind = [np.array([[x, 60.0, -20.0], [x, 60.0, 20.0]]) for x in np.arange(-20.0, 21.0, 1.0)]
@@ -157,7 +173,7 @@ def test_culling_hides_what_tubes_hide(gl, fabricate, camera):
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
-def test_far_tubes_are_lines_and_never_vanish(gl, fabricate, camera, tolerance, pipeline):
+def test_far_tubes_are_lines_and_never_vanish(gl, really, fabricate, camera, tolerance, pipeline):
     """A tube of a hundredth of a pixel is the wide line of one pixel: unbroken, with the axis' depth."""
     rng = np.random.default_rng(4)
     line = np.cumsum(rng.normal(0, 1, (40, 3)) * [9, 1, 6], axis=0)
@@ -175,13 +191,13 @@ def test_far_tubes_are_lines_and_never_vanish(gl, fabricate, camera, tolerance, 
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
-def test_a_camera_inside_a_tube_looks_through(gl, fabricate, camera, pipeline):
+def test_a_camera_inside_a_tube_looks_through(gl, really, fabricate, camera, pipeline):
     """The tube that it is in is open: what lies beyond shows, and nothing is not a number."""
     fiblets = fabricate([np.array([[-50.0, 0, 0], [50.0, 0, 0]]), np.array([[0.0, 30, -40], [0.0, 30, 40]])], kind=3)
     for eye, target in (((0.5, 0.2, 0.1), (0, 30, 0)), ((0.0, 0, 0), (40, 1, 0)), ((-50.0, 0, 0), (0, 0, 0))):
-        view = View(SMALL, camera(SMALL, eye=eye, target=target, near=0.01, far=300.0, angle=70.0))
+        view = View(TINY, camera(TINY, eye=eye, target=target, near=0.01, far=300.0, angle=70.0))
         picture, packed = pictured(gl, fiblets, view, Style(radius=2.0, across=True), pipeline=pipeline)
-        expected = entries(fiblets.lines, 2.0, view.model_view_projection, SMALL)
+        expected = entries(fiblets.lines, 2.0, view.model_view_projection, TINY)
         hit = np.isfinite(expected.depth)
         assert (hit ^ picture.drawn).sum() <= 2
         assert np.isfinite(unpacked_tangent(packed)[picture.drawn]).all()
@@ -189,7 +205,7 @@ def test_a_camera_inside_a_tube_looks_through(gl, fabricate, camera, pipeline):
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_any_scale_and_far_from_the_origin(gl, fabricate, camera, scale):
+def test_any_scale_and_far_from_the_origin(gl, really, fabricate, camera, scale):
     """Tubes of nanometres and of kilometres, a million millimetres away: as exact as at the origin."""
     rng = np.random.default_rng(3)
     line = np.cumsum(rng.normal(0, 6, (12, 3)), axis=0)
@@ -357,19 +373,8 @@ def test_tubes_hand_over_no_more_than_wide_lines():
             assert components([*TUBES, *more, *values]) <= components(["WIDE_LINES", *more, *values])
 
 
-def test_shares_of_software_opengl_cover_all_segments_and_rows():
-    for level in range(12):
-        rows = 90
-        shares = _tube_shares(level, rows)
-        covered = np.zeros((60, rows), int)
-        for (first, end), (low, high) in shares:
-            covered[first:end, low:high] += 1
-        assert (covered == 1).all()
-    assert _tube_shares(0, 90) == [((0, 60), (0, 90))]
-
-
 def test_software_opengl_draws_the_largest_tubes_whole(gl, fabricate, camera):
-    """A tube as wide as the picture takes more pixels than a loop of software OpenGL: it is drawn in bands."""
+    """A tube as wide as the picture takes more pixels than a loop of software OpenGL goes round."""
     fiblets = fabricate([np.array([[-30.0, 0, 0], [30.0, 0, 0.5]])], kind=3)
     for more in ({"eye": (0, -60, 0), "near": 1.0}, {"height": 30.0}):
         view = View(SIZE, camera(SIZE, **more))
@@ -379,13 +384,29 @@ def test_software_opengl_draws_the_largest_tubes_whole(gl, fabricate, camera):
         assert (np.isfinite(expected.depth) ^ picture.drawn).sum() <= 2
 
 
+def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camera):
+    """Lines, tubes with values, lines again: pictures and counts are those of renderers of their own."""
+    fiblets = fabricate(random_lines(60, seed=5), kind=2, per_fiblet=20)
+    renderer = FibletRenderer(gl, fiblets, pipeline="compute")
+    view = View(SIZE, camera(SIZE))
+    for style in (Style(), Style(radius=2.0, values="curvature"), Style(radius=1.0, values="arc_length"), Style(3.0)):
+        picture = read(renderer.render(view, style))
+        pipeline = "compute" if style.radius is None else "geometry"
+        assert_same(picture, draw(gl, fiblets, view, style, pipeline=pipeline))
+        counts = renderer.explain()["fiblets"]
+        assert counts["visible"] == len(np.unique(picture.owner[picture.drawn]))
+        assert (counts["drawn"] is None) == (style.radius is not None)
+    renderer.release()
+    renderer.release()
+
+
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])
 def test_a_radius_that_is_none_is_told(radius):
     with pytest.raises(ValueError, match="give a finite number of millimetres above 0"):
         Style(radius=radius)
 
 
-def test_matrices_without_depth_draw_nothing_and_no_nan(gl, knots):
+def test_matrices_without_depth_draw_nothing_and_no_nan(gl, really, knots):
     for matrix in (np.zeros((4, 4)), np.diag([0.01, 0.01, 0.0, 1.0]), np.diag([0.01, 0.0, 0.01, 1.0])):
         for pipeline in PIPELINES:
             picture = draw(gl, knots, View((32, 24), matrix), Style(radius=2.0), pipeline=pipeline)

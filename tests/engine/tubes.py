@@ -82,12 +82,13 @@ def entries(lines, radius, matrix, size, planes=()):
             for plane in np.asarray(planes, float).reshape(-1, 4):
                 plane = plane / np.linalg.norm(plane[:3])
                 height, rise = o @ plane[:3] + plane[3], d @ plane[:3]
-                with np.errstate(divide="ignore"):
+                with np.errstate(divide="ignore", invalid="ignore"):
                     at = -height / rise
                 later = (rise > 0) & (at > first)
                 face[later] = -plane[:3]
                 first = np.where(rise > 0, np.maximum(first, at), first)
                 last = np.where(rise < 0, np.minimum(last, at), last)
+                last = np.where((rise == 0) & (height < 0), -np.inf, last)
             run = b - a
             hit = np.isfinite(first) & (first <= last)
             p = o + np.where(hit, first, 0.0)[..., None] * d

@@ -137,7 +137,8 @@ class CoverageBuffer:
         self._origin = np.asarray(fiblets.origin, np.float64)
         self._scale = np.asarray(fiblets.anchor_scale, np.float64)
         self._top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
-        self._radius = self.radius = dilation_radius(fiblets)
+        self.radius = dilation_radius(fiblets)
+        self._thicker = 0.0
         self._last: tuple[GBuffer, View, Style] | None = None
         self._axis = np.zeros(3)
         self._side = 16
@@ -162,7 +163,7 @@ class CoverageBuffer:
     def before(self, target: GBuffer, view: View, style: Style) -> None:
         """Make the buffer for a picture of the last one, which the target still holds."""
         last, self._last = self._last, None
-        self.radius = self._radius + (style.radius or 0.0)  # tubes are thicker than the capsules of their axes
+        self._thicker = style.radius or 0.0  # tubes are thicker than the capsules of their axes
         width, height = view.size
         self._side = 2 << LEVEL
         while self._side > max(2, min(width, height) // 2):
@@ -196,7 +197,7 @@ class CoverageBuffer:
         """Bind the buffer and tell a program where it is."""
         self._textures[1].use(OCCLUSION_UNIT)
         program["coverage"] = OCCLUSION_UNIT
-        program["coverage_axis"] = (*self._axis, self.radius)
+        program["coverage_axis"] = (*self._axis, self.radius + self._thicker)
         program["coverage_side"] = float(self._side)
 
     @staticmethod
@@ -276,7 +277,7 @@ class CoverageBuffer:
             "ray_y": tuple(camera.ray_y),
             "pitch": tuple(pitch),
             "perspective": camera.perspective,
-            "radius": (self.radius, less),
+            "radius": (self.radius + self._thicker, less),
             "far": far,
         }.items():
             program[name] = value
@@ -304,7 +305,7 @@ class CoverageBuffer:
         program["eye"] = before.eye
         program["clip_from_texel"] = tuple((clip @ place).T.ravel())
         program["zeta_from_texel"] = tuple(np.append(now.axis, 0.0) @ place)
-        program["jump"] = self.radius
+        program["jump"] = self.radius + self._thicker
         self._framebuffers[1].clear(_UNCOVERED)
         self._framebuffers[1].use()
         self._ctx.enable_only(moderngl.BLEND | moderngl.CULL_FACE)

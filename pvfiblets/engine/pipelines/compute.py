@@ -36,6 +36,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
@@ -43,10 +44,14 @@ import numpy as np
 from ...codec.layout import MAX_POINTS
 from ..chunks import Chunk, storage_buffer
 from ..errors import EngineError
+from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, is_software
 from ..shaders import EXTENDED, Programs
 from ..view import MAX_CLIP_PLANES
 from .job import Job
+
+if TYPE_CHECKING:
+    from .geometry import GeometryPipeline
 
 __all__ = ["CLASSES", "CONSTANTS", "ComputePipeline"]
 
@@ -70,11 +75,9 @@ SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
 iterations in sum and says nothing."""
 
-LANES = 8
-"""Invocations that software OpenGL runs in step at most: together they loop as often as each of them in sum."""
-
-TUBE_BUDGET = SOFTWARE_ITERATIONS // LANES
-"""Pixels that one invocation may test for tubes under software OpenGL (``shaders/compute/budget.glsl``)."""
+TUBES_BY_RASTER = True
+"""Whether tubes are left to the pipeline `geometry` where software OpenGL draws: how many pixels a tube near the camera
+takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
 WIDEST_IN_SOFTWARE = 100
 """Pixels of line width with which one segment of each fiblet stays within that."""
@@ -95,6 +98,8 @@ class ComputePipeline:
 
     Attributes
     ----------
+    planned : bool
+        Whether the marks are those of the last picture.
     buffers : dict of str to moderngl.Buffer
         ``marks``: see ``shaders/compute/marks.glsl``; ``nearest``, with atomics of 64 bits: a word for each pixel.
     """
@@ -110,13 +115,13 @@ class ComputePipeline:
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
         self._shares = [(0, MAX_POINTS)]
-        self._level = 0
+        self._raster: GeometryPipeline | None = None
+        self.planned = False
         self._words = -(-n_fiblets // 32)
         self._round_arguments = n_chunks * CLASSES
         self._list_base = self._words * MARK_WORDS
         self._argument_base = self._list_base + self._words * CLASSES
-        self._unfinished = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
-        size = self._unfinished + 1
+        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
         self.buffers: dict[str, moderngl.Buffer] = {}
         self.buffers["marks"] = storage_buffer(ctx, np.zeros(size, np.uint32), "marks")
 
@@ -128,9 +133,13 @@ class ComputePipeline:
         EngineError
             If lines are so wide that software OpenGL would lose parts of them.
         """
+        if self._software and job.tubes and TUBES_BY_RASTER:
+            self._draw_by_raster(job)
+            self.planned = False
+            return
+        self.planned = True
         if self._software:
             self._shares = _shares(1.0 if job.tubes else job.line_width, job.segment)
-        self._level = 0
         target, occlusion = job.target, job.occlusion
         images = (target.depth, target.owner, target.ids, target.position, target.across)
         for index, texture in enumerate(image for image in images if image is not None):
@@ -176,6 +185,14 @@ class ComputePipeline:
             with passes.timed("settle"):
                 self._round("settle", TIED, job)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+
+    def _draw_by_raster(self, job: Job) -> None:
+        """Have the pipeline `geometry` draw, which reads the same buffers."""
+        from .geometry import GeometryPipeline
+
+        if self._raster is None:
+            self._raster = GeometryPipeline(self._ctx, OpenGL(self._ctx), self._programs, 32 * self._words)
+        self._raster.draw(job)
 
     def _bind_nearest(self, size: int) -> None:
         held = self.buffers.get("nearest")
@@ -245,33 +262,12 @@ class ComputePipeline:
         self._plan(number, job.chunks, refined)
         for part, features in job.classes:
             program = self._program(stage, [*features, *self._int64])
-            if job.tubes:
-                self._draw_tubes(program, number, part, job)
-                continue
             for share in self._shares if job.line_width > 1.0 else self._shares[:1]:
                 self._set(program, drawing=number, part=part, share=share)
                 self._run_listed(program, number, part, job)
                 if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
                     self._barrier()
         self._barrier()
-
-    def _draw_tubes(self, program: moderngl.ComputeShader, number: int, part: int, job: Job) -> None:
-        """Draw one class of a round's fiblets as tubes, in ever smaller shares until all of them were affordable."""
-        marks, at = self.buffers["marks"], 4 * self._unfinished
-        self._set(program, drawing=number, part=part, unfinished=self._unfinished)
-        self._set(program, budget=TUBE_BUDGET if self._software else 2**32 - 1)
-        while True:
-            for share, band in _tube_shares(self._level, job.target.size[1]):
-                self._set(program, share=share, band=band)
-                self._run_listed(program, number, part, job)
-                self._barrier()
-            if not self._software:
-                return
-            self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
-            if not any(marks.read(4, offset=at)):
-                return
-            marks.write(bytes(4), offset=at)
-            self._level += 1
 
     def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, job: Job) -> None:
         for index, chunk in enumerate(job.chunks):
@@ -317,6 +313,9 @@ class ComputePipeline:
         for buffer in self.buffers.values():
             buffer.release()
         self.buffers.clear()
+        if self._raster is not None:
+            self._raster.release()
+            self._raster = None
 
 
 def _has_int64_atomics(ctx: moderngl.Context) -> bool:
@@ -345,14 +344,3 @@ def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
     ranges = math.ceil(MAX_POINTS / max(count, 1))
     edges = [MAX_POINTS * i // ranges for i in range(ranges + 1)]
     return list(itertools.pairwise(edges))
-
-
-def _tube_shares(level: int, rows: int) -> list[tuple[tuple[int, int], tuple[int, int]]]:
-    """Cut the work of a tube pass: ranges of a fiblet's segments, each for bands of the picture's rows.
-
-    With every level shares are half as large, first in segments; from one segment on, in rows.
-    """
-    parts, bands = min(2**level, MAX_POINTS), min(max(2**level // 64, 1), rows)
-    edges = [MAX_POINTS * i // parts for i in range(parts + 1)]
-    lines = [rows * i // bands for i in range(bands + 1)]
-    return list(itertools.product(itertools.pairwise(edges), itertools.pairwise(lines)))

@@ -42,7 +42,7 @@ class Job:
     detail : tuple of str
         ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
     line_width : float
-        Pixels; of tubes, those of the widest, roughly.
+        Pixels; not looked at where there are tubes.
     segment : float
         Pixels that the longest segments in the picture take, roughly.
     occlusion : Occlusion, optional
