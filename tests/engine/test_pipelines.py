@@ -308,7 +308,7 @@ def test_limits_are_those_of_textures(gl, fabricate, random_lines, pipeline, mon
 
 
 def test_no_memory_for_a_picture_is_told(gl):
-    target = SimpleNamespace(size=SIZE, depth=None, owner=None, ids=None, position=None)
+    target = SimpleNamespace(size=SIZE, depth=None, owner=None, ids=None, position=None, across=None, relief=None)
 
     def refuse(*_):
         raise moderngl.Error("out of memory")
