@@ -20,14 +20,16 @@
 void main() {
     precise vec4 c0 = to_homogeneous(handed_from), c1 = to_homogeneous(handed_to);
     Tube body = tube_of(handed_from, handed_to, c0, (handed_ids.w & 0x10000u) != 0u);
-    Outline outline;
     Hit hit;
+#if FEATURE_PEEL
+    Outline outline;
     if (!outline_of(c0, c1, outline) || !tube_at(body, c0, outline, gl_FragCoord.xy, hit)) discard;
+    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((handed_ids.w >> 8u) & 255u));
+#else
+    if (!tube_found(body, c0, c1, gl_FragCoord.xy, hit)) discard;
+#endif
 #if FEATURE_ACROSS
     shown_across = packed_direction(hit.normal);
-#endif
-#if FEATURE_PEEL
-    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((handed_ids.w >> 8u) & 255u));
 #endif
     shade(hit.t, 1.0, hit.z);
 }

@@ -27,6 +27,7 @@
 // Outline: which pixels are tested. A ball of radius r around p reaches |J v| / (W + grad W . v), |v| <= r, pixels away from
 // the pixel of p, where J = (grad X - x grad W, grad Y - y grad W): no more than r |J| / (W - r |grad W|), nor than
 // r |J| / W_near for the part of it that can show. |J| is convex along the axis, so that the larger of both ends' serves.
+// Next to the eye, where that says little: a box around the capsule in X, Y and W, from W_near on.
 
 #include "raster/project.glsl"
 #include "frame/clip_planes.glsl"
@@ -68,31 +69,47 @@ float stretch_at(vec2 s) {
 const float BRUSH = 0.5;           // pixels
 const float OUTLINE_ROUNDING = 0.05;
 
+// What a box around the part of a tube between a and b takes of the window; false if nothing.
+bool box_of(vec4 a, vec4 b, out Outline outline) {
+    vec2 size = tube.x * vec2(length(window_gradient(0)), length(window_gradient(1)));
+    vec2 low = min(a.xy, b.xy) - size, high = max(a.xy, b.xy) + size, first = vec2(0.0), last = viewport.xy;
+    vec2 near = vec2(tube.z), far = vec2(max(max(a.w, b.w) + tube.y, tube.z));
+    if (tube.z > 0.0) {
+        first = low / mix(near, far, greaterThanEqual(low, vec2(0.0)));
+        last = high / mix(far, near, greaterThanEqual(high, vec2(0.0)));
+    }
+    bool any_part = all(lessThanEqual(first, viewport.xy)) && all(greaterThanEqual(last, vec2(0.0)));
+    first = clamp(first, vec2(0.0), viewport.xy);
+    last = clamp(last, vec2(0.0), viewport.xy);
+    vec4 middle = vec4(0.5 * (first + last), 0.0, 1.0);
+    outline = Outline(middle, middle, 0.0, 1.0, 0.5 * distance(first, last) + 1.0, false);
+    return any_part;
+}
+
 // False if nothing of the tube can show. c0, c1: homogeneous window coordinates of both ends.
 bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
-    float low = min(c0.w, c1.w), high = max(c0.w, c1.w), nearest = tube.z - tube.y, whole = viewport.x + viewport.y;
-    outline = Outline(vec4(0.5 * viewport.xy, 0.0, 1.0), vec4(0.5 * viewport.xy, 0.0, 1.0), 0.0, 1.0, whole, false);
-    if (high < nearest) return false;
+    float low = min(c0.w, c1.w), high = max(c0.w, c1.w), nearest = tube.z - tube.y, t0 = 0.0, t1 = 1.0;
     vec4 a = c0, b = c1;
-    if (low < nearest && nearest >= 0.25 * tube.z) {
+    outline = Outline(a, b, t0, t1, 0.0, false);
+    if (high < nearest) return false;
+    if (low < nearest) {
         float t = clamp((nearest - c0.w) / (c1.w - c0.w), 0.0, 1.0);
         vec4 cut = mix(c0, c1, t);
         cut.w = nearest;
-        if (c0.w < c1.w) { a = cut; outline.t0 = t; }
-        else { b = cut; outline.t1 = t; }
-    } else if (low <= max(0.25 * tube.y, 1e-30)) {
-        return true;  // next to the eye: any pixel
+        if (c0.w < c1.w) { a = cut; t0 = t; }
+        else { b = cut; t1 = t; }
     }
     float close = max(min(a.w, b.w) - tube.y, tube.z);
-    if (close <= 0.0) return true;
+    if (min(a.w, b.w) <= max(0.25 * max(tube.y, tube.z), 1e-30) || close <= 0.0) return box_of(a, b, outline);
+    vec4 c = a, d = b;
     a = to_window(a);
     b = to_window(b);
     float at_a = tube.x * stretch_at(a.xy), at_b = tube.x * stretch_at(b.xy);
     float reach = max(max(at_a, at_b) / close, BRUSH) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
-    if (!(reach < whole)) return true;
+    if (!(reach < viewport.x + viewport.y)) return box_of(c, d, outline);
     vec2 least = min(a.xy, b.xy) - reach, most = max(a.xy, b.xy) + reach;
     if (any(greaterThan(least, viewport.xy)) || any(lessThan(most, vec2(0.0)))) return false;
-    outline = Outline(a, b, outline.t0, outline.t1, reach, min(at_a, at_b) < 2.0 * BRUSH * max(a.w, b.w));
+    outline = Outline(a, b, t0, t1, reach, min(at_a, at_b) < 2.0 * BRUSH * max(a.w, b.w));
     return true;
 }
 
@@ -200,4 +217,11 @@ bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
 bool tube_at(Tube t, vec4 c0, Outline outline, vec2 pixel, out Hit hit) {
     if (body_at(t, c0, pixel, hit)) return true;
     return outline.thin && brush_at(t, outline, pixel, hit);
+}
+
+// The same where the outline is not known yet: c1, homogeneous window coordinates of the segment's end.
+bool tube_found(Tube t, vec4 c0, vec4 c1, vec2 pixel, out Hit hit) {
+    if (body_at(t, c0, pixel, hit)) return true;
+    Outline outline;
+    return outline_of(c0, c1, outline) && outline.thin && brush_at(t, outline, pixel, hit);
 }
