@@ -14,6 +14,9 @@
 layout(local_size_x = {{ group_size }}) in;
 
 #include "raster/segments.glsl"
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
 
 #include "compute/marks.glsl"
 
@@ -31,14 +34,22 @@ uint bits_of(uint word) { return mark_of(word, part + CLASSES * drawing); }
 
 void start_segment(uint segment, vec3 delta, float steps) {}
 
+// Whether a pixel that would show is there: kept by the caller's region, and of no earlier layer's surface.
+bool may_show(ivec2 pixel, float z, uint segment) {
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(pixel, z)) return false;
+#endif
+    return new_surface(pixel, segment);
+}
+
 void plot(ivec2 pixel, float z, float s, uint segment) {
 #if FEATURE_INT64_ATOMICS
     uint at = pixel_index(pixel);
     uint64_t word = nearest_word(depth_key(z), owner);
-    if (word < nearest[at] && new_surface(pixel, segment)) atomicMin(nearest[at], word);
+    if (word < nearest[at] && may_show(pixel, z, segment)) atomicMin(nearest[at], word);
 #else
     uint key = depth_key(z), there = imageLoad(depth_image, pixel).x;
-    if (key > there || !new_surface(pixel, segment)) return;
+    if (key > there || !may_show(pixel, z, segment)) return;
     if (key < there) there = imageAtomicMin(depth_image, pixel, key);
     if (key <= there) won = true;
 #endif

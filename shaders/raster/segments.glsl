@@ -35,9 +35,6 @@
 #include "culling/bounds.glsl"
 #include "frame/clip_planes.glsl"
 
-#if FEATURE_CLIP_REGION
-#include "regions/boundaries.glsl"
-#endif
 #include "data/point_mask.glsl"
 #include "raster/peel.glsl"
 #if FEATURE_TUBES
@@ -55,11 +52,9 @@ float across_here;
 void plot(ivec2 pixel, float z, float s, uint segment);
 void start_segment(uint segment, vec3 delta, float steps);
 
-// Plots a pixel, unless the caller's region cuts it away, or it does not lie behind the layers drawn so far.
+// Plots a pixel, unless it does not lie behind the layers drawn so far. Whether the caller's region cuts it away is for
+// compute/depth.comp to ask, and only of what would show: the later passes look for depths that were kept.
 void put(ivec2 pixel, float z, float s, uint segment) {
-#if FEATURE_CLIP_REGION
-    if (!region_keeps(pixel, z)) return;
-#endif
 #if FEATURE_PEEL
     if (!behind_layers(pixel, depth_key(z))) return;
 #endif
