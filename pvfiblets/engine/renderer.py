@@ -6,15 +6,14 @@ from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import moderngl
-from tqdm import tqdm
 
 from .capabilities import check_choices, choose
 from .census import Census
 from .chunks import Chunk
 from .culling import Occlusion, make_occlusion
-from .errors import EngineError, GPUMemoryError
+from .errors import EngineError
 from .filtering import Filter
-from .fit import Fitted, Room
+from .fit import Room
 from .frame import local_frame
 from .gbuffer import GBuffer
 from .kept import Kept
@@ -25,7 +24,7 @@ from .pipelines import CONSTANTS, Job, Limits, Pipeline, make_measurer, make_pip
 from .reporting import buffer_sizes, count_fiblets, no_counts
 from .shaders import Programs
 from .shared import SharedBlocks, decoding_features
-from .upload import upload_chunk
+from .upload import release_chunks, upload_fitting
 from .values import ValueSources
 from .view import Style, View
 
@@ -120,7 +119,8 @@ class FibletRenderer:
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         try:
             whole = fiblets
-            fitted = self._upload(Room.of(ctx, self._gl, limits, max_total_bytes), fit, progress)
+            room = Room.of(ctx, self._gl, limits, max_total_bytes)
+            fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
             self._shared = SharedBlocks(ctx, fiblets)
@@ -134,24 +134,6 @@ class FibletRenderer:
         except BaseException:
             self.release()
             raise
-
-    def _upload(self, room: Room, fit: str | None, progress: bool) -> Fitted:
-        """Copy what fits."""
-        fitted = room.fitted(self._fiblets, fit)
-        while True:
-            needed = sum(plan.nbytes for plan in fitted.plans)
-            try:
-                with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
-                    for plan in fitted.plans:
-                        self._chunks.append(upload_chunk(self._ctx, fitted.fiblets, plan, bar.update))
-            except GPUMemoryError:
-                if fit != "sample":
-                    raise
-            else:
-                return fitted
-            # A driver that did not say how much memory is free says now that it was less.
-            self._release_chunks()
-            fitted = room.fitted(self._fiblets, fit, fitted.share / 2.0)
 
     def render(
         self, view: View, style: Style | None = None, *, outside: moderngl.Texture | None = None
@@ -411,14 +393,9 @@ class FibletRenderer:
         culled = self._occlusion is not None
         return count_fiblets(self._census, total, self._chunks, features, pipeline, self._target, kept, culled)
 
-    def _release_chunks(self) -> None:
-        for chunk in self._chunks:
-            chunk.release()
-        self._chunks.clear()
-
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
-        self._release_chunks()
+        release_chunks(self._chunks)
         if self._shared is not None:
             self._shared.release()
             self._shared = None

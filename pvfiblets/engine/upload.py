@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 import numpy as np
 import numpy.typing as npt
+from tqdm import tqdm
 
 from ..codec import layout
 from ..codec.archive import forget
 from .chunks import Chunk, ChunkPlan, reserve_buffer
-from .errors import EngineError
+from .errors import EngineError, GPUMemoryError
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
+    from .fit import Fitted, Room
 
-__all__ = ["SLICE_BYTES", "Show", "fill_buffer", "rows_of", "upload_chunk"]
+__all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
 SLICE_BYTES = 1 << 24
 """How much is copied at a time."""
@@ -130,6 +132,54 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
         raise
     chunk.kinds = frozenset(np.flatnonzero(kinds).tolist())
     return chunk
+
+
+def upload_fitting(
+    ctx: moderngl.Context, fiblets: FibletSet, room: Room, fit: str | None, chunks: list[Chunk], progress: bool
+) -> Fitted:
+    """Copy what fits, and say what that is.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    fiblets : FibletSet
+    room : Room
+    fit : {None, 'sample'}
+        What to do where memory does not suffice.
+    chunks : list of Chunk
+        Gains what was copied, as it is copied.
+    progress : bool
+        Show a progress bar.
+
+    Raises
+    ------
+    GPUMemoryError
+        If memory does not suffice, and no sample is asked for.
+    EngineError
+        As :func:`upload_chunk`.
+    """
+    fitted = room.fitted(fiblets, fit)
+    while True:
+        needed = sum(plan.nbytes for plan in fitted.plans)
+        try:
+            with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
+                for plan in fitted.plans:
+                    chunks.append(upload_chunk(ctx, fitted.fiblets, plan, bar.update))  # noqa: PERF401 - kept one by one
+        except GPUMemoryError:
+            if fit != "sample":
+                raise
+        else:
+            return fitted
+        # A driver that did not say how much memory is free says now that it was less.
+        release_chunks(chunks)
+        fitted = room.fitted(fiblets, fit, fitted.share / 2.0)
+
+
+def release_chunks(chunks: list[Chunk]) -> None:
+    """Give chunks back and forget them; twice is harmless."""
+    for chunk in chunks:
+        chunk.release()
+    chunks.clear()
 
 
 def _counting(decoding: Array, first: int, last: int, kinds: npt.NDArray[np.int64]) -> Iterator[Array]:

@@ -127,7 +127,7 @@ class Widgets:
 
         return self._plane_widget(name, actors, cut, normal, origin, interaction_event, widget_options)
 
-    def add_slab_widget(
+    def add_clip_slab_widget(
         self,
         actor: FibletActor | Sequence[FibletActor] | None = None,
         normal: Any = "z",

@@ -12,7 +12,7 @@ import pytest
 
 from pvfiblets import FibletSet, Streamlines, compress
 from pvfiblets.codec.restrict import even_share, restrict
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, fit, renderer
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View, fit, renderer, upload
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.opengl import INTEGERS, OpenGL
 from pvfiblets.engine.pipelines import Limits
@@ -176,7 +176,7 @@ def test_more_fiblets_than_can_be_marked(gl, brain, monkeypatch):
 def test_a_driver_that_says_nothing_before_may_say_so_later(gl, brain, monkeypatch, failures):
     """Memory that cannot be asked for beforehand: the share is halved until the driver takes it."""
     left = [failures]
-    honest = renderer.upload_chunk
+    honest = upload.upload_chunk
 
     def reluctant(*arguments):
         if left[0]:
@@ -184,7 +184,7 @@ def test_a_driver_that_says_nothing_before_may_say_so_later(gl, brain, monkeypat
             raise GPUMemoryError("no GPU memory for 12 bytes of codes")
         return honest(*arguments)
 
-    monkeypatch.setattr(renderer, "upload_chunk", reluctant)
+    monkeypatch.setattr(upload, "upload_chunk", reluctant)
     monkeypatch.setattr(fit, "free_memory", lambda ctx, gl: None)
     made = FibletRenderer(gl, brain, fit="sample")
     assert made.share == pytest.approx(0.5**failures, rel=0.15)

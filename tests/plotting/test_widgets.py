@@ -108,7 +108,7 @@ def test_a_slab_shows_the_slice_of_a_volume(shown):
 
 def test_a_slab_follows_a_widget(shown):
     plotter, actor = shown
-    widget, slab = plotter.fiblets.add_slab_widget(normal="x", thickness=10.0)
+    widget, slab = plotter.fiblets.add_clip_slab_widget(normal="x", thickness=10.0)
     widget.SetOrigin(7.0, 0.0, 0.0)
     widget.SetNormal(0.0, 1.0, 0.0)
     widget.InvokeEvent("InteractionEvent")
