@@ -330,6 +330,6 @@ def test_progress_counts_every_byte(gl, brain, monkeypatch):
         def __exit__(self, *_):
             assert 0.99 * self.total < sum(shown) <= self.total
 
-    monkeypatch.setattr(renderer, "tqdm", Bar)
+    monkeypatch.setattr(upload, "tqdm", Bar)
     FibletRenderer(gl, brain, progress=True).release()
     assert len(shown) > 5
