@@ -79,18 +79,22 @@ def slots(mapper):
     return [context.slots[mapper.GetAddressAsString("")] for context in contexts_with(mapper)]
 
 
-def test_more_streamlines_than_a_row_of_the_texture_holds(gl):
+def test_more_streamlines_than_a_row_of_the_texture_holds(make_plotter):
     from pvfiblets.mappers.highlight import _Bits
+    from pvfiblets.mappers.windows import borrowed_context
 
+    plotter = make_plotter(window_size=(31, 31))
+    plotter.show(auto_close=False)
     selected = np.random.default_rng(1).random(300_001) < 0.3
-    bits = _Bits(gl)
-    texture = bits.update(selected)
-    words = np.frombuffer(texture.read(), "<u4")
-    ids = np.arange(len(selected))
-    assert texture.size[0] <= 4096
-    assert np.array_equal((words[ids // 32] >> (ids % 32)) & 1, selected)
-    bits.release()
-    bits.release()
+    with borrowed_context(plotter.render_window) as ctx:
+        bits = _Bits(ctx)
+        texture = bits.update(selected)
+        words = np.frombuffer(texture.read(), "<u4")
+        ids = np.arange(len(selected))
+        assert texture.size[0] <= 4096
+        assert np.array_equal((words[ids // 32] >> (ids % 32)) & 1, selected)
+        bits.release()
+        bits.release()
 
 
 def test_bad_input_is_refused():
