@@ -191,6 +191,8 @@ class Cutter:
 
     def _overflows(self, stack: LayerStack, rectangle: Rectangle) -> bool:
         """Say whether any pixel has more boundaries than there are layers for."""
+        if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
+            return False  # no pixel has any
         program = self._squares.program("regions/overflow.frag", rectangle)
         stack.textures[0].use(BOUNDARIES_UNIT)
         program["region_boundaries"], program["last"] = BOUNDARIES_UNIT, stack.layers - 1

@@ -160,11 +160,11 @@ class FilterTextures:
             return
         if self._drawn is not self._whole:
             words = _of_part(words, self._whole, self._drawn)
-        held, self._points = self._points, []
         for index, chunk in enumerate(self._chunks):
             first, last = chunk.plan.points
-            there = held[index] if index < len(held) else None
-            self._points.append(self._texture(there, _stretch(words, first, last + AHEAD)))
+            there = self._points[index] if index < len(self._points) else None
+            # Each is in its place as soon as it is made, so that all are given back if the next one fails.
+            self._points[index : index + 1] = [self._texture(there, _stretch(words, first, last + AHEAD))]
 
     def _texture(self, held: moderngl.Texture | None, words: Words) -> moderngl.Texture:
         """Words in rows, in the texture that is there if it is as large."""

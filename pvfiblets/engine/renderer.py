@@ -309,10 +309,11 @@ class FibletRenderer:
 
     @filtering.setter
     def filtering(self, wanted: Filter | None) -> None:
-        self._alive()[2].filtering = wanted
-        self._drawn = None
+        kept = self._alive()[2]
+        self._drawn = None  # also of one that fails, as everything is there again
         if self._occlusion is not None:
             self._occlusion.forget()
+        kept.filtering = wanted
 
     def query(self, region: Region, sampling: float | None = None) -> npt.NDArray[np.uint8]:
         """Say how each streamline of the set lies to a region, whatever is filtered or drawn.

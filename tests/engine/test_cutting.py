@@ -308,6 +308,15 @@ def test_a_surface_beside_or_behind_is_nowhere(gl, cutter, camera, torus):
             check(gl, cutter, region, view, rounds=1)
 
 
+def test_many_shapes_beside_the_picture(gl, cutter, camera):
+    shapes = [regions.Sphere((500, 0, 3 * k), 2) for k in range(5)]
+    region = shapes[0] | shapes[1] | shapes[2] | shapes[3] | shapes[4]
+    for one in (region, ~region):
+        check(gl, cutter, one, View(SIZE, camera(SIZE)), rounds=1)
+        assert gl.error == "GL_NO_ERROR"
+        cutter.release()
+
+
 def test_a_flattening_matrix_keeps_everything(gl, cutter, camera, torus):
     flat = camera(SIZE)
     flat[2] = 0.0

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import moderngl
 import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress
 from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import EngineError, FibletRenderer, Style, View
-from pvfiblets.engine.filtering import Filter, _stretch
+from pvfiblets.engine.errors import GPUMemoryError
+from pvfiblets.engine.filtering import Filter, FilterTextures, _stretch
 from pvfiblets.synthetic import brain_streamlines
 
 from .pictures import EVERY_POINT, SIZE, assert_same, read
@@ -196,6 +198,33 @@ def test_filters_for_another_set_are_refused(gl, fabricate, random_lines):
         renderer.release()
     with pytest.raises(EngineError, match="released"):
         renderer.filtering = None
+
+
+def test_without_memory_everything_is_drawn_again(gl, fabricate, random_lines, camera, monkeypatch):
+    fiblets = fabricate(random_lines(20, seed=1), kind=2)
+    view, half = View(SIZE, camera(SIZE)), np.arange(20) % 2 == 0
+    bits = np.zeros(fiblets.n_points // 32 + 1, np.uint32)
+    with_everything, _ = filtered(gl, fiblets, view, EVERY_POINT, None)
+    renderer = FibletRenderer(gl, fiblets)
+    made, texture = [], FilterTextures._texture
+    try:
+        renderer.filtering = Filter(half, bits)
+        made += [renderer._kept._filter._streamlines, *renderer._kept._filter._points]
+        renderer.render(view, EVERY_POINT)
+
+        def fails(self, held, words):
+            if held is not made[0]:
+                raise GPUMemoryError("none left")
+            return texture(self, held, words)
+
+        monkeypatch.setattr(FilterTextures, "_texture", fails)
+        with pytest.raises(GPUMemoryError):
+            renderer.filtering = Filter(~half, ~bits)
+        assert renderer.filtering is None
+        assert_same(read(renderer.render(view, EVERY_POINT)), with_everything)
+        assert all(isinstance(one.mglo, moderngl.InvalidObject) for one in made)
+    finally:
+        renderer.release()
 
 
 def test_stretches_of_bits():
