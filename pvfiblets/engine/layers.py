@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
-from .errors import GPUMemoryError
+from .errors import EngineError, GPUMemoryError
 from .gbuffer import RELIEF, GBuffer
 
 if TYPE_CHECKING:
@@ -162,7 +162,11 @@ class _Stage:
             self.target = None
         if self.target is None:
             self.target = GBuffer(self._ctx, job.target.size)
-        self.target.want_relief(self._ctx, job.target.relief)
+        try:
+            self.target.want_relief(self._ctx, job.target.relief)
+        except EngineError:
+            self.target = None  # its textures are given back
+            raise
         if self.occlusion is not None:
             self.occlusion.before(self.target, view, style)
         self.pipeline.draw(replace(job, target=self.target, occlusion=self.occlusion, peel=peel))

@@ -190,6 +190,11 @@ class RegionQuery:
                     self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
             return np.frombuffer(answers.read(ranks), np.uint8)
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        return self._block.nbytes + (0 if self._frame is None else self._frame.size)
+
     def release(self) -> None:
         """Give back what is on the GPU; twice is harmless."""
         self._block.release()

@@ -169,7 +169,11 @@ class FibletRenderer:
                 self._target.release()
                 self._target = None
             self._target = GBuffer(self._ctx, view.size)
-        self._target.want_relief(self._ctx, style.relief)
+        try:
+            self._target.want_relief(self._ctx, style.relief)
+        except EngineError:
+            self._target = None  # its textures are given back
+            raise
         job = self._job(view, style, self._target)
         self._features = job.features
         self._passes.begin()
@@ -376,6 +380,7 @@ class FibletRenderer:
                 self._kept,
                 self._values,
                 self._layers,
+                self._query,
             ),
             "fiblets_total": int(self._fiblets.n_fiblets),
             "fiblets": self._count() if counts else no_counts(int(self._fiblets.n_fiblets)),

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .gbuffer import GBuffer
     from .kept import Kept
     from .layers import Layers
+    from .querying import RegionQuery
     from .values import ValueSources
 
 __all__ = ["buffer_sizes", "count_fiblets", "no_counts"]
@@ -28,6 +29,7 @@ def buffer_sizes(
     kept: Kept | None,
     values: ValueSources | None,
     layers: Layers | None,
+    query: RegionQuery | None,
 ) -> list[dict[str, object]]:
     """Return name and bytes of everything on the GPU."""
     sizes: dict[str, int] = {name: buffer.size for name, buffer in shared.items()}
@@ -46,6 +48,8 @@ def buffer_sizes(
         sizes |= values.buffers
     if layers is not None:
         sizes["layers"] = layers.nbytes
+    if query is not None:
+        sizes["query"] = query.nbytes
     return [{"name": name, "bytes": size} for name, size in sizes.items()]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -215,3 +217,12 @@ def test_bad_input_is_refused():
         under_polygon(fiblets, matrix, SIZE, LASSO, streamlines=np.ones(3, bool))
     with pytest.raises(ValueError, match="words"):
         under_polygon(fiblets, matrix, SIZE, LASSO, points=np.ones(1, np.uint32))
+
+
+def test_a_damaged_page_table_is_an_error():
+    fiblets, matrix = pf.compress(mixed()), camera((0, 0, 0), 300)
+    everything = np.full(fiblets.n_points // 32 + 1, 0xFFFFFFFF, np.uint32)
+    pages = np.array(fiblets.pages)
+    pages[0, 2] += 1 << 40  # far beyond the last point
+    with pytest.raises(pf.FormatError, match="points that do not follow on"):
+        under_polygon(replace(fiblets, pages=pages), matrix, SIZE, LASSO, points=everything)

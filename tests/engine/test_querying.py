@@ -258,6 +258,17 @@ def test_no_sampling(gl, plain, sampling):
     renderer.release()
 
 
+def test_what_stays_on_the_gpu_is_told(gl, plain):
+    renderer = FibletRenderer(gl, plain)
+    assert "query" not in {buffer["name"] for buffer in renderer.explain()["buffers"]}
+    region = made(size=60.0)["torus"]
+    renderer.query(region)
+    sizes = {buffer["name"]: buffer["bytes"] for buffer in renderer.explain()["buffers"]}
+    assert sizes["query"] >= region.leaves[0].field.values.nbytes
+    renderer.release()
+    assert "query" not in {buffer["name"] for buffer in renderer.explain(counts=False)["buffers"]}
+
+
 def test_after_release(gl, plain):
     renderer = FibletRenderer(gl, plain)
     renderer.query(regions.Sphere((0, 0, 0), 1))

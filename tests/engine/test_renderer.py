@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, passes
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View, gbuffer, passes
 
-from .pictures import SIZE, assert_same, draw
+from .pictures import SIZE, assert_same, draw, read
 
 PASSES = ["clear", "cull", "seen", "pyramid", "occlusion", "refine", "depth", "own", "settle"]
 LATER_PASSES = ["last picture", *PASSES[:3], "guessed", *PASSES[3:]]
@@ -160,3 +160,17 @@ def test_limits_are_told(gl, fabricate, random_lines, camera):
         renderer.render(View(SIZE, camera(SIZE)), Style(values="fa"))
     renderer.render(View(SIZE, camera(SIZE)))  # and works after all of these
     renderer.release()
+
+
+def test_a_picture_after_relief_had_no_memory(gl, fabricate, random_lines, camera, monkeypatch):
+    fiblets = fabricate(random_lines(20, seed=11), kind=2)
+    view, plain, relief = View(SIZE, camera(SIZE)), Style(5.0), Style(5.0, across=True)
+    renderer = FibletRenderer(gl, fiblets)
+    try:
+        before = read(renderer.render(view, plain))
+        monkeypatch.setitem(gbuffer.RELIEF, "across", "no such type")
+        with pytest.raises(EngineError, match="no memory for a picture"):
+            renderer.render(view, relief)
+        assert_same(read(renderer.render(view, plain)), before)
+    finally:
+        renderer.release()

@@ -151,14 +151,18 @@ def under_polygon(
     screen = transform, cuts, np.array([width, height]), corners, float(tolerance)
     spaces = np.concatenate([_sides(transform, (width, height), corners, tolerance), cuts])
     words = np.zeros(0, np.uint32) if points is None else np.ascontiguousarray(points, np.uint32)
-    parts = [
-        _hit(fiblets, which, screen, words, here)
-        for which, here in _candidates(fiblets, _unit(spaces), streamlines, region)
-    ]
-    if not parts:
-        return Under(np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
-    ranks, depths, places = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return _nearest(fiblets, ranks, depths, places)
+    try:
+        parts = [
+            _hit(fiblets, which, screen, words, here)
+            for which, here in _candidates(fiblets, _unit(spaces), streamlines, region)
+        ]
+        if not parts:
+            return Under(np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
+        ranks, depths, places = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+        return _nearest(fiblets, ranks, depths, places)
+    except IndexError:
+        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        raise
 
 
 def _nearest(fiblets: FibletSet, ranks: Ints, depths: Array, places: Array) -> Under:
@@ -248,6 +252,8 @@ def _hit(
     decode_fiblets(fiblets, which, starts, points)
     points[(starts + own)[goes_on]] = _anchors(fiblets, which[goes_on] + 1)
     first = unpack("point", records).astype(np.int64) + fiblets.pages[which >> PAGE_BITS, 2]
+    if len(words) and not 0 <= int(first.min()) <= int((first + counts).max()) <= 32 * len(words):
+        raise IndexError(f"points up to {(first + counts).max()} of {fiblets.n_points}")  # kernels do not look
     # What is cut off at its begin comes from the fiblet before; its first point alone is no line of its own.
     lonely = (counts == 1) & (unpack("begin", anchors) == 0)
     if region is None:
