@@ -107,10 +107,11 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        before = self._fiblets
+        choices = self._choices_for(fiblets)
+        self._mapper.filtering = None  # its bits are of the fiblets before
         self._draw(fiblets)
         self._show(scalars)
-        self._refilter(before)
+        self._rechoose(choices)
 
     def copy(self, deep: bool = True) -> FibletActor:
         """Return another actor that draws the same fiblets with the same colours and place.

@@ -42,6 +42,7 @@ class _Bar:
     show: bool
     arguments: dict[str, Any]
     title: str | None = None
+    labels: bool = False
 
 
 @pv.register_plotter_component("fiblets")
@@ -344,7 +345,7 @@ class FibletsComponent(Picking, Widgets):
         wanted = actor.scalars_title if state.show else None
         if wanted is not None:
             wanted = state.arguments.get("title", wanted)
-        if wanted == state.title:
+        if wanted == state.title and actor.shows_labels == state.labels:
             return
         if state.title is not None:
             # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
@@ -354,7 +355,7 @@ class FibletsComponent(Picking, Widgets):
             usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}
             arguments = {**usual, **state.arguments, "title": wanted}
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
-        state.title = wanted
+        state.title, state.labels = wanted, actor.shows_labels
 
     def _add_label(self, actor: FibletActor, label: str, renderer: Any) -> None:
         if not isinstance(label, str):

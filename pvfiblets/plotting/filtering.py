@@ -22,7 +22,7 @@ from pvfiblets.plotting.choices import (
     unique_name,
     where,
 )
-from pvfiblets.plotting.cutting import as_region
+from pvfiblets.plotting.cutting import as_region, slab
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -236,9 +236,12 @@ class Filtering:
         TypeError
             If that is no region.
         ValueError
-            If a mesh is open, empty or inside-out, or a number makes no sense.
+            If a mesh is open, empty or inside-out, a number makes no sense, or it is of labels.
         """
+        from pvfiblets.engine.cutting import check_region
+
         region = as_region(what)
+        check_region(region)
         known = self._choices.clips
         name = unique_name(known, "clip") if name is None else name
         self._choose(clips={**known, name: region if inside else ~region})
@@ -265,8 +268,6 @@ class Filtering:
         str
             The name, for :meth:`unclip`.
         """
-        from pvfiblets.plotting.cutting import slab
-
         return self.clip(slab(normal, origin, thickness), name=name)
 
     def unclip(self, name: str | None = None) -> None:
@@ -319,24 +320,27 @@ class Filtering:
         self._choices = other._choices.copy()
         self._apply(filtering=True, cuts=True)
 
-    def _refilter(self, before: FibletSet) -> None:
-        """Make the choices anew for other fiblets."""
-        if self._choices.filter(before) is None:
-            return
+    def _choices_for(self, fiblets: FibletSet) -> Choices:
+        """Make the choices anew for other fiblets; nothing changes yet."""
         from pvfiblets.codec.query.measures import measure
 
-        self._mapper.filtering = None
-        fiblets, old = self._data, self._choices
+        old = self._choices
         criteria = {}
         for name, c in old.criteria.items():
-            criteria[name] = Criterion(name, c.what, measure(fiblets, c.what), c.range, c.keep_nan)
+            try:
+                values = measure(fiblets, c.what)
+            except (KeyError, ValueError) as error:
+                raise type(error)(
+                    f"criterion {name!r} does not fit these fiblets: {error.args[0]}; remove_criterion({name!r}) first"
+                ) from error
+            criteria[name] = Criterion(name, c.what, values, c.range, c.keep_nan)
         conditions = {
             name: Condition(name, c.predicate, where(fiblets, c.predicate))
             for name, c in old.conditions.items()
         }
-        same = fiblets.n_streamlines == before.n_streamlines
+        same = fiblets.n_streamlines == self._data.n_streamlines
         groups = old.groups if old.groups and set(old.groups) <= set(fiblets.groups) else None
-        self._choices = Choices(
+        return Choices(
             criteria=criteria,
             conditions=conditions,
             clips=old.clips,
@@ -344,6 +348,9 @@ class Filtering:
             subset=old.subset if same else None,
             ids=old.ids if same else None,
         )
+
+    def _rechoose(self, choices: Choices) -> None:
+        self._choices = choices
         self._apply(filtering=True, cuts=False)
 
     def _explain_choices(self) -> dict[str, Any]:

@@ -31,8 +31,8 @@ class FibletSlab:
         Of the cut in each actor.
     normal : str or (3,) array
         ``"x"``, ``"y"``, ``"z"``, or a direction.
-    origin : (3,) array
-        A point of the middle plane, mm.
+    origin : float or (3,) array
+        A point of the middle plane, or how far along the normal it is, mm.
     thickness : float
         mm.
     volume : pyvista.DataSet, optional
@@ -56,19 +56,25 @@ class FibletSlab:
         self._plotter = plotter
         self._actors = list(actors)
         self.name = name
+        if volume is not None and not isinstance(volume, pv.DataSet):
+            raise TypeError(
+                f"volume is a {type(volume).__name__}; give a pyvista dataset, such as pv.ImageData or pv.read(path)"
+            )
         self._normal = np.asarray(direction_of(normal), float)
-        self._origin = np.asarray(origin, float)
+        self._origin = self._point(origin)
         self._thickness = float(thickness)
         self._volume = volume
         self._slice: Any = None
         self._slice_mesh = pv.PolyData()
         self._cut()
         if volume is not None:
-            self._update_slice()
             options = {"cmap": "gray", "show_scalar_bar": False, "lighting": False, **mesh_options}
-            self._slice = plotter.add_mesh(
-                self._slice_mesh, name=f"{name} slice", reset_camera=False, render=False, **options
-            )
+            try:
+                self._update_slice()
+                self._slice = self._add_slice(options)
+            except Exception:
+                self.remove()
+                raise
 
     def __repr__(self) -> str:
         normal, origin = (np.array2string(v, precision=4) for v in (self._normal, self._origin))
@@ -119,13 +125,13 @@ class FibletSlab:
     def place(self, *, normal: Any = None, origin: Any = None, thickness: Any = None) -> None:
         """Change several of these at once; what is refused changes nothing."""
         before = self._normal, self._origin, self._thickness
-        if normal is not None:
-            self._normal = np.asarray(direction_of(normal), float)
-        if origin is not None:
-            self._origin = np.asarray(origin, float)
-        if thickness is not None:
-            self._thickness = float(thickness)
         try:
+            if normal is not None:
+                self._normal = np.array(direction_of(normal), float)
+            if origin is not None:
+                self._origin = self._point(origin)
+            if thickness is not None:
+                self._thickness = float(thickness)
             self._cut()
         except Exception:
             self._normal, self._origin, self._thickness = before
@@ -145,6 +151,24 @@ class FibletSlab:
     def _cut(self) -> None:
         for actor in self._actors:
             actor.clip_slab(self._normal, self._origin, self._thickness, name=self.name)
+
+    def _point(self, origin: Any) -> np.ndarray:
+        """Return three numbers of their own; one alone counts along the normal."""
+        if np.ndim(origin) == 0:
+            return float(origin) * self._normal / np.linalg.norm(self._normal)
+        return np.array(origin, float)
+
+    def _add_slice(self, options: dict[str, Any]) -> Any:
+        """Have the plotter draw the slice, which PyVista refuses to add while it is empty."""
+        empty = not self._slice_mesh.n_points
+        if empty:
+            self._slice_mesh.copy_from(self._volume.slice(normal=self._normal, origin=self._volume.center))
+        actor = self._plotter.add_mesh(
+            self._slice_mesh, name=f"{self.name} slice", reset_camera=False, render=False, **options
+        )
+        if empty:
+            self._update_slice()
+        return actor
 
     def _update_slice(self) -> None:
         piece = self._volume.slice(normal=self._normal, origin=self._origin)

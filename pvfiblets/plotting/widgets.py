@@ -50,8 +50,8 @@ class Widgets:
             What is cut; all fiblet actors by default.
         normal : str or (3,) array, default: "z"
             ``"x"``, ``"y"``, ``"z"``, or a direction.
-        origin : (3,) array, optional
-            A point of the slab's middle plane; the middle of the actors by default, mm.
+        origin : float or (3,) array, optional
+            A point of the slab's middle plane, or how far along the normal it is; the actors' middle by default, mm.
         thickness : float, default: 5.0
             mm.
         volume : pyvista.DataSet, optional

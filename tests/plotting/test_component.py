@@ -319,3 +319,15 @@ def test_other_fiblets_may_be_put_into_an_actor(plotter, three_lines):
     both = lit(shot(plotter))
     actor.fiblets = compress(three_lines[:1])
     assert 0 < lit(shot(plotter)) < both
+
+
+def test_a_bar_of_a_fixed_title_has_numbers_or_labels(plotter, three_lines):
+    three_lines.groups = {"a": np.array([0]), "b": np.array([1])}
+    actor = plotter.add_fiblets(three_lines, scalars="group", scalar_bar_args={"title": "T"})
+    plotter.show(auto_close=False)
+    assert not plotter.scalar_bars["T"].GetDrawTickLabels()
+    actor.scalars = "length"
+    plotter.render()
+    assert plotter.scalar_bars["T"].GetDrawTickLabels()
+    actor.scalars = "group"
+    assert not plotter.scalar_bars["T"].GetDrawTickLabels()

@@ -185,3 +185,29 @@ def test_refused_choices_leave_all_as_it_was(shown):
     with pytest.raises(TypeError, match="is no region"):
         actor.clip(3.0)
     np.testing.assert_array_equal(actor.shown, before)
+
+
+def test_fiblets_that_a_criterion_does_not_fit_are_refused(shown, tract):
+    plotter, actor = shown
+    actor.criterion(np.arange(400.0), (3.0, 90.0), name="order")
+    actor.criterion("curvature", (0.0, 0.5))
+    with pytest.raises(ValueError, match=r"criterion 'order' .* remove_criterion\('order'\)"):
+        actor.fiblets = compress(brain_streamlines(150, seed=9))
+    assert actor.fiblets is tract
+    assert np.flatnonzero(actor.shown).tolist() == list(range(3, 91))
+    plotter.render()
+    actor.remove_criterion("order")
+    # As many streamlines, so that the selection stays, but fewer points than bits of them are asked for.
+    actor.select([0, 399])
+    actor.selection_style(width=3)
+    actor.fiblets = compress(Streamlines.from_list([[(0, 0, i), (1, 0, i), (2, 0, i)] for i in range(400)]))
+    plotter.render()
+    assert actor.shown.all()
+
+
+def test_label_volumes_are_refused_at_once(shown):
+    plotter, actor = shown
+    with pytest.raises(ValueError, match="a label volume cannot cut"):
+        actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
+    assert not actor.clips
+    plotter.render()
