@@ -177,6 +177,23 @@ class SurfaceLayers:
         if meshes != self._drawn:
             self._drawn, self._counts, self._room = meshes, [1] * len(meshes), [1] * len(meshes)
             self._drop_stacks()
+        try:
+            firsts, found = self._draw_all(surfaces, matrices, rectangles, size)
+        except BaseException:
+            # What was tried must not be where the next picture begins.
+            self._drawn = []
+            self._drop_stacks()
+            raise
+        peeled = [
+            Peeled(rectangle, first, layers, -1, crossings)
+            for rectangle, first, (layers, crossings, _) in zip(rectangles, firsts, found, strict=False)
+        ]
+        return self._tally(surfaces, matrices, peeled, [shared for _, _, shared in found])
+
+    def _draw_all(
+        self, surfaces: Sequence[Surface], matrices: list[Array], rectangles: list[Rectangle], size: tuple[int, int]
+    ) -> tuple[list[int], list[tuple[int, int, bool]]]:
+        """Draw until there is room for all; return each surface's first layer, and what :meth:`_inspect` says of it."""
         while True:
             firsts = np.cumsum([0, *[(room + 1) // 2 * 2 for room in self._room]]).tolist()
             self._make_room(size, firsts[-1])
@@ -187,13 +204,8 @@ class SurfaceLayers:
             needed = [layers for layers, _, _ in found]
             self._counts = [max(layers, 1) for layers in needed]
             if all(layers <= room for layers, room in zip(needed, self._room, strict=True)):
-                break
+                return firsts, found
             self._room = [max(pair) for pair in zip(needed, self._room, strict=True)]
-        peeled = [
-            Peeled(rectangle, first, layers, -1, crossings)
-            for rectangle, first, (layers, crossings, _) in zip(rectangles, firsts, found, strict=False)
-        ]
-        return self._tally(surfaces, matrices, peeled, [shared for _, _, shared in found])
 
     def _draw_one(
         self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int

@@ -15,6 +15,7 @@ import pyvista as pv
 
 from pvfiblets import regions
 from pvfiblets.engine.cutting import Cutter
+from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, assemble
@@ -348,6 +349,27 @@ def test_nothing_is_done_twice_and_nothing_is_left(gl, cutter, camera, torus, mo
     assert cutter.nbytes == SIZE[0] * SIZE[1] * 16
     assert not cutter.prepare(View(SIZE, camera(SIZE)), ORIGIN, SCALE, TOP)
     assert cutter.nbytes == 0
+
+
+def test_a_cut_that_failed_does_not_spoil_the_next(gl, cutter, camera, torus, monkeypatch):
+    """Memory runs out once, halfway through making room for layers."""
+    from pvfiblets.engine import surface_layers
+
+    made = []
+
+    class Short(surface_layers.LayerStack):
+        def __init__(self, *arguments):
+            made.append(1)
+            if len(made) == 2:
+                raise EngineError("no memory for layers")
+            super().__init__(*arguments)
+
+    monkeypatch.setattr(surface_layers, "LayerStack", Short)
+    view = View((60, 50), camera((60, 50)), (), torus)
+    with pytest.raises(EngineError, match="no memory for layers"):
+        cutter.prepare(view, ORIGIN, SCALE, TOP)
+    assert len(made) == 2
+    check(gl, cutter, torus, View((60, 50), camera((60, 50))), least=0.5)
 
 
 def test_sizes_change(gl, cutter, camera, torus):

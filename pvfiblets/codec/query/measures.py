@@ -169,9 +169,21 @@ def measure(
         If an array has another length, or the original other points, or it is missing.
     NotImplementedError
         If the region has no distances.
+    FormatError
+        If the file is damaged.
     """
     if isinstance(what, Values):
         return what
+    try:
+        return _measured(fiblets, what, original)
+    except IndexError:
+        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        raise
+
+
+def _measured(
+    fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original: Streamlines | None
+) -> Values:
     if isinstance(what, Distance):
         return _distance(fiblets, what)
     if not isinstance(what, str):
