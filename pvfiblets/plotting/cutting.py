@@ -98,14 +98,19 @@ def _image_labels(image: pv.ImageData) -> Region:
     from pvfiblets import regions
 
     values = image.active_scalars
-    if values is None or len(values) != image.n_points or values.ndim != 1:
-        raise ValueError("the image has no active point data of one number each; set_active_scalars()")
-    volume = np.asarray(values).reshape(image.dimensions, order="F")
+    if values is None or values.ndim != 1:
+        raise ValueError("the image has no active data of one number each; set_active_scalars()")
+    of_cells = image.active_scalars_info.association == pv.FieldAssociation.CELL
+    sides = tuple(max(n - 1, 1) if of_cells else n for n in image.dimensions)
+    volume = np.asarray(values).reshape(sides, order="F")
     affine = np.eye(4)
     affine[:3, :3] = np.asarray(image.direction_matrix) * np.asarray(image.spacing)
     affine[:3, 3] = image.origin
-    # Extents need not begin at zero; points count from the first one that there is.
-    affine[:3, 3] = affine[:3, :3] @ np.asarray(image.extent[::2], float) + affine[:3, 3]
+    # Extents need not begin at zero; points count from the first one that there is, voxels from its middle.
+    first = np.asarray(image.extent[::2], float)
+    if of_cells:
+        first += [0.5 if n > 1 else 0.0 for n in image.dimensions]
+    affine[:3, 3] = affine[:3, :3] @ first + affine[:3, 3]
     return regions.Labels(_whole_numbers(volume), affine)
 
 

@@ -63,7 +63,7 @@ class FibletSlab:
         self._normal = np.asarray(direction_of(normal), float)
         self._origin = self._point(origin)
         self._thickness = float(thickness)
-        self._volume = volume
+        self._volume: Any = volume
         self._slice: Any = None
         self._slice_mesh = pv.PolyData()
         self._cut()

@@ -211,3 +211,15 @@ def test_label_volumes_are_refused_at_once(shown):
         actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
     assert not actor.clips
     plotter.render()
+
+
+def test_label_images_of_cells_lie_where_their_voxels_are(shown):
+    _, actor = shown
+    image = pv.ImageData(dimensions=(5, 4, 3), spacing=(30.0, 30.0, 40.0), origin=(-60.0, -40.0, -40.0))
+    image.cell_data["labels"] = np.arange(24) % 3 == 1
+    centres = image.cell_centers()
+    with pytest.raises(ValueError, match="one number each"):
+        actor.include(pv.ImageData(dimensions=(3, 3, 3)))
+    actor.include(image, name="cells")
+    found = actor.conditions["cells"].region.contains(np.asarray(centres.points) + (14.0, -14.0, 19.0))
+    np.testing.assert_array_equal(found, np.asarray(image["labels"], bool))
