@@ -197,10 +197,10 @@ def test_fiblets_that_a_criterion_does_not_fit_are_refused(shown, tract):
     assert np.flatnonzero(actor.shown).tolist() == list(range(3, 91))
     plotter.render()
     actor.remove_criterion("order")
-    # As many streamlines, so that the selection stays, but fewer points than bits of them are asked for.
+    # As many streamlines, so that the selection stays, but more points than there are bits of.
     actor.select([0, 399])
     actor.selection_style(width=3)
-    actor.fiblets = compress(Streamlines.from_list([[(0, 0, i), (1, 0, i), (2, 0, i)] for i in range(400)]))
+    actor.fiblets = compress(Streamlines.from_list([np.linspace((0, 0, i), (100, 0, i), 400) for i in range(400)]))
     plotter.render()
     assert actor.shown.all()
 
