@@ -70,7 +70,8 @@ class Filtering:
         keep_nan : bool, default: False
             Whether to show what has no value.
         name : str, optional
-            Replaces the criterion of the same name; by default that of the values.
+            Replaces the criterion of the same name. By default that of the values; the same array
+            or distance again changes its range, another one is one more criterion.
 
         Returns
         -------
@@ -86,16 +87,18 @@ class Filtering:
         """
         low, high = checked_range(range)
         known = self._choices.criteria
+        if name is None and not isinstance(what, str):
+            name = next((known_as for known_as, c in known.items() if _same(c.what, what)), None)
         if isinstance(what, str) and what in known and name in (None, what):
             values, name, what = known[what].values, what, known[what].what
-        elif name in known and known[name].what is what:
+        elif name in known and _same(known[name].what, what):
             values = known[name].values
         else:
             from pvfiblets.codec.query.measures import measure
 
             values = measure(self._data, what)
         if name is None:
-            name = values.name or unique_name(known, "criterion")
+            name = values.name if isinstance(what, str) else unique_name(known, values.name)
         criterion = Criterion(name, what, values, (low, high), bool(keep_nan))
         self._choose(criteria={**known, name: criterion})
         return name
@@ -365,6 +368,13 @@ class Filtering:
             "clips": list(choices.clips),
             "groups_shown": choices.groups,
         }
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two criteria are of the same values: arrays by identity, distances by what they are to."""
+    from pvfiblets.codec.query.measures import Distance
+
+    return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
 
 
 def _without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:

@@ -85,6 +85,19 @@ def test_numbers_per_point(shown, tract):
     np.testing.assert_array_equal(both[far], (bits & near)[far])
 
 
+def test_several_without_a_name_add_up(shown):
+    _, actor = shown
+    rising, falling = np.arange(400.0), np.arange(400.0)[::-1].copy()
+    names = [actor.criterion(rising, (100, 400)), actor.criterion(falling, (100, 400))]
+    assert names == ["values 1", "values 2"]
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(100, 300))
+    assert actor.criterion(rising, (150, 400)) == "values 1"
+    np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(150, 300))
+    near = [actor.criterion(regions.Distance((x, 0.0, 20.0)), (0.0, 500.0)) for x in (0.0, 10.0, 0.0)]
+    assert near == ["distance 1", "distance 2", "distance 1"]
+    assert len(actor.criteria) == 4
+
+
 def test_regions(shown, tract):
     plotter, actor = shown
     decoded = tract.decompress(dtype=np.float64)
