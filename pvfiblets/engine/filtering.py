@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codec.places import Places
+from ..codec.query.bits import rank_words
 from .errors import EngineError, GPUMemoryError
 
 if TYPE_CHECKING:
@@ -148,9 +149,7 @@ class FilterTextures:
                 self._streamlines.release()
                 self._streamlines = None
             return
-        ids = self._drawn.rank_to_id
-        ranks = mask if ids is None else mask[np.asarray(ids)]
-        self._streamlines = self._texture(self._streamlines, _packed(ranks))
+        self._streamlines = self._texture(self._streamlines, rank_words(self._drawn, mask))
 
     def _set_points(self, words: Words | None) -> None:
         if words is None:

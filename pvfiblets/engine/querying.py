@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..codec.query.predicates import ALL, ANY, FIRST, LAST
 from .chunks import Chunk, reserve_buffer, storage_buffer
 from .errors import GPUMemoryError
 from .frame import FRAME_BYTES, Array
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from ..codec.query.region import Region
 
 __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
-
-ANY, ALL, FIRST, LAST = 1, 2, 4, 8
-"""Bits of an answer: some point lies in the region, all do, the first does, the last does."""
 
 BATCH = 1 << 20
 """Fiblets asked at a time, so that no dispatch runs for long."""

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from ..codec.query.region import MAX_LEAVES, MAX_OPS
 from ..codec.query.shapes import LABELS, SURFACE
 from .errors import GPUMemoryError
+from .shaders import BLOCKS
 
 if TYPE_CHECKING:
     from ..codec.query.fields import Field
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BLOCK_BYTES", "CONSTANTS", "FIELDS_UNIT", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
-REGIONS_BINDING = 5
+REGIONS_BINDING = BLOCKS["Regions"]
 """Binding of the uniform block ``Regions``."""
 
 FIELDS_UNIT = 27

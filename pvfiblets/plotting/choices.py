@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.codec.query.predicates import Predicate, passes, select
+from pvfiblets.codec.query.predicates import Predicate, passes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.filtering import Filter
     from pvfiblets.regions import Region
 
-__all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range", "unique_name"]
+__all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range", "in_groups", "unique_name"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +48,9 @@ class Criterion:
     range: tuple[float, float]
     keep_nan: bool
 
-    def mask(self) -> np.ndarray:
-        """Where a value per streamline is in range, (n_streamlines,) bool."""
-        values = np.asarray(self.values.values, np.float64)
-        inside: np.ndarray = (values >= self.range[0]) & (values <= self.range[1])
-        return inside | np.isnan(values) if self.keep_nan else inside
+    def within(self) -> tuple[Any, float, float, bool]:
+        """What :mod:`pvfiblets.codec.query.bits` asks for."""
+        return self.values, *self.range, self.keep_nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +72,8 @@ class Choices:
     subset: np.ndarray | None = None
     groups: tuple[str, ...] | None = None
     ids: np.ndarray | None = None
+    # Bits of the points, and the criteria that they are of: these stay while others change.
+    _words: tuple[tuple[Criterion, ...], np.ndarray] | None = None
 
     def copy(self) -> Choices:
         """The same choices, to be changed on their own."""
@@ -86,8 +86,11 @@ class Choices:
 
     def mask(self, fiblets: FibletSet) -> np.ndarray | None:
         """Which streamlines are shown, (n_streamlines,) bool; None for all."""
-        masks = [c.mask() for c in self.criteria.values() if c.values.kind == "streamline"]
-        masks += [condition.mask for condition in self.conditions.values()]
+        masks = [condition.mask for condition in self.conditions.values()]
+        if per_streamline := self._of_kind("streamline"):
+            from pvfiblets.codec.query.bits import streamline_mask
+
+            masks.append(streamline_mask(fiblets, [c.within() for c in per_streamline]))
         masks += [mask for mask in (self.subset, self.ids) if mask is not None]
         if self.groups is not None:
             masks.append(in_groups(fiblets, self.groups))
@@ -95,12 +98,17 @@ class Choices:
 
     def points(self, fiblets: FibletSet) -> np.ndarray | None:
         """Bits of the points that are shown, uint32, in coded order; None for all."""
-        per_point = [c for c in self.criteria.values() if c.values.kind == "point"]
+        per_point = self._of_kind("point")
         if not per_point:
             return None
-        from pvfiblets.codec.query.bits import point_words
+        if self._words is None or self._words[0] != per_point:
+            from pvfiblets.codec.query.bits import point_words
 
-        return point_words(fiblets, [(c.values, *c.range, c.keep_nan) for c in per_point])
+            self._words = per_point, point_words(fiblets, [c.within() for c in per_point])
+        return self._words[1]
+
+    def _of_kind(self, kind: str) -> tuple[Criterion, ...]:
+        return tuple(c for c in self.criteria.values() if c.values.kind == kind)
 
     def filter(self, fiblets: FibletSet) -> Filter | None:
         """What the engine is told; None where everything is shown."""
@@ -158,7 +166,3 @@ def unique_name(taken: Iterable[str], stem: str) -> str:
     taken = set(taken)
     return next(name for i in range(1, len(taken) + 2) if (name := f"{stem} {i}") not in taken)
 
-
-def where(fiblets: FibletSet, predicate: Predicate, flags: Any = None) -> np.ndarray:
-    """Return where a predicate holds, (n_streamlines,) bool; ``flags`` asks the GPU."""
-    return select(fiblets, predicate, flags=flags)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from pvfiblets.codec.query.predicates import select
 from pvfiblets.plotting.choices import (
     Choices,
     Condition,
@@ -20,7 +21,6 @@ from pvfiblets.plotting.choices import (
     checked_range,
     in_groups,
     unique_name,
-    where,
 )
 from pvfiblets.plotting.cutting import as_region, slab
 
@@ -155,7 +155,7 @@ class Filtering:
             (n_streamlines,) bool, shown or not. The GPU is asked where it can be, and gives the
             same answer.
         """
-        return where(self._data, as_predicate(condition, as_region), self._mapper.region_flags)
+        return select(self._data, as_predicate(condition, as_region), flags=self._mapper.region_flags)
 
     # Subsets ------------------------------------------------------------------------------------
 
@@ -291,7 +291,7 @@ class Filtering:
     def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
         known = self._choices.conditions
         name = unique_name(known, stem) if name is None else name
-        mask = where(self._data, predicate, self._mapper.region_flags)
+        mask = select(self._data, predicate, flags=self._mapper.region_flags)
         self._choose(conditions={**known, name: Condition(name, predicate, mask)})
         return name
 
@@ -338,7 +338,7 @@ class Filtering:
                 ) from error
             criteria[name] = Criterion(name, c.what, values, c.range, c.keep_nan)
         conditions = {
-            name: Condition(name, c.predicate, where(fiblets, c.predicate))
+            name: Condition(name, c.predicate, select(fiblets, c.predicate))
             for name, c in old.conditions.items()
         }
         same = fiblets.n_streamlines == self._data.n_streamlines
