@@ -135,7 +135,7 @@ class Selecting(SelectionMeasures):
 
         find = everything if through else visible
         corners = checked_polygon(points)
-        return find(self, corners, tolerance=tolerance, renderer=renderer)  # type: ignore[arg-type]
+        return find(self, corners, tolerance=tolerance, renderer=renderer)  # type: ignore[arg-type]  # of the actor
 
     # The selection ------------------------------------------------------------------------------
 
@@ -307,7 +307,7 @@ class Selecting(SelectionMeasures):
 
             extra = Tubes(style.radius)
         width = self._mapper.line_width if style.width is None else style.width
-        return Standout(self, self.selection, color=style.color, width=width, extra=extra)  # type: ignore[arg-type]
+        return Standout(self, self.selection, color=style.color, width=width, extra=extra)  # type: ignore[arg-type]  # as above
 
     def entered(self, renderer: Any) -> None:
         """Be told that a renderer draws the actor from now on."""

@@ -36,7 +36,7 @@ class Transparency:
             return
         layers = _LAYERS if transparency == "layers" else transparency
         try:
-            extra = Layers(layers)  # type: ignore[arg-type]
+            extra = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
