@@ -14,6 +14,7 @@ _HOME = {
     "CodingError": "codec.error",
     "FibletSet": "codec.fibletset",
     "FormatError": "errors",
+    "SplineTubes": "splines.tubes",
     "Streamlines": "streamlines",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from .codec.fibletset import FibletSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
+    from .splines.tubes import SplineTubes
     from .streamlines import Streamlines
 
 

@@ -1,0 +1,1 @@
+"""Spline tubes: tubes of varying radius around Hermite splines (Russig et al. 2020). NumPy; no OpenGL, no VTK."""

@@ -1,0 +1,382 @@
+"""SplineTubes: tubes of varying radius around Hermite splines, as nodes and segments.
+
+A tube is the volume that a sphere sweeps whose centre and radius follow Hermite splines (Russig et al. 2020, section
+3.1). Nodes carry position, radius, values and the derivatives of all of these; a segment names the two nodes it
+leads from and to. That is all the shape there is: tubes form from segments that fit together. Nodes in more than two
+segments are bifurcations, nodes that stand twice with different tangents are sharp corners. Which tube a segment
+belongs to is kept beside, for colours and picking only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias, cast
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["NodeValues", "SplineTubes"]
+
+Doubles: TypeAlias = npt.NDArray[np.float64]
+Ints: TypeAlias = npt.NDArray[np.int64]
+Bounds: TypeAlias = tuple[float, float, float, float, float, float]
+
+_BLOCK = 1 << 16
+"""Segments handled at a time: what they need in between stays in cache."""
+
+
+@dataclass(frozen=True, eq=False)
+class NodeValues:
+    """One attribute at every node, interpolated between nodes as the position is.
+
+    Parameters
+    ----------
+    values : array_like
+        ``(n_nodes,)`` float64 numbers, or ``(n_nodes, 4)`` float64 RGBA from 0 to 1. Numbers that are not finite stand
+        for "no value".
+    slopes : array_like
+        Derivatives in the same shape, finite; per mm or per segment parameter, as the tubes' tangents are.
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ or are neither of the two, a slope is not finite, or a colour lies outside 0..1.
+    """
+
+    values: Doubles
+    slopes: Doubles
+
+    def __post_init__(self) -> None:
+        """Take both as float64 and check them."""
+        values, slopes = _doubles(self.values, "values"), _doubles(self.slopes, "slopes")
+        if values.ndim != 1 and not (values.ndim == 2 and values.shape[1] == 4):
+            raise ValueError(f"values have the shape {values.shape}, expected (n_nodes,) numbers or (n_nodes, 4) RGBA")
+        if slopes.shape != values.shape:
+            raise ValueError(f"slopes have the shape {slopes.shape}, expected {values.shape} as the values have")
+        _check_finite(slopes, "slope")
+        if values.ndim == 2 and not np.all((values >= 0.0) & (values <= 1.0)):
+            bad = int(np.flatnonzero(~((values >= 0.0) & (values <= 1.0)).all(axis=1))[0])
+            raise ValueError(f"colour {bad} is {values[bad].tolist()}, expected RGBA from 0 to 1; divide bytes by 255")
+        object.__setattr__(self, "values", values)
+        object.__setattr__(self, "slopes", slopes)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def is_colour(self) -> bool:
+        """Whether these are RGBA rather than numbers."""
+        return self.values.ndim == 2
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of both arrays."""
+        return self.values.nbytes + self.slopes.nbytes
+
+
+@dataclass(frozen=True, eq=False)
+class SplineTubes:
+    """Hermite spline tubes: nodes, segments, and the tube that each segment belongs to.
+
+    Arrays are taken over as they are where their type allows, and must not be changed afterwards.
+
+    Parameters
+    ----------
+    points : array_like
+        ``(n_nodes, 3)`` float64, mm: node positions, finite.
+    segments : array_like
+        ``(n_segments, 2)`` int64: the nodes each segment starts and ends at. A node may be in any number of segments;
+        a segment from a node to itself whose tangent is zero is a sphere.
+    radius : array_like
+        ``(n_nodes,)`` float64, mm: finite, 0 or more.
+    tangents : array_like
+        ``(n_nodes, 3)`` float64: derivative of the position, finite.
+    radius_slopes : array_like
+        ``(n_nodes,)`` float64: derivative of the radius, finite.
+    scaled : bool
+        True: derivatives are by length (mm/mm; values per mm), and every segment multiplies them with its chord, the
+        distance between its two nodes. False: derivatives are by the segment's parameter, which runs from 0 to 1 (the
+        paper's t_i).
+    tubes : array_like
+        ``(n_segments,)`` int64: which tube each segment belongs to, 0 to ``n_tubes - 1``.
+    n_tubes : int
+        Tubes, those without segments included.
+    values : mapping of str to NodeValues, optional
+        Attributes to colour by, each with one row per node.
+    tube_values : mapping of str to array, optional
+        ``(n_tubes,)`` or ``(n_tubes, k)`` arrays: what is known of whole tubes.
+
+    Raises
+    ------
+    ValueError
+        If shapes, node indices or tube indices contradict each other, or a number is not finite or a radius negative;
+        the message names the array and the first bad row.
+
+    Examples
+    --------
+    A straight tube of 10 mm that widens from 1 mm to 2 mm:
+
+    >>> from pvfiblets import SplineTubes
+    >>> tubes = SplineTubes(
+    ...     points=[[0, 0, 0], [10, 0, 0]], segments=[[0, 1]], radius=[1, 2], tangents=[[1, 0, 0], [1, 0, 0]],
+    ...     radius_slopes=[0.1, 0.1], scaled=True, tubes=[0], n_tubes=1,
+    ... )
+    >>> tubes.n_segments
+    1
+    """
+
+    points: Doubles
+    segments: Ints
+    radius: Doubles
+    tangents: Doubles
+    radius_slopes: Doubles
+    scaled: bool
+    tubes: Ints
+    n_tubes: int
+    values: Mapping[str, NodeValues] = field(default_factory=dict)
+    tube_values: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Take the arrays in their types and check that they fit together."""
+
+        def put(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        points = _doubles(self.points, "points")
+        if points.size == 0:
+            points = points.reshape(0, 3)
+        n = len(points)
+        put("points", _shaped(points, "points", (n, 3), "(n_nodes, 3)"))
+        for name, shape in (("tangents", (n, 3)), ("radius", (n,)), ("radius_slopes", (n,))):
+            array = _doubles(getattr(self, name), name)
+            array = array.reshape(shape) if array.size == 0 == n else array
+            put(name, _shaped(array, name, shape, f"{shape}: one row for each of the {n} points"))
+        for name, what in (("points", "point"), ("tangents", "tangent"), ("radius", "radius"),
+                           ("radius_slopes", "radius slope")):
+            _check_finite(getattr(self, name), what)
+        if n and self.radius.min() < 0.0:
+            bad = int(np.argmax(self.radius < 0.0))
+            raise ValueError(f"radius {bad} is {self.radius[bad]:g} mm, expected 0 or more; clip the radii at 0")
+        segments = _integers(self.segments, "segments")
+        if segments.size == 0:
+            segments = segments.reshape(0, 2)
+        put("segments", _shaped(segments, "segments", (len(segments), 2), "(n_segments, 2)"))
+        _check_range(self.segments, n, "segment", "points")
+        put("n_tubes", int(self.n_tubes))
+        put("tubes", _shaped(_integers(self.tubes, "tubes"), "tubes", (len(segments),), "one tube for each segment"))
+        _check_range(self.tubes, self.n_tubes, "the tube of segment", "tubes")
+        put("scaled", bool(self.scaled))
+        for key, rows in self.values.items():
+            if len(rows) != n:
+                raise ValueError(f"values[{key!r}] have {len(rows)} rows, expected one for each of the {n} points")
+        put("values", dict(self.values))
+        put("tube_values", {key: np.asarray(value) for key, value in self.tube_values.items()})
+        for key, array in self.tube_values.items():
+            if array.ndim == 0 or len(array) != self.n_tubes:
+                raise ValueError(
+                    f"tube_values[{key!r}] has the shape {array.shape}, expected a row for each of {self.n_tubes} tubes"
+                )
+
+    def __repr__(self) -> str:
+        facts = [f"{self.n_tubes:,} tubes", f"{self.n_segments:,} segments", f"{self.n_nodes:,} nodes"]
+        facts += [f"{title}: {', '.join(d)}" for title in ("values", "tube_values") if (d := getattr(self, title))]
+        return f"<SplineTubes: {'; '.join(facts)}>"
+
+    # ------------------------------------------------------------------ sizes
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes, those of no segment included."""
+        return len(self.points)
+
+    @property
+    def n_segments(self) -> int:
+        """Number of segments of all tubes together."""
+        return len(self.segments)
+
+    @property
+    def n_streamlines(self) -> int:
+        """The tubes, by the name that mappers ask for."""
+        return self.n_tubes
+
+    @property
+    def n_points(self) -> int:
+        """The nodes, by the name that mappers ask for."""
+        return self.n_nodes
+
+    @property
+    def promise(self) -> float:
+        """How far shown positions may lie from the given ones, mm: nodes are kept as they are."""
+        return 0.0
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        own = (self.points, self.segments, self.radius, self.tangents, self.radius_slopes, self.tubes)
+        kept: list[Any] = [*own, *self.values.values(), *self.tube_values.values()]
+        return sum(a.nbytes for a in kept)
+
+    # ------------------------------------------------------------------ geometry
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """(xmin, xmax, ymin, ymax, zmin, zmax) in mm that hold every tube; six NaN where there is no segment.
+
+        They hold the spheres around the cubics' own Bézier points (a third of the derivatives from the nodes), and so
+        the cubics and every pair of quadratics whose middle points lie nearer to the nodes than that.
+        """
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        for first in range(0, self.n_segments, _BLOCK):
+            ends = self.segments[first : first + _BLOCK]
+            places = self.points[ends]
+            third = np.ones(len(ends))
+            if self.scaled:
+                third = np.linalg.norm(places[:, 1] - places[:, 0], axis=1)
+            # Out of the end, on into the segment: forwards at its start, backwards at its end.
+            third = third[:, None] * (np.array([1.0, -1.0]) / 3.0)
+            inner = places + third[..., None] * self.tangents[ends]
+            radius = self.radius[ends]
+            inner_radius = np.maximum(radius + third * self.radius_slopes[ends], 0.0)
+            for centre, reach in ((places, radius), (inner, inner_radius)):
+                low = np.minimum(low, (centre - reach[..., None]).min(axis=(0, 1)))
+                high = np.maximum(high, (centre + reach[..., None]).max(axis=(0, 1)))
+        if not self.n_segments:
+            low[:] = high[:] = np.nan
+        return cast("Bounds", tuple(np.stack([low, high], axis=1).ravel().tolist()))
+
+    @cached_property
+    def free_ends(self) -> npt.NDArray[np.bool_]:
+        """``(n_segments, 2)`` bool: start and end of each segment, True where no other segment's end lies.
+
+        Free ends are where a tube begins or stops, and so what closes it is to be seen from within. Ends meet where
+        their positions are equal, be it the same node or another one. A segment that stays at one place is one end.
+        """
+        ends = self.segments
+        same = np.all(self.points[ends[:, 0]] == self.points[ends[:, 1]], axis=1)
+        still = same if self.scaled else same & ~self.tangents[ends].any(axis=(1, 2))
+        # A still segment's two ends count once together, at its start.
+        counts = np.bincount(ends[:, 0], minlength=self.n_nodes)
+        counts += np.bincount(ends[~still, 1], minlength=self.n_nodes)
+        place, n_places = self._places(np.flatnonzero(counts == 1), np.flatnonzero(counts))
+        # One more place than there are: nodes of no number (-1) find the zero in it, and so are not free.
+        total = np.bincount(place[place >= 0], counts[place >= 0], n_places + 1)
+        result = total[place[ends]] == 1
+        result[still, 1] = result[still, 0]
+        return cast("npt.NDArray[np.bool_]", result)
+
+    def _places(self, asked: Ints, used: Ints) -> tuple[Ints, int]:
+        """Number the positions that equal one of the nodes `asked`: a number per node, -1 elsewhere; and how many."""
+        place = np.full(self.n_nodes, -1, np.int64)
+        # Sorting all three coordinates of all nodes is slow, and few have an x that is asked for.
+        maybe = used[np.isin(self.points[used, 0], self.points[asked, 0])]
+        if not len(maybe):
+            return place, 0
+        x, y, z = self.points[maybe].T
+        order = np.lexsort((z, y, x))
+        ordered = self.points[maybe[order]]
+        new = np.ones(len(order), bool)
+        new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
+        place[maybe[order]] = np.cumsum(new) - 1
+        return place, int(new.sum())
+
+    def lengths(self) -> Doubles:
+        """``(n_segments,)`` float64: each segment's chord, the distance between its two nodes in mm."""
+        result = np.empty(self.n_segments)
+        for first in range(0, self.n_segments, _BLOCK):
+            ends = self.segments[first : first + _BLOCK]
+            chord = self.points[ends[:, 1]] - self.points[ends[:, 0]]
+            result[first : first + _BLOCK] = chord_lengths(chord)
+        return result
+
+    def subset(self, tubes: npt.ArrayLike) -> SplineTubes:
+        """Some tubes, in the order given, with the nodes they use and all values.
+
+        Parameters
+        ----------
+        tubes : array_like
+            Tube indices, each at most once, or a boolean mask ``(n_tubes,)``.
+
+        Returns
+        -------
+        SplineTubes
+            Its tube ``i`` is this one's ``tubes[i]``.
+
+        Raises
+        ------
+        IndexError
+            If an index is out of range or repeated, or a mask has the wrong length.
+        """
+        chosen = np.asarray(tubes)
+        if chosen.dtype == bool:
+            if chosen.shape != (self.n_tubes,):
+                raise IndexError(f"a mask of shape {chosen.shape} cannot select among {self.n_tubes} tubes")
+            chosen = np.flatnonzero(chosen)
+        chosen = chosen.astype(np.int64).reshape(-1)
+        if len(chosen) and (chosen.min() < 0 or chosen.max() >= self.n_tubes):
+            raise IndexError(f"tubes {chosen.min()} to {chosen.max()} were asked for, but there are {self.n_tubes}")
+        new = np.full(self.n_tubes, -1, np.int64)
+        new[chosen] = np.arange(len(chosen))
+        if len(chosen) != np.count_nonzero(new >= 0):
+            raise IndexError("a tube was asked for more than once; give each index once")
+        keep = np.flatnonzero(new[self.tubes] >= 0)
+        keep = keep[np.argsort(new[self.tubes[keep]], kind="stable")]
+        nodes, segments = np.unique(self.segments[keep], return_inverse=True)
+        return SplineTubes(
+            self.points[nodes],
+            segments.reshape(-1, 2),
+            self.radius[nodes],
+            self.tangents[nodes],
+            self.radius_slopes[nodes],
+            self.scaled,
+            new[self.tubes[keep]],
+            len(chosen),
+            {key: NodeValues(v.values[nodes], v.slopes[nodes]) for key, v in self.values.items()},
+            {key: v[chosen] for key, v in self.tube_values.items()},
+        )
+
+
+def chord_lengths(chords: Doubles) -> Doubles:
+    """Lengths of ``(n, 3)`` vectors, right from the smallest to the largest numbers that there are."""
+    largest = np.abs(chords).max(axis=1, initial=0.0)
+    # Squares of what is near 1 neither vanish nor overflow; powers of two scale without rounding.
+    exponent = np.frexp(largest)[1]
+    scaled = np.ldexp(chords, -exponent[:, None])
+    return cast("Doubles", np.ldexp(np.sqrt(np.einsum("ij,ij->i", scaled, scaled)), exponent))
+
+
+def _doubles(array: npt.ArrayLike, name: str) -> Doubles:
+    result = np.asarray(array)
+    if result.dtype.kind not in "fiub":
+        raise ValueError(f"{name} have the type {result.dtype}, expected numbers")
+    return np.ascontiguousarray(result, np.float64)
+
+
+def _integers(array: npt.ArrayLike, name: str) -> Ints:
+    result = np.asarray(array)
+    if result.size and result.dtype.kind not in "iu":
+        raise ValueError(f"{name} have the type {result.dtype}, expected integers")
+    return np.ascontiguousarray(result, np.int64)
+
+
+def _shaped(array: npt.NDArray[Any], name: str, shape: tuple[int, ...], expected: str) -> npt.NDArray[Any]:
+    if array.shape != shape:
+        raise ValueError(f"{name} have the shape {array.shape}, expected {expected}")
+    return array
+
+
+def _check_finite(array: Doubles, what: str) -> None:
+    finite = np.isfinite(array)
+    if not finite.all():
+        bad = int(np.flatnonzero(~finite.reshape(len(array), -1).all(axis=1))[0])
+        raise ValueError(
+            f"{what} {bad} is {array[bad].tolist()}, expected finite numbers; leave that node out or repair it"
+        )
+
+
+def _check_range(indices: Ints, n: int, what: str, of: str) -> None:
+    outside = (indices < 0) | (indices >= n)
+    if outside.any():
+        bad = int(np.argwhere(outside)[0, 0])
+        raise ValueError(f"{what} {bad} is {indices[bad].tolist()}, but there are {n} {of}, counted from 0")
