@@ -9,25 +9,25 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers import Colouring, EngineOptions
-from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.engines import Engines
 from pvfiblets.plotting.filtering import Filtering
 from pvfiblets.plotting.mapper import PlottedMapper
 from pvfiblets.plotting.report import added_up
-from pvfiblets.plotting.scalars import Scalars, find_scalars
+from pvfiblets.plotting.scalars import find_scalars
 from pvfiblets.plotting.selecting import Selecting
 from pvfiblets.plotting.shading import Shading
 from pvfiblets.plotting.sources import with_point_values
 from pvfiblets.plotting.transparency import Transparency
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.volumes import VolumeSource
+    from pvfiblets.plotting.colours import ColourSettings
+    from pvfiblets.plotting.scalars import Scalars
 
 
-class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor):
+class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency, pv.Actor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -73,22 +73,16 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
         progress: bool = False,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
-        self._theme = theme
         self._fiblets = fiblets
-        self._settings = settings if settings is not None else ColourSettings()
-        self._choice = scalars
-        self._scalars: Scalars | None = None
-        self._table = pv.LookupTable()
+        self._init_colours(scalars, settings, theme)
         self._init_shading()
-        self._bar_changed: Callable[[FibletActor], None] | None = None
         self._init_filtering()
         self._init_selection()
         mapper = PlottedMapper(fiblets, options=options, progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
-        self.prop.opacity = _fraction(opacity)
-        self.prop.lighting = theme.lighting if lighting is None else bool(lighting)
+        self._init_looks(opacity, lighting)
         self.line_width = theme.line_width if line_width is None else line_width
         self._recolour()
 
@@ -198,68 +192,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:
             self._draw(fiblets)
-        before, self._choice = self._choice, scalars
-        try:
-            self._show(found)
-        except Exception:
-            self._choice = before
-            raise
-        if self._bar_changed is not None:
-            self._bar_changed(self)
-
-    @property
-    def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` if the present colours need none."""
-        return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
-
-    @property
-    def shows_labels(self) -> bool:
-        """Whether the numbers that colour the actor are labels, each with a name."""
-        return self._scalars is not None and self._scalars.categories is not None
-
-    @property
-    def color(self) -> pv.Color | None:
-        """One colour for all streamlines; setting it puts scalars out of use."""
-        return None if self._settings.color is None else pv.Color(self._settings.color)
-
-    @color.setter
-    def color(self, color: Any) -> None:
-        checked = None if color is None else pv.Color(color)
-        self._settings.color = checked
-        self.scalars = None
-
-    @property
-    def lookup_table(self) -> pv.LookupTable:
-        """The table that colours both the picture and the scalar bar."""
-        return self._table
-
-    @property
-    def clim(self) -> tuple[float, float]:
-        """Values of the first and the last colour; ``None`` sets the range of the data."""
-        low, high = self._table.scalar_range
-        return low, high
-
-    @clim.setter
-    def clim(self, clim: Any) -> None:
-        self._set("clim", clim)
-
-    @property
-    def cmap(self) -> Any:
-        """Colour map, as for :meth:`pyvista.Plotter.add_mesh`."""
-        return self._theme.cmap if self._settings.cmap is None else self._settings.cmap
-
-    @cmap.setter
-    def cmap(self, cmap: Any) -> None:
-        self._set("cmap", cmap)
-
-    @property
-    def n_colors(self) -> int:
-        """Entries of the look-up table."""
-        return self._settings.n_colors
-
-    @n_colors.setter
-    def n_colors(self, n_colors: int) -> None:
-        self._set("n_colors", n_colors)
+        self._colour_by(scalars, found)
 
     @property
     def categories(self) -> bool:
@@ -270,61 +203,7 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
     def categories(self, categories: bool) -> None:
         self._set("categories", bool(categories))
 
-    @property
-    def log_scale(self) -> bool:
-        """Whether the colours spread over the logarithm of the values."""
-        return self._settings.log_scale
-
-    @log_scale.setter
-    def log_scale(self, log_scale: bool) -> None:
-        self._set("log_scale", bool(log_scale))
-
-    @property
-    def nan_color(self) -> pv.Color:
-        """Colour of NaN."""
-        return pv.Color(self._table.nan_color)
-
-    @nan_color.setter
-    def nan_color(self, color: Any) -> None:
-        self._set("nan_color", color)
-
-    @property
-    def below_color(self) -> Any:
-        """Colour of values below ``clim``; ``None`` uses the first of the map."""
-        return self._settings.below_color
-
-    @below_color.setter
-    def below_color(self, color: Any) -> None:
-        self._set("below_color", color)
-
-    @property
-    def above_color(self) -> Any:
-        """Colour of values above ``clim``; ``None`` uses the last of the map."""
-        return self._settings.above_color
-
-    @above_color.setter
-    def above_color(self, color: Any) -> None:
-        self._set("above_color", color)
-
     # Looks --------------------------------------------------------------------------------------
-
-    @property
-    def opacity(self) -> float:
-        """From 0, not to be seen, to 1."""
-        return self.prop.opacity
-
-    @opacity.setter
-    def opacity(self, opacity: float) -> None:
-        self.prop.opacity = _fraction(opacity)
-
-    @property
-    def lighting(self) -> bool:
-        """Whether the scene's lights shade the lines."""
-        return self.prop.lighting
-
-    @lighting.setter
-    def lighting(self, lighting: bool) -> None:
-        self.prop.lighting = bool(lighting)
 
     @property
     def line_width(self) -> float:
@@ -338,11 +217,11 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
         self.prop.line_width = float(width)
         self._mapper.line_width = float(width)
 
-    def watch(self, bar_changed: Callable[[FibletActor], None] | None) -> None:
-        """Call ``bar_changed(actor)`` whenever the actor comes to need another scalar bar."""
-        self._bar_changed = bar_changed
-
     # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _drawn(self) -> FibletSet:
+        return self._fiblets
 
     def _draw(self, fiblets: FibletSet) -> None:
         """Give the mapper other fiblets; colours for another number of streamlines go first."""
@@ -357,30 +236,3 @@ class FibletActor(Engines, Filtering, Selecting, Shading, Transparency, pv.Actor
             return None
         return find_scalars(fiblets, choice)
 
-    def _set(self, setting: str, value: Any) -> None:
-        """Change one setting; a refused value leaves all as it was."""
-        before = getattr(self._settings, setting)
-        setattr(self._settings, setting, value)
-        try:
-            self._show(self._scalars)
-        except Exception:
-            setattr(self._settings, setting, before)
-            raise
-
-    def _recolour(self) -> None:
-        self._show(self._find(self._fiblets, self._choice))
-
-    def _show(self, scalars: Scalars | None) -> None:
-        """Hand the mapper its colours."""
-        if scalars is not None and scalars.mapped:
-            update_table(self._table, self._settings, scalars, self._theme, self._fiblets)
-        self._mapper.colouring = make_colouring(self._settings, scalars, self._table, self._theme)
-        self._scalars = scalars
-        colour = pv.Color(self._settings.color, default_color=self._theme.color)
-        self.prop.color = colour if scalars is None else "white"
-
-
-def _fraction(opacity: Any) -> float:
-    if not 0.0 <= float(opacity) <= 1.0:
-        raise ValueError(f"opacity is {opacity!r}; give a number from 0 to 1")
-    return float(opacity)
