@@ -1,17 +1,15 @@
 """``plotter.add_fiblets(...)`` and ``plotter.fiblets``.
 
 PyVista finds this module by two entry points and imports it when a plotter is first asked for
-either name. :class:`FibletsComponent` lives as long as its plotter: it knows every fiblet actor
-that it added, raises errors that drawing met from the call that rendered, keeps scalar bars in
-step, and gives GPU memory back when an actor is removed and when the plotter closes.
+either name. :class:`FibletsComponent` lives as long as its plotter; its life cycle is that of
+`pvfiblets.plotting.keeping`.
 """
 
 from __future__ import annotations
 
 import functools
 import weakref
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -22,6 +20,7 @@ from pvfiblets.mappers import EngineOptions
 from pvfiblets.mappers.windows import borrowed_context
 from pvfiblets.plotting.actor import FibletActor
 from pvfiblets.plotting.colours import ColourSettings
+from pvfiblets.plotting.keeping import Keeping
 from pvfiblets.plotting.picking import Picking
 from pvfiblets.plotting.sources import as_fiblets
 from pvfiblets.plotting.widgets import Widgets
@@ -35,18 +34,8 @@ if TYPE_CHECKING:
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
 
 
-@dataclass
-class _Bar:
-    """Whether an actor wants a scalar bar, how, and which one it has."""
-
-    show: bool
-    arguments: dict[str, Any]
-    title: str | None = None
-    labels: bool = False
-
-
 @pv.register_plotter_component("fiblets")
-class FibletsComponent(Picking, Widgets):
+class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
     """The fiblet actors of one plotter.
 
     Parameters
@@ -64,18 +53,9 @@ class FibletsComponent(Picking, Widgets):
     """
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
-        self._plotter: Any = weakref.proxy(plotter)
-        self._actors: list[FibletActor] = []
+        self._init_keeping(plotter)
         self._init_widgets()
-        self._renderers: dict[str, tuple[Any, int]] = {}
-        self._bars: dict[str, _Bar] = {}
         self._init_picking()
-
-    def __iter__(self) -> Iterator[FibletActor]:
-        return iter(tuple(self._actors))
-
-    def __len__(self) -> int:
-        return len(self._actors)
 
     def add(
         self,
@@ -242,35 +222,17 @@ class FibletsComponent(Picking, Widgets):
             progress=progress,
         )
         actor.transparency = transparency
-        if user_matrix is not None:
-            actor.user_matrix = user_matrix
-        if show_scalar_bar is None:
-            show_scalar_bar = theme.show_scalar_bar
-        if reset_camera is None and self._plotter.camera_set:
-            reset_camera = False
-        renderer = self._plotter.renderer
-        self._plotter.add_actor(
-            actor, name=name, pickable=pickable, reset_camera=reset_camera, render=False
+        return self._enter(
+            actor,
+            name=name,
+            label=label,
+            show_scalar_bar=show_scalar_bar,
+            scalar_bar_args=scalar_bar_args,
+            pickable=pickable,
+            user_matrix=user_matrix,
+            reset_camera=reset_camera,
+            render=render,
         )
-        self._track(actor, renderer)
-        if label is not None:
-            self._add_label(actor, label, renderer)
-        self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
-        self._update_bar(actor)
-        actor.watch(self._update_bar)
-        if render:
-            self._plotter.render()
-        return actor
-
-    def explain(self) -> list[dict[str, Any]]:
-        """Return what each actor's drawing costs.
-
-        Returns
-        -------
-        list of dict
-            One entry of :meth:`FibletActor.explain` per actor, with its ``name``.
-        """
-        return [{"name": actor.name, **actor.explain()} for actor in self]
 
     def pipelines(self) -> PipelineTable:
         """Return every pipeline: whether the plotter's OpenGL has it, or why not.
@@ -299,70 +261,10 @@ class FibletsComponent(Picking, Widgets):
         with borrowed_context(window) as ctx:
             return pipelines(ctx)
 
-    # Life cycle ---------------------------------------------------------------------------------
-
-    def _track(self, actor: FibletActor, renderer: Any) -> None:
-        self._actors.append(actor)
-        actor.entered(renderer)
-        address = renderer.GetAddressAsString("")
-        if address not in self._renderers:
-            # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
-            tag = renderer.AddObserver("ModifiedEvent", self._release_removed)
-            self._renderers[address] = (renderer, tag)
-        # Kept current here, since `clear_on_render_callbacks` drops what others registered.
-        self._plotter.add_on_render_callback(self._raise_pending)
-
-    def _release_removed(self, *_: Any) -> None:
-        """Give back the GPU memory of actors that are in none of the plotter's renderers."""
-        for actor in self:
-            if not any(renderer.HasViewProp(actor) for renderer, _ in self._renderers.values()):
-                self._forget(actor)
-
-    def _forget(self, actor: FibletActor) -> None:
-        self._actors.remove(actor)
-        self._bars.pop(actor.memory_address, None)
-        actor.watch(None)
-        actor.release(self._plotter.render_window)
-
-    def _raise_pending(self, _plotter: Any = None) -> None:
-        for actor in self:
-            actor.raise_pending()
-
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""
         self.disable_picking()
-        for renderer, tag in self._renderers.values():
-            renderer.RemoveObserver(tag)
-        self._renderers.clear()
-        for actor in self:
-            self._forget(actor)
-
-    # Scalar bars and legend ---------------------------------------------------------------------
-
-    def _update_bar(self, actor: FibletActor) -> None:
-        """Add, replace or remove the actor's scalar bar so that it says what the picture shows."""
-        state = self._bars[actor.memory_address]
-        wanted = actor.scalars_title if state.show else None
-        if wanted is not None:
-            wanted = state.arguments.get("title", wanted)
-        if wanted == state.title and actor.shows_labels == state.labels:
-            return
-        if state.title is not None:
-            # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
-            self._plotter.scalar_bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
-        if wanted is not None:
-            self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
-            usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}
-            arguments = {**usual, **state.arguments, "title": wanted}
-            self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
-        state.title, state.labels = wanted, actor.shows_labels
-
-    def _add_label(self, actor: FibletActor, label: str, renderer: Any) -> None:
-        if not isinstance(label, str):
-            raise TypeError(f"label is a {type(label).__name__}; give a string")
-        face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
-        entry = (face, label, pv.Color(actor.prop.color))
-        renderer._labels[actor.GetAddressAsString("")] = entry  # noqa: SLF001 - as add_mesh does
+        super().__plotter_close__()
 
 
 @pv.register_plotter_component("add_fiblets")
