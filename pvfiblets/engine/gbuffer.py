@@ -11,6 +11,7 @@ texture        format    content
 ``across``     r16f      only if asked for: where across a wide line the pixel lies, its distance from the line's axis
                          over half the width, in -1..1; positive to the left of the tangent on the screen
   of tubes     r32ui     their surface's unit normal, packed as the tangent is
+``colours``    rgba8     only of spline tubes whose nodes have colours
 =============  ========  ======================================================================================
 
 ``ids``, ``position`` and ``across`` are undefined where ``depth`` is empty.
@@ -54,8 +55,8 @@ class GBuffer:
     depth, ids, position : moderngl.Texture
     owner : moderngl.Texture
         r32ui, the engine's own: index of the fiblet that each pixel belongs to.
-    across : moderngl.Texture or None
-        See :meth:`want_relief`.
+    across, colours : moderngl.Texture or None
+        See :meth:`want_relief` and :meth:`want_colours`.
     generation : int
         Counts redraws; a reader that saw this number has seen this picture.
     """
@@ -75,6 +76,7 @@ class GBuffer:
         self.ids = self._texture(ctx, 2, "u4")
         self.position = self._texture(ctx, 2, "f4")
         self.across: moderngl.Texture | None = None
+        self.colours: moderngl.Texture | None = None
         self._relief: str | None = None
 
     def _texture(self, ctx: moderngl.Context, components: int, dtype: str) -> moderngl.Texture:
@@ -103,6 +105,17 @@ class GBuffer:
         self.across = None if relief is None else self._texture(ctx, 1, RELIEF[relief])
         self._relief = relief
 
+    def want_colours(self, ctx: moderngl.Context) -> None:
+        """Have the texture ``colours``.
+
+        Raises
+        ------
+        EngineError
+            If memory does not suffice; then everything is given back.
+        """
+        if self.colours is None:
+            self.colours = self._texture(ctx, 4, "f1")
+
     @property
     def relief(self) -> str | None:
         """What :meth:`want_relief` was last told."""
@@ -112,11 +125,12 @@ class GBuffer:
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
         relief = 0 if self._relief is None else int(RELIEF[self._relief][1])
-        return self.size[0] * self.size[1] * (24 + relief)
+        colours = 0 if self.colours is None else 4
+        return self.size[0] * self.size[1] * (24 + relief + colours)
 
     def release(self) -> None:
         """Give the textures back; twice is harmless."""
         for texture in self._textures:
             texture.release()
         self._textures.clear()
-        self.across = self._relief = None
+        self.across = self.colours = self._relief = None

@@ -60,6 +60,13 @@ FEATURES: dict[str, str] = {
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",
     "VALUES_VOLUME": "a volume sampled along the streamline",
+    "SPLINE_ILLINOIS": "roots by regula falsi with halved weights",
+    "SPLINE_ITP": "roots by interpolating, truncating and projecting",
+    "SPLINE_NEWTON": "roots by guarded Newton steps",
+    "SPLINE_HOLLOW": "spline tubes whose inside the eye may see",
+    "SPLINE_VALUES": "numbers along spline tubes",
+    "SPLINE_COLOURS": "colours along spline tubes",
+    "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
 }
 """What a program can be made to do, by the name of its switch."""
 
@@ -69,7 +76,17 @@ NEWEST = 430
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
 
-BLOCKS = {"Frame": 0, "Coding": 1, "Chunk": 2, "ClipPlanes": 3, "Rotations": 4, "Regions": 5, "Sampling": 6, "Tubes": 7}
+BLOCKS = {
+    "Frame": 0,
+    "Coding": 1,
+    "Chunk": 2,
+    "ClipPlanes": 3,
+    "Rotations": 4,
+    "Regions": 5,
+    "Sampling": 6,
+    "Tubes": 7,
+    "Splines": 8,
+}
 """Bindings of the uniform blocks, as the sources state them."""
 
 _VERSION = re.compile(r"^#version \d+$", re.MULTILINE)

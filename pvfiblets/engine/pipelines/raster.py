@@ -31,6 +31,7 @@ import moderngl
 
 from ..chunks import Chunk
 from ..culling.occlusion import OCCLUSION_UNIT
+from ..depth_texture import depth_texture
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..opengl import OpenGL
@@ -42,19 +43,8 @@ __all__ = ["RasterPipeline", "RasterTarget", "SeenTexture"]
 FIRST_ROUND_UNIT, SEEN_UNIT, OWNER_UNIT, DEPTH_UNIT = (OCCLUSION_UNIT + k for k in (1, 2, 3, 4))
 """Texture units, between that of culling and those of data."""
 
-_TEXTURE_2D, _DEPTH_COMPONENT, _DEPTH_COMPONENT_32F, _FLOAT = 0x0DE1, 0x1902, 0x8CAC, 0x1406
 
 Thing = TypeVar("Thing", moderngl.Texture, moderngl.Framebuffer)
-
-
-def _depth_texture(ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int]) -> moderngl.Texture:
-    """Make a depth buffer of float32 that shaders can read; moderngl's have 24 bits."""
-    texture = ctx.depth_texture(size)
-    texture.compare_func = ""
-    texture.filter = moderngl.NEAREST, moderngl.NEAREST
-    texture.use(DEPTH_UNIT)
-    gl.function("glTexImage2D")(_TEXTURE_2D, 0, _DEPTH_COMPONENT_32F, *size, 0, _DEPTH_COMPONENT, _FLOAT, None)
-    return texture
 
 
 @dataclass(frozen=True)
@@ -96,10 +86,10 @@ class RasterTarget:
         if target.across is not None:
             colours.append(target.across)
         try:
-            self.depth = self._keep(_depth_texture(ctx, gl, target.size))
+            self.depth = self._keep(depth_texture(ctx, gl, target.size))
             self.first = self.second = self._keep(ctx.framebuffer(colours, self.depth))
             if two_rounds:
-                later = self._keep(_depth_texture(ctx, gl, target.size))
+                later = self._keep(depth_texture(ctx, gl, target.size))
                 self.kept = self._keep(ctx.texture(target.size, 2, dtype="u4"))
                 self.kept.filter = moderngl.NEAREST, moderngl.NEAREST
                 self.second = self._keep(ctx.framebuffer(colours, later))

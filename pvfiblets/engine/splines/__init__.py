@@ -1,0 +1,15 @@
+"""Hermite spline tubes, ray cast into a G-buffer (Russig et al. 2020), on a moderngl context. No VTK, no PyVista.
+
+>>> renderer = SplineRenderer(ctx, tubes)                                               # doctest: +SKIP
+>>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), Style())       # doctest: +SKIP
+
+Every segment covers what it may show with silhouettes (:mod:`.silhouettes`); the fragment stage meets the pixel's ray
+with it (``shaders/splines/solver.glsl``) and keeps segment, place and depth; one pass over the picture finds all else.
+"""
+
+from __future__ import annotations
+
+from .choices import SILHOUETTES, SOLVERS, check_choices
+from .renderer import SplineRenderer
+
+__all__ = ["SILHOUETTES", "SOLVERS", "SplineRenderer", "check_choices"]

@@ -1,0 +1,101 @@
+"""Whether the eye may be inside a tube: only then have fragments to look for the wall that one sees from within.
+
+What is looked through is the rectangle of the near plane that the picture shows. Segments are put in groups, each with
+the box of its tubes; only the segments of groups that the rectangle's own box touches are looked at, so that it costs
+little.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..view import View
+
+if TYPE_CHECKING:
+    from ...splines.tubes import SplineTubes
+
+__all__ = ["Inside"]
+
+_GROUP = 256
+Array = npt.NDArray[np.float64]
+
+
+class Inside:
+    """The boxes of one set's segments.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+    middle : float
+        Share of a derivative between control points.
+
+    Attributes
+    ----------
+    reach : float
+        Mm that tubes lie outside the box of the nodes at most.
+    """
+
+    def __init__(self, tubes: SplineTubes, middle: float) -> None:
+        self._tubes, self._middle = tubes, middle
+        self._groups: Array = np.zeros((0, 2, 3))
+        self.reach = 0.0
+        if not tubes.n_segments:
+            return
+        boxes = [self._boxes(first) for first in range(0, tubes.n_segments, _GROUP * 256)]
+        starts = [np.arange(0, len(box), _GROUP) for box in boxes]
+        low = np.concatenate([np.minimum.reduceat(b[:, 0], s) for b, s in zip(boxes, starts, strict=True)])
+        high = np.concatenate([np.maximum.reduceat(b[:, 1], s) for b, s in zip(boxes, starts, strict=True)])
+        self._groups = np.stack([low, high], axis=1)
+        below = tubes.points.min(axis=0) - low.min(axis=0)
+        above = high.max(axis=0) - tubes.points.max(axis=0)
+        self.reach = float(max(below.max(), above.max(), 0.0))
+
+    def _boxes(self, first: int, count: int = _GROUP * 256) -> Array:
+        """(n, 2, 3) boxes of the balls around the control points of some segments."""
+        tubes = self._tubes
+        ends = tubes.segments[first : first + count]
+        places, radius = tubes.points[ends], tubes.radius[ends]
+        share = np.full(len(ends), self._middle)
+        if tubes.scaled:
+            share *= np.linalg.norm(places[:, 1] - places[:, 0], axis=1)
+        step = share[:, None] * (1.0, -1.0)
+        inner = places + step[..., None] * tubes.tangents[ends]
+        inner_radius = np.maximum(radius + step * tubes.radius_slopes[ends], 0.0)
+        centres = np.concatenate([places, inner], axis=1)
+        reach = np.concatenate([radius, inner_radius], axis=1)[..., None]
+        return np.stack([(centres - reach).min(axis=1), (centres + reach).max(axis=1)], axis=1)
+
+    def touched(self, view: View, min_width: float) -> bool:
+        """Say whether a tube may reach the rectangle of the near plane that a view shows.
+
+        Parameters
+        ----------
+        view : View
+        min_width : float
+            Pixels to which thin tubes are widened.
+        """
+        if not len(self._groups):
+            return False
+        corners = np.array([[x, y, -1.0, 1.0] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
+        try:
+            near = np.linalg.solve(view.model_view_projection, corners.T).T
+        except np.linalg.LinAlgError:
+            return False  # no depth, no inside
+        with np.errstate(divide="ignore", invalid="ignore"):
+            near = near[:, :3] / near[:, 3:]
+        if not np.isfinite(near).all():
+            return True
+        low, high = near.min(axis=0), near.max(axis=0)
+        margin = (1e-6 + min_width / min(view.size)) * float((high - low).max())
+        box = np.array([low - margin, high + margin])
+        groups = np.flatnonzero(_overlap(self._groups, box))
+        return any(_overlap(self._boxes(int(group) * _GROUP, _GROUP), box).any() for group in groups)
+
+
+def _overlap(boxes: Array, box: Array) -> npt.NDArray[np.bool_]:
+    """Say which of (n, 2, 3) boxes have a point of a (2, 3) box."""
+    overlap: npt.NDArray[np.bool_] = ((boxes[:, 0] <= box[1]) & (boxes[:, 1] >= box[0])).all(axis=1)
+    return overlap

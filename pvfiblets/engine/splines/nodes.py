@@ -1,0 +1,186 @@
+"""Nodes and segments of spline tubes on the GPU.
+
+A node takes 32 bytes: its place as three integers of a lattice, radius, and the derivatives of both; a segment takes
+16: its nodes, its tube, and which of its ends others go on from. Numbers that colour take 8 bytes a node, colours 32,
+while they are shown.
+
+The lattice has 2^31 steps over the set's largest extent. Differences of integers are exact: however far from the origin
+a set lies, a segment is as exact as its own size in float32.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import EngineError
+from ..opengl import BufferTexture, OpenGL
+
+if TYPE_CHECKING:
+    from ...splines.tubes import NodeValues, SplineTubes
+
+__all__ = ["TOP", "UNITS", "Nodes"]
+
+TOP = 2**31 - 1
+"""The largest integer of a place."""
+
+UNITS = {"node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19}
+"""Texture units of the samplers."""
+
+_LARGEST = float(np.finfo(np.float32).max)
+
+
+class Nodes:
+    """What shaders read of a set.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    tubes : SplineTubes
+
+    Attributes
+    ----------
+    origin : numpy.ndarray
+        (3,) float64: mm of place 0.
+    scale : numpy.ndarray
+        (3,) float64: mm per integer, the same thrice.
+    buffers : dict of str to moderngl.Buffer
+
+    Raises
+    ------
+    EngineError
+        If there are more nodes or segments than this OpenGL reads from one buffer, memory does not suffice, or a
+        radius, derivative or extent is too large for float32.
+    """
+
+    def __init__(self, ctx: moderngl.Context, gl: OpenGL, tubes: SplineTubes) -> None:
+        self._ctx, self._gl, self._tubes = ctx, gl, tubes
+        self._textures: dict[str, BufferTexture] = {}
+        self.buffers: dict[str, moderngl.Buffer] = {}
+        self._shown: NodeValues | None = None
+        self.origin, self.scale = _lattice(tubes.points)
+        if not tubes.n_segments:
+            return
+        try:
+            self._put("node_texels", "nodes", "rgba32ui", self._node_words())
+            self._put("segment_texels", "segments", "rgba32ui", self._segment_words())
+        except BaseException:
+            self.release()
+            raise
+
+    def _node_words(self) -> npt.NDArray[np.uint32]:
+        tubes = self._tubes
+        words: npt.NDArray[np.uint32] = np.zeros((tubes.n_nodes, 8), "<u4")
+        places = np.rint((tubes.points - self.origin) / self.scale)
+        words[:, :3] = np.clip(places, 0, TOP).astype(np.uint32)
+        words[:, 3] = _float_bits(tubes.radius, "radius")
+        words[:, 4:7] = _float_bits(tubes.tangents, "tangents")
+        words[:, 7] = _float_bits(tubes.radius_slopes, "radius_slopes")
+        return words
+
+    def _segment_words(self) -> npt.NDArray[np.uint32]:
+        tubes = self._tubes
+        words: npt.NDArray[np.uint32] = np.empty((tubes.n_segments, 4), "<u4")
+        words[:, :2] = tubes.segments
+        words[:, 2] = tubes.tubes
+        goes_on = joined_ends(tubes.segments, tubes.n_nodes)
+        words[:, 3] = goes_on[:, 0] | goes_on[:, 1].astype(np.uint32) << 1
+        return words
+
+    def _put(self, sampler: str, name: str, texel: str, data: npt.NDArray[Any]) -> None:
+        limit = self._gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE") * (16 if texel.startswith("rgba") else 8)
+        if data.nbytes > limit:
+            raise EngineError(
+                f"{len(data)} {name} of spline tubes take {data.nbytes} bytes, more than the {limit} that this OpenGL "
+                "reads from one buffer; draw them as several actors"
+            )
+        try:
+            self.buffers[name] = self._ctx.buffer(np.ascontiguousarray(data).tobytes())
+        except moderngl.Error as error:
+            raise EngineError(f"no memory for {len(data)} {name} of spline tubes ({data.nbytes} bytes)") from error
+        self._textures[sampler] = self._gl.texture_buffer(self.buffers[name], texel)
+
+    def show(self, values: NodeValues | None) -> str | None:
+        """Have one attribute of the nodes on the GPU, and no other; return the feature that reads it."""
+        if values is not self._shown:
+            for sampler, name in (("value_texels", "values"), ("colour_texels", "colours")):
+                if name in self.buffers:
+                    self._textures.pop(sampler).release()
+                    self.buffers.pop(name).release()
+            self._shown = None
+            if values is not None and self._tubes.n_segments:
+                numbers = values.values.ndim == 1
+                data = np.stack([values.values, values.slopes], axis=1).astype("<f4", casting="same_kind")
+                if numbers:
+                    self._put("value_texels", "values", "rg32f", data)
+                else:
+                    self._put("colour_texels", "colours", "rgba32f", data)
+            self._shown = values
+        if values is None:
+            return None
+        return "SPLINE_VALUES" if values.values.ndim == 1 else "SPLINE_COLOURS"
+
+    def bind(self) -> None:
+        """Bind all to their units."""
+        for sampler, texture in self._textures.items():
+            texture.bind(UNITS[sampler])
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        for texture in self._textures.values():
+            texture.release()
+        for buffer in self.buffers.values():
+            buffer.release()
+        self._textures.clear()
+        self.buffers.clear()
+        self._shown = None
+
+
+def _lattice(points: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return the place 0 and mm per integer of a lattice that holds all points."""
+    if not len(points):
+        return np.zeros(3), np.ones(3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    extent = float((high - low).max())
+    if not extent < _LARGEST / 4.0:
+        raise EngineError(f"nodes of spline tubes extend over {extent:g} mm, more than float32 holds; scale them down")
+    # A set without extent gets steps that keep its radii in range; none are taken.
+    step = extent / TOP if extent > TOP * 1e-36 else 1e-36
+    return low, np.full(3, step)
+
+
+def _float_bits(values: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.uint32]:
+    largest = float(np.abs(values).max(initial=0.0))
+    if not largest <= _LARGEST / 4.0:
+        raise EngineError(f"{name} of spline tubes reach {largest:g}, more than float32 holds; scale the data down")
+    bits: npt.NDArray[np.uint32] = np.ascontiguousarray(values, "<f4").view("<u4")
+    return bits
+
+
+def joined_ends(segments: npt.NDArray[np.int64], n_nodes: int) -> npt.NDArray[np.bool_]:
+    """Say at which ends a segment goes on into another: one that begins where it ends, or the other way round.
+
+    Both then have one tangent and one radius there, with one derivative each, so that their surfaces meet smoothly.
+
+    Parameters
+    ----------
+    segments : numpy.ndarray
+        (n, 2) nodes.
+    n_nodes : int
+
+    Returns
+    -------
+    numpy.ndarray
+        (n, 2) bool. Segments from a node to itself go nowhere.
+    """
+    moving = segments[:, 0] != segments[:, 1]
+    begins: npt.NDArray[np.bool_] = np.zeros(n_nodes, np.bool_)
+    ends = begins.copy()
+    begins[segments[moving, 0]] = True
+    ends[segments[moving, 1]] = True
+    joined: npt.NDArray[np.bool_] = np.stack([ends[segments[:, 0]], begins[segments[:, 1]]], axis=1)
+    return joined & moving[:, None]

@@ -1,0 +1,258 @@
+"""`SplineRenderer`: a set of spline tubes on one OpenGL context, drawn into a G-buffer when something changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import moderngl
+
+from ...splines.curves import MIDDLE
+from ..errors import EngineError
+from ..gbuffer import GBuffer
+from ..opengl import OpenGL
+from ..passes import Passes
+from ..shaders import Programs
+from ..view import Style, View
+from .blocks import CONSTANTS, SplineBlocks
+from .choices import AUTO, SOLVERS, check_choices
+from .inside import Inside
+from .nodes import TOP, UNITS, Nodes
+from .silhouettes import Silhouettes
+from .target import SplineTarget
+
+if TYPE_CHECKING:
+    from ...splines.tubes import NodeValues, SplineTubes
+
+__all__ = ["SplineRenderer"]
+
+HITS_UNIT, DEPTHS_UNIT = 10, 11
+
+
+class SplineRenderer:
+    """Draws one set of spline tubes.
+
+    The context must be current in every call. The renderer binds what it needs and leaves it bound; the caller keeps
+    its own OpenGL state.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        OpenGL 3.3 or later.
+    tubes : SplineTubes
+        Copied to the GPU here.
+    silhouettes : str
+        How segments cover pixels, of :data:`.SILHOUETTES`; ``'auto'`` takes the fastest.
+    solver : str
+        How roots are found, of :data:`.SOLVERS`; ``'auto'`` takes the fastest that is exact.
+    iterations : int, optional
+        Steps of one search for a root; the solver's own number by default.
+    min_width : float
+        Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
+    middle : float
+        Share c of a derivative between control points (``shaders/splines/segment.glsl``); the paper has 1/3.
+    discard : bool
+        Throw every fragment away at once: what is left is the cost of the silhouettes, the hatched bars of the paper's
+        figure 5.
+
+    Attributes
+    ----------
+    pipeline : str
+        The silhouettes in use.
+    solver : str
+        The one in use.
+    iterations : int
+    share : float
+        1.0: all is drawn.
+
+    Raises
+    ------
+    EngineError
+        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
+    ValueError
+        If a choice is none.
+    """
+
+    share = 1.0
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        tubes: SplineTubes,
+        *,
+        silhouettes: str = AUTO,
+        solver: str = AUTO,
+        iterations: int | None = None,
+        min_width: float = 1.0,
+        middle: float = MIDDLE,
+        discard: bool = False,
+    ) -> None:
+        check_choices(silhouettes, solver, iterations, min_width)
+        self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
+        self.solver = "illinois" if solver == AUTO else solver
+        self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
+        self._ctx, self._tubes = ctx, tubes
+        self._min_width, self._middle, self._discard = float(min_width), float(middle), discard
+        self._gl = OpenGL(ctx)
+        self._passes = Passes(ctx)
+        self._programs = Programs(ctx, CONSTANTS)
+        self._nodes: Nodes | None = None
+        self._blocks: SplineBlocks | None = None
+        self._silhouettes: Silhouettes | None = None
+        self._target: SplineTarget | None = None
+        self._drawn: tuple[View, Style] | None = None
+        self._features: list[str] = []
+        self._generation = 0
+        try:
+            self._nodes = Nodes(ctx, self._gl, tubes)
+            self._blocks = SplineBlocks(ctx, (self._nodes.origin, self._nodes.scale, TOP), tubes.scaled)
+            self._silhouettes = Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments)
+        except BaseException:
+            self.release()
+            raise
+        self._inside = Inside(tubes, self._middle)
+
+    def render(
+        self,
+        view: View,
+        style: Style | None = None,
+        *,
+        outside: moderngl.Texture | None = None,  # noqa: ARG002  as other renderers have it
+    ) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style.
+
+        Parameters
+        ----------
+        view : View
+            Its region is not looked at.
+        style : Style, optional
+            Only ``values`` is looked at: the name of an attribute of the nodes, or ``'radius'``.
+        outside : moderngl.Texture, optional
+            Not looked at.
+
+        Returns
+        -------
+        GBuffer
+            The renderer's own; the same object until the size changes. ``owner`` holds segments, ``ids`` tubes and
+            tangents, ``position`` the parameter in 0..1 of the segment and the value, ``across`` normals.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, if the picture is too large, or if ``style.values`` names no attribute.
+        """
+        style = style or Style()
+        nodes, blocks, silhouettes = self._alive()
+        if self._target is not None and self._drawn == (view, style):
+            return self._target.buffer
+        self._drawn = None
+        shown = self._attribute(style)
+        reads = nodes.show(shown)
+        with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
+            target = self._draw(view, reads, nodes, blocks, silhouettes)
+        self._generation += 1
+        target.buffer.generation = self._generation
+        self._drawn = (view, style)
+        return target.buffer
+
+    def _draw(
+        self, view: View, reads: str | None, nodes: Nodes, blocks: SplineBlocks, silhouettes: Silhouettes
+    ) -> SplineTarget:
+        """Draw all, whatever was drawn last."""
+        coloured = reads == "SPLINE_COLOURS"
+        if self._target is None or self._target.size != view.size or self._target.coloured != coloured:
+            if self._target is not None:
+                self._target.release()
+                self._target = None
+            self._target = SplineTarget(self._ctx, self._gl, view.size, coloured)
+        target = self._target
+        cut = blocks.write(
+            view,
+            reach=self._inside.reach,
+            middle=self._middle,
+            min_width=self._min_width,
+            iterations=self.iterations,
+            n_segments=self._tubes.n_segments,
+        )
+        solving = SOLVERS[self.solver].feature
+        common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
+        features = [*common, *([solving] if solving else []), *(["SPLINE_DISCARD"] if self._discard else [])]
+        if self._inside.touched(view, self._min_width):
+            features.append("SPLINE_HOLLOW")
+        self._features = sorted({*features, *([reads] if reads else [])} - {"TUBES"})
+        self._passes.begin()
+        self._ctx.scissor = None
+        nodes.bind()
+        with self._passes.timed("tubes"):
+            target.clear()
+            if self._tubes.n_segments:
+                program = silhouettes.program(features)
+                self._prepare(program)
+                target.hits_buffer.use()
+                silhouettes.draw(program)
+        with self._passes.timed("attributes"):
+            program, array = self._programs.screen("splines/attributes.frag", [*common, *([reads] if reads else [])])
+            self._prepare(program)
+            target.hits.use(HITS_UNIT)
+            target.depths.use(DEPTHS_UNIT)
+            program["hits"], program["depths"] = HITS_UNIT, DEPTHS_UNIT
+            target.attributes.use()
+            self._ctx.enable_only(moderngl.NOTHING)
+            array.render(moderngl.TRIANGLES, vertices=3)
+        return target
+
+    def _prepare(self, program: moderngl.Program) -> None:
+        for sampler, unit in UNITS.items():
+            self._gl.set_sampler(program, sampler, unit)
+
+    def _attribute(self, style: Style) -> NodeValues | None:
+        if style.values is None:
+            return None
+        known = self._tubes.values
+        if isinstance(style.values, str) and style.values in known:
+            return known[style.values]
+        raise EngineError(f"no values {style.values!r} at the nodes of these spline tubes; there are {sorted(known)}")
+
+    def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
+        """Say that depths of other things would gain nothing."""
+        return False
+
+    def _alive(self) -> tuple[Nodes, SplineBlocks, Silhouettes]:
+        if self._nodes is None or self._blocks is None or self._silhouettes is None:
+            raise EngineError("this renderer has been released; make a new one")
+        return self._nodes, self._blocks, self._silhouettes
+
+    def explain(self, *, counts: bool = True) -> dict[str, object]:  # noqa: ARG002
+        """Say what the last redraw was made of, and wait for it to end.
+
+        Returns
+        -------
+        dict
+            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``tubes_total``, ``segments_total``,
+            ``primitives`` (triangles), ``solver``, ``iterations``.
+        """
+        sizes: dict[str, int] = {}
+        for holder in (self._nodes, self._blocks, self._silhouettes):
+            if holder is not None:
+                sizes |= {name: buffer.size for name, buffer in holder.buffers.items()}
+        if self._target is not None:
+            sizes["gbuffer"] = self._target.nbytes
+        return {
+            "passes": self._passes.report(),
+            "features": list(self._features),
+            "buffers": [{"name": name, "bytes": size} for name, size in sizes.items()],
+            "tubes_total": int(self._tubes.n_tubes),
+            "segments_total": int(self._tubes.n_segments),
+            "primitives": 0 if self._silhouettes is None else self._silhouettes.primitives,
+            "solver": self.solver,
+            "iterations": self.iterations,
+        }
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for holder in (self._nodes, self._blocks, self._silhouettes, self._target):
+            if holder is not None:
+                holder.release()
+        self._nodes = self._blocks = self._silhouettes = self._target = None
+        self._programs.release()
+        self._passes.release()
+        self._drawn = None

@@ -1,0 +1,83 @@
+"""What spline tubes are drawn into: hits with their depth, then the G-buffer that is made of them."""
+
+from __future__ import annotations
+
+import moderngl
+
+from ..depth_texture import depth_texture
+from ..errors import EngineError
+from ..gbuffer import EMPTY, GBuffer
+from ..opengl import OpenGL
+
+__all__ = ["SplineTarget"]
+
+
+class SplineTarget:
+    """Textures of one picture.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    size : tuple of int
+        Pixels.
+    coloured : bool
+        Whether the G-buffer has colours.
+
+    Attributes
+    ----------
+    size : tuple of int
+    coloured : bool
+    buffer : GBuffer
+    hits, depths : moderngl.Texture
+        See ``shaders/splines/tube.frag``.
+    hits_buffer, attributes : moderngl.Framebuffer
+        For the two passes.
+
+    Raises
+    ------
+    EngineError
+        If a side is longer than the driver's largest texture, or memory does not suffice.
+    """
+
+    def __init__(self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int], coloured: bool) -> None:
+        self.size, self.coloured = size, coloured
+        self._gl = gl
+        self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
+        self.buffer = GBuffer(ctx, size)
+        try:
+            self.buffer.want_relief(ctx, "normal")
+            if coloured:
+                self.buffer.want_colours(ctx)
+            self.hits = ctx.texture(size, 2, dtype="u4")
+            self._things.append(self.hits)
+            self.hits.filter = moderngl.NEAREST, moderngl.NEAREST
+            self.depths = depth_texture(ctx, gl, size)
+            self._things.append(self.depths)
+            self.hits_buffer = ctx.framebuffer([self.hits], self.depths)
+            self._things.append(self.hits_buffer)
+            kept = self.buffer
+            shown = [kept.depth, kept.owner, kept.ids, kept.position, kept.across, kept.colours]
+            self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None])
+            self._things.append(self.attributes)
+        except moderngl.Error as error:
+            self.release()
+            raise EngineError(f"no memory for a picture of {size[0]} x {size[1]} pixels: {error}") from error
+
+    def clear(self) -> None:
+        """Empty depths and owners; the others are undefined where depth is empty."""
+        self._gl.clear_depth(self.hits_buffer, 1.0)
+        self._gl.clear_integers(self.attributes, (EMPTY,), 0)
+        self._gl.clear_integers(self.attributes, (EMPTY,), 1)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        return self.buffer.nbytes + 12 * self.size[0] * self.size[1]
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        for thing in reversed(self._things):
+            thing.release()
+        self._things.clear()
+        self.buffer.release()

@@ -1,0 +1,11 @@
+// What all passes over spline tubes share; pvfiblets/engine/splines/blocks.py packs it.
+//
+// Symbols
+//   c            share of a derivative that leads from a node to the next control point (splines/segment.glsl)
+//   place        nodes lie on a lattice of integers: differences are exact however far from the origin they are
+
+layout(std140, binding = 8) uniform Splines {
+    vec4 spline_scale;     // x: mm per integer of a place; y: c; z: mm, over W, of half the least width; w: 1 where
+                           // derivatives are by length, 0 where they are by the parameter of a segment
+    ivec4 spline_counts;   // x: steps of a root search; y: segments
+};

@@ -1,0 +1,212 @@
+// Where a ray meets one half of a segment. Paper: Russig et al. 2020, section 3.2, "Intersection" and "Root finding".
+//
+//        |  f(t) = h(t) - sqrt g(t), real where g >= 0          A ray that meets the tube twice has two such parts,
+//        | \         /        \    /                            and of each the lowest point is an entry. All of a
+//      l |  \       /          \__/  <- second entry            part lies between its entry and its exit, the
+//        |   \__*__/  <- nearest entry                          greatest h + sqrt g: what is between is inside.
+//        +----------------------------> t
+//
+// Algorithm
+//   1. g has the five Bezier coefficients <q_i, q_j>: with none positive the ray misses. Most fragments end here.
+//   2. Where g is concave, and f convex for certain, f has one minimum: the root of F1 in all of 0..1, or an end. One search.
+//   3. Else, and always with the paper's own bisection: roots of g'' by formula; between these, of g'; between these, of g:
+//      the parts. In every part roots of f''' (one at most, as the paper found), then f'', then f': the minima.
+// All that can be wrong with a t is that it is not the best: every t with g >= 0 is a point of the tube.
+//
+// Ends. A sphere closes each end of a half. Where another one goes on, an entry or exit there that is not also one of f' = 0
+// is inside the other: it is left to that, or looking along the inside of a tube would show a wall at each node.
+//
+// The ray is looked at from `first` on. What it is inside of there is cut open (kind CUT) where a plane of the caller's made
+// `first`; where the near plane did, its exit shows (EXIT): one is inside and sees the wall.
+
+#include "splines/functions.glsl"
+#include "splines/roots.glsl"
+
+const int MISS = 0, ENTRY = 1, EXIT = 2, CUT = 3;
+
+struct Found {
+    float l;
+    float t;
+    int kind;
+};
+
+float f_at(float t) {
+    vec3 q = q_a + t * (q_b + t * q_c);
+    return h_a + t * (h_b + t * h_c) - sqrt(max(product(q, q), 0.0));
+}
+
+// Whether an extremum at an end where another segment goes on is that one's.
+bool others(float t, bool joined) {
+    if (!joined) return false;
+    vec3 q = q_a + t * (q_b + t * q_c), dq = q_b + 2.0 * t * q_c;
+    float g1 = product(q, dq), s = sqrt(max(product(q, q), 0.0)), sloped = s * (h_b + 2.0 * t * h_c);
+    return abs(sloped - g1) > 0.01 * (abs(sloped) + abs(g1)) + 1e-5 * length(q) * length(dq);
+}
+
+// Least f of a part, by the chain of derivatives. Ends of the part that are ends of the half count too.
+void least_of_part(float lo, float hi, float fine, out float l, out float t) {
+    float cuts[4];
+    cuts[0] = lo;
+    int n = 1;
+    float at_lo = u(4, lo), at_hi = u(4, hi);
+    if ((at_lo < 0.0) != (at_hi < 0.0)) cuts[n++] = root(4, lo, hi, at_lo, at_hi, fine);
+    cuts[n] = hi;
+    float next[4];
+    next[0] = lo;
+    int m = 1;
+    at_lo = u(3, lo);
+    for (int i = 0; i < n; ++i) {
+        at_hi = u(3, cuts[i + 1]);
+        if ((at_lo < 0.0) != (at_hi < 0.0)) next[m++] = root(3, cuts[i], cuts[i + 1], at_lo, at_hi, fine);
+        at_lo = at_hi;
+    }
+    next[m] = hi;
+    t = lo == 0.0 ? lo : hi;
+    l = f_at(t);
+    if (hi == 1.0 && f_at(hi) < l) {
+        t = hi;
+        l = f_at(hi);
+    }
+    at_lo = u(2, lo);
+    for (int i = 0; i < m; ++i) {
+        at_hi = u(2, next[i + 1]);
+        if (at_lo < 0.0 && at_hi >= 0.0) {
+            float found = root(2, next[i], next[i + 1], at_lo, at_hi, fine), value = f_at(found);
+            if (value < l) {
+                l = value;
+                t = found;
+            }
+        }
+        at_lo = at_hi;
+    }
+}
+
+// Roots of g in 0..1 with both ends around them; returns how many pieces they make.
+int pieces_of_g(float fine, out float cuts[6]) {
+    float a = 6.0 * product(q_c, q_c), b = 6.0 * product(q_b, q_c), c = product(q_b, q_b) + 2.0 * product(q_a, q_c);
+    float bends[4];
+    int n = 1;
+    bends[0] = 0.0;
+    float under = b * b - 4.0 * a * c;
+    if (under > 0.0) {
+        float w = -0.5 * (b + (b < 0.0 ? -1.0 : 1.0) * sqrt(under));
+        float t0 = w / a, t1 = c / w;                     // infinite or NaN where there is none: in no range
+        if (t0 > t1) {
+            float swap = t0;
+            t0 = t1;
+            t1 = swap;
+        }
+        if (t0 > 0.0 && t0 < 1.0) bends[n++] = t0;
+        if (t1 > 0.0 && t1 < 1.0 && t1 != t0) bends[n++] = t1;
+    }
+    bends[n] = 1.0;
+    float tops[5];
+    int m = 1;
+    tops[0] = 0.0;
+    float at_lo = u(1, 0.0);
+    for (int i = 0; i < n; ++i) {
+        float at_hi = u(1, bends[i + 1]);
+        if ((at_lo < 0.0) != (at_hi < 0.0)) tops[m++] = root(1, bends[i], bends[i + 1], at_lo, at_hi, fine);
+        at_lo = at_hi;
+    }
+    tops[m] = 1.0;
+    int k = 1;
+    cuts[0] = 0.0;
+    at_lo = u(0, 0.0);
+    for (int i = 0; i < m; ++i) {
+        float at_hi = u(0, tops[i + 1]);
+        if ((at_lo < 0.0) != (at_hi < 0.0)) cuts[k++] = root(0, tops[i], tops[i + 1], at_lo, at_hi, fine);
+        at_lo = at_hi;
+    }
+    cuts[k] = 1.0;
+    return k;
+}
+
+void turn_round() {
+    h_a = -h_a;
+    h_b = -h_b;
+    h_c = -h_c;
+}
+
+// What a part shows: from `first` on.
+void part_seen(float l, float t, float lo, float hi, float first, bool cut, float fine, bvec2 joined, inout Found best) {
+    bool hidden = t <= 0.0 && others(0.0, joined.x) || t >= 1.0 && others(1.0, joined.y);
+    if (l >= first && !hidden) {
+        if (l < best.l) best = Found(l, t, ENTRY);
+        return;
+    }
+#if FEATURE_CLIP_PLANES || FEATURE_SPLINE_HOLLOW
+    if (first >= best.l) return;
+#if !FEATURE_SPLINE_HOLLOW
+    if (!cut || l >= first) return;
+#endif
+    float far, at;
+    turn_round();
+    least_of_part(lo, hi, fine, far, at);
+    bool beyond = at <= 0.0 && others(0.0, joined.x) || at >= 1.0 && others(1.0, joined.y);
+    turn_round();
+    far = -far;
+    if (far <= first) return;
+    if (cut && l < first) best = Found(first, t, CUT);
+#if FEATURE_SPLINE_HOLLOW
+    else if (!cut && !beyond && far < best.l) best = Found(far, at, EXIT);
+#endif
+#endif
+}
+
+// Looks for something nearer than `best` on the half with control points p0, p1, p2.
+void meet_half(vec4 p0, vec4 p1, vec4 p2, vec3 o, vec3 d, vec3 y_axis, vec3 z_axis, float first, bool cut, bvec2 joined,
+               inout Found best) {
+    vec3 v0 = p0.xyz - o, v1 = p1.xyz - o, v2 = p2.xyz - o;
+    vec3 q0 = vec3(p0.w, dot(y_axis, v0), dot(z_axis, v0)), q1 = vec3(p1.w, dot(y_axis, v1), dot(z_axis, v1)),
+         q2 = vec3(p2.w, dot(y_axis, v2), dot(z_axis, v2));
+    float g_0 = product(q0, q0), g_1 = product(q0, q1), g_2 = (product(q0, q2) + 2.0 * product(q1, q1)) / 3.0,
+          g_3 = product(q1, q2), g_4 = product(q2, q2);
+    float most = max(max(max(g_0, g_1), max(g_2, g_3)), g_4);
+    if (most <= 0.0) return;
+    float h0 = dot(d, v0), h1 = dot(d, v1), h2 = dot(d, v2);
+    // Nothing of this half is nearer than its control points less the largest radius.
+    float widest = max(max(p0.w, p1.w), p2.w);
+    if (min(min(h0, h1), h2) - widest >= best.l) return;
+    q_a = q0;
+    q_b = 2.0 * (q1 - q0);
+    q_c = (q0 - q1) + (q2 - q1);
+    h_a = h0;
+    h_b = 2.0 * (h1 - h0);
+    h_c = (h0 - h1) + (h2 - h1);
+    float fine = max(1e-3 * min(widest, 1.0), 2e-7), l, t;
+#if FEATURE_SPLINE_ILLINOIS || FEATURE_SPLINE_ITP || FEATURE_SPLINE_NEWTON
+    float bend = max(max((g_2 - g_1) + (g_0 - g_1), (g_3 - g_2) + (g_1 - g_2)), (g_4 - g_3) + (g_2 - g_3));
+    if (bend <= 0.0 && (h_c >= 0.0 || -3.0 * bend >= -h_c * sqrt(most))) {
+        float at_0 = u(2, 0.0), at_1 = u(2, 1.0);
+        if (at_0 >= 0.0) t = 0.0;
+        else if (at_1 <= 0.0) t = 1.0;
+        else t = root(2, 0.0, 1.0, at_0, at_1, fine);
+        if (u(0, t) < 0.0) return;
+        l = f_at(t);
+        bool hidden = t <= 0.0 && others(0.0, joined.x) || t >= 1.0 && others(1.0, joined.y);
+        if (l >= first && !hidden) {
+            if (l < best.l) best = Found(l, t, ENTRY);
+            return;
+        }
+#if !FEATURE_CLIP_PLANES && !FEATURE_SPLINE_HOLLOW
+        return;
+#endif
+    }
+#endif
+    float cuts[6];
+    int pieces = pieces_of_g(fine, cuts);
+    for (int i = 0; i < pieces; ++i) {
+        float lo = cuts[i], hi = cuts[i + 1];
+        if (u(0, 0.5 * (lo + hi)) <= 0.0) continue;
+        least_of_part(lo, hi, fine, l, t);
+        part_seen(l, t, lo, hi, first, cut, fine, joined, best);
+    }
+}
+
+// Two directions across a unit vector and each other (Duff et al. 2017, made stable at all of them).
+void across(vec3 d, out vec3 y_axis, out vec3 z_axis) {
+    float side = d.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (side + d.z), b = d.x * d.y * a;
+    y_axis = vec3(1.0 + side * d.x * d.x * a, side * b, -side * d.x);
+    z_axis = vec3(b, side + d.y * d.y * a, -d.y);
+}
