@@ -4,5 +4,15 @@ from __future__ import annotations
 
 from .brain import brain
 from .tracking import BUNDLES, LENGTHS, SMALLEST_RADIUS, brain_streamlines, iter_brain_streamlines
+from .tubes import TUBE_SETS, tube_set
 
-__all__ = ["BUNDLES", "LENGTHS", "SMALLEST_RADIUS", "brain", "brain_streamlines", "iter_brain_streamlines"]
+__all__ = [
+    "BUNDLES",
+    "LENGTHS",
+    "SMALLEST_RADIUS",
+    "TUBE_SETS",
+    "brain",
+    "brain_streamlines",
+    "iter_brain_streamlines",
+    "tube_set",
+]
