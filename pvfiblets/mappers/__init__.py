@@ -1,4 +1,4 @@
-"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` whose geometry is fiblets. No PyVista here.
+"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` whose geometry is fiblets or spline tubes. No PyVista here.
 
 >>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
 >>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP
@@ -9,5 +9,6 @@ from __future__ import annotations
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.mapper import FibletMapper
+from pvfiblets.mappers.splines import SplineMapper, SplineOptions
 
-__all__ = ["Colouring", "EngineOptions", "FibletMapper"]
+__all__ = ["Colouring", "EngineOptions", "FibletMapper", "SplineMapper", "SplineOptions"]

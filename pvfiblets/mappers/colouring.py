@@ -1,4 +1,4 @@
-"""How fiblets get their colours, by the rules of ``vtkLookupTable``."""
+"""How fiblets and spline tubes get their colours, by the rules of ``vtkLookupTable``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.engine.volumes import VolumeSource
 
-Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value"]
+Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value", "point_rgb"]
 
 _TABLE_MODES = ("streamline_scalar", "point_value")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
@@ -29,7 +29,7 @@ def _rgba(colour: Any, name: str) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Colouring:
-    """What colour every pixel of a fiblet gets.
+    """What colour every pixel gets; of spline tubes, each tube counts as a streamline.
 
     Instances never change; the arrays in them must not be changed either. Make another one with
     `dataclasses.replace`.
@@ -42,12 +42,14 @@ class Colouring:
         ``'streamline_rgb'``: `values`, one RGB or RGBA colour per streamline.
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
         ``'point_value'``: `source`, a number per point, through `lut`.
+        ``'point_rgb'``: `source`, an RGBA colour per point, of spline tubes only.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
         (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers.
     source : str or VolumeSource, optional
-        ``'curvature'``, ``'arc_length'``, the name of a stored per-point array, or a volume.
+        ``'curvature'``, ``'arc_length'``, the name of a stored per-point array, or a volume; of spline tubes
+        ``'radius'``, ``'arc_length'`` or one of their ``values``.
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
@@ -59,6 +61,8 @@ class Colouring:
         For NaN.
     below_color, above_color : sequence of 3 or 4 floats, optional
         For values outside `clim`; by default the colour of the nearer end.
+    see_through : bool, default False
+        Whether some colour of ``'point_rgb'`` has an alpha below 1.
 
     Raises
     ------
@@ -76,6 +80,7 @@ class Colouring:
     nan_color: tuple[float, ...] = (0.5, 0.5, 0.5, 1.0)
     below_color: tuple[float, ...] | None = None
     above_color: tuple[float, ...] | None = None
+    see_through: bool = False
 
     def __post_init__(self) -> None:
         """Check the fields and bring them into one form."""
@@ -90,6 +95,8 @@ class Colouring:
             self._check_rgb()
         if self.mode == "point_value" and not self.source:
             raise ValueError("mode 'point_value' needs source: the name of a per-point array, or a volume")
+        if self.mode == "point_rgb" and not isinstance(self.source, str):
+            raise ValueError(f"mode 'point_rgb' needs source: the name of the tubes' colours, not {self.source!r}")
         if self.mode in _TABLE_MODES:
             self._check_table()
 
@@ -136,6 +143,7 @@ class Colouring:
             "streamline_rgb": ["colour_streamline"],
             "streamline_scalar": ["colour_streamline"],
             "point_value": ["colour_point_value"],
+            "point_rgb": ["colour_point"],
         }[self.mode]
         if self.mode == "point_value" and self.log_scale:
             names = [*names, "scale_logarithm"]
@@ -143,8 +151,8 @@ class Colouring:
 
     @property
     def point_source(self) -> str | VolumeSource | None:
-        """Per-point value that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode == "point_value" else None
+        """Per-point value or colour that the engine must put into the G-buffer, if any."""
+        return self.source if self.mode in ("point_value", "point_rgb") else None
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -232,6 +240,8 @@ class Colouring:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
         if self.mode == "streamline_rgb" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
+        if self.mode == "point_rgb":
+            return self.see_through
         return self.mode in _TABLE_MODES and bool((self.table()[:, 3] < 255).any())
 
 

@@ -1,4 +1,4 @@
-"""How a mapper's fiblets are drawn: what it asks of the engine, and which engine it asks."""
+"""How what a mapper shows is drawn: what it asks of an engine, and which engine it asks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,20 @@ from pvfiblets.engine.capabilities import AUTO, check_choices
 
 
 @dataclass(frozen=True)
-class EngineOptions:
+class Options:
+    """Choices that a renderer is made with."""
+
+    def changed(self) -> dict[str, Any]:
+        """Return those that are not the defaults, as keyword arguments of a renderer."""
+        return {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if getattr(self, field.name) != field.default
+        }
+
+
+@dataclass(frozen=True)
+class EngineOptions(Options):
     """What can be chosen about drawing that does not show in the picture.
 
     Parameters
@@ -37,14 +50,6 @@ class EngineOptions:
         check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
         if self.culling == "none":
             object.__setattr__(self, "culling", None)
-
-    def changed(self) -> dict[str, Any]:
-        """Return those that are not the defaults, as keyword arguments of a renderer."""
-        return {
-            field.name: getattr(self, field.name)
-            for field in fields(self)
-            if getattr(self, field.name) != field.default
-        }
 
 
 def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:

@@ -42,10 +42,13 @@ class Drawn:
     style: Any
 
 
-def pick(ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolerance: int) -> tuple[int, float] | None:
-    """Return (streamline id, position along it) near a pixel of the window, or None.
+def pick(
+    ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolerance: int, what: str = "ids"
+) -> tuple[int, float] | None:
+    """Return (number, position along it) near a pixel of the window, or None.
 
-    Of several lines within `tolerance` pixels the nearest on the screen wins, and of those as near
+    The number is a streamline's, or with ``'owner'`` for `what` that of the part of it that the pixel belongs to. Of
+    several lines within `tolerance` pixels the nearest on the screen wins, and of those as near
     the one in front. The G-buffer is drawn again if it shows another view by now.
     """
     renderer = drawn.renderer.Get()
@@ -73,9 +76,9 @@ def pick(ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolera
     if distance[nearest] > reach * reach:
         return None
     at = rows[nearest], columns[nearest]
-    ids = _read(ctx, buffer.ids, region, "u4", 2)
+    numbers = _read(ctx, getattr(buffer, what), region, "u4", {"ids": 2, "owner": 1}[what])
     position = _read(ctx, buffer.position, region, "f4", 2)
-    return int(ids[(*at, 0)]), float(position[(*at, 0)])
+    return int(numbers[(*at, 0)]), float(position[(*at, 0)])
 
 
 @dataclass(frozen=True, eq=False)

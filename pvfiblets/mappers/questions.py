@@ -11,10 +11,9 @@ from pvfiblets.mappers.windows import contexts_with
 
 
 class Questions:
-    """The part of `pvfiblets.mappers.FibletMapper` that answers."""
+    """The part of `pvfiblets.mappers.base.EngineMapper` that answers."""
 
     _last_drawn: str | None
-    _fiblets: Any
 
     @property
     def features(self) -> frozenset[str]:
@@ -26,26 +25,10 @@ class Questions:
         """What windows know the mapper by."""
         return str(cast("Any", self).GetAddressAsString(""))
 
-    def pick_at(
-        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    def _pick(
+        self, x: float, y: float, *, renderer: vtkRenderer | None, tolerance: int, what: str
     ) -> tuple[int, float] | None:
-        """Return the streamline nearest to a pixel of what was drawn last.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 2
-            How many pixels away a line may be.
-
-        Returns
-        -------
-        tuple of int and float, or None
-            Streamline id and position along it: the index of the point before, plus the fraction of
-            the segment. None where there is no fiblet. Other actors in front are not looked at.
-        """
+        """Return what the textures `what` and ``position`` say near a pixel, None where nothing was drawn."""
         key = self._last_drawn if renderer is None else renderer.GetAddressAsString("")
         for context in contexts_with(self):
             slot = context.slots[self._address]
@@ -53,7 +36,7 @@ class Questions:
             if drawn is not None and slot.renderer is not None and context.alive:
                 context.window.MakeCurrent()
                 with context.foreign():
-                    return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance)
+                    return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance, what)
         return None
 
     @property
@@ -97,27 +80,3 @@ class Questions:
                 for name, texture in slot.textures.items()
             ]
         return {"features": sorted(self.features), "textures": textures, "windows": windows}
-
-    def region_flags(self, region: Any, sampling: float | None = None) -> Any:
-        """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
-
-        Parameters
-        ----------
-        region, sampling
-            Data coordinates; as in `pvfiblets.codec.query.passing.region_flags`, which gives the same answer.
-
-        Returns
-        -------
-        numpy.ndarray
-            (n_streamlines,) uint8.
-        """
-        for context in contexts_with(self):
-            slot = context.slots[self._address]
-            current = slot.versions.get("fiblets") is self._fiblets
-            if slot.renderer is not None and current and context.alive and hasattr(slot.renderer, "query"):
-                context.window.MakeCurrent()
-                with context.foreign():
-                    return slot.renderer.query(region, sampling)
-        from pvfiblets.codec.query.passing import region_flags
-
-        return region_flags(self._fiblets, region, sampling)

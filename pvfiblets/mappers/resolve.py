@@ -32,6 +32,7 @@ FEATURES = (
     "colour_orientation",
     "colour_solid",
     "colour_streamline",
+    "colour_point",
     "colour_point_value",
     "layers_value",
     "scale_logarithm",

@@ -1,4 +1,4 @@
-"""Lines with bodies: wide lines shaded as if they were round, and tubes of a radius in millimetres."""
+"""Lines with bodies: wide lines shaded as if they were round, tubes, and the light that falls on tubes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from pvfiblets.mappers.extras import Draw, Extra
 
-__all__ = ["TubeShading", "Tubes", "thickened", "thickness_of"]
+__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "thickened", "thickness_of"]
 
 
 def thickness_of(extras: Iterable[Extra]) -> float:
@@ -73,7 +73,39 @@ class TubeShading:
 
 
 @dataclass(frozen=True)
-class Tubes:
+class SurfaceNormals:
+    """An `pvfiblets.mappers.extras.Extra` by which lights fall on the surface normals in ``GBuffer.across``."""
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve."""
+        return frozenset({"tube_normal"})
+
+    @property
+    def style(self) -> Mapping[str, Any]:
+        """What it wants of the engine."""
+        return {}
+
+    def make(self, ctx: Any) -> None:  # noqa: ARG002
+        """Keep nothing: the texture is the G-buffer's."""
+        return
+
+    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002
+        """Return the engine's texture."""
+        return {"fibletNormalMap": draw.buffer.across}
+
+    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002
+        """Set how normals turn with the actor: by the cofactors, so that a stretched tube keeps its normals."""
+        a, b, c = draw.frame.directions_to_view.T
+        turned = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)]).T
+        if np.linalg.det(draw.frame.directions_to_view) < 0.0:
+            turned = -turned
+        turned /= np.abs(turned).max() or 1.0
+        program.SetUniformMatrix3x3("fibletNormalToView", turned.T.ravel().tolist())
+
+
+@dataclass(frozen=True)
+class Tubes(SurfaceNormals):
     """An `pvfiblets.mappers.extras.Extra` that draws streamlines as tubes: bodies with round ends.
 
     Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and
@@ -98,28 +130,6 @@ class Tubes:
             raise ValueError(f"the radius of tubes is {self.radius}; give a finite number of millimetres above 0")
 
     @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"tube_normal"})
-
-    @property
     def style(self) -> Mapping[str, Any]:
         """What it wants of the engine."""
         return {"radius": float(self.radius), "across": True}
-
-    def make(self, ctx: Any) -> None:  # noqa: ARG002
-        """Keep nothing: the texture is the G-buffer's."""
-        return
-
-    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002
-        """Return the engine's texture."""
-        return {"fibletNormalMap": draw.buffer.across}
-
-    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002
-        """Set how normals turn with the actor: by the cofactors, so that a stretched tube keeps its normals."""
-        a, b, c = draw.frame.directions_to_view.T
-        turned = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)]).T
-        if np.linalg.det(draw.frame.directions_to_view) < 0.0:
-            turned = -turned
-        turned /= np.abs(turned).max() or 1.0
-        program.SetUniformMatrix3x3("fibletNormalToView", turned.T.ravel().tolist())

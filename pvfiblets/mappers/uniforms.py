@@ -22,6 +22,8 @@ def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) ->
     elif "colour_point_value" in features:
         textures["fibletPositionMap"] = buffer.position
         name, pixels = "fibletTable", colouring.table
+    elif "colour_point" in features:
+        textures["fibletColourMap"] = buffer.colours
     for unused in set(slot.textures) - {name}:
         slot.textures.pop(unused).release()
     if name is not None:

@@ -6,7 +6,7 @@ import pytest
 
 from pvfiblets.mappers import resolve
 
-COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point_value")
+COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point", "colour_point_value")
 
 
 def text(*features):

@@ -1,0 +1,183 @@
+"""`SplineMapper`: Hermite spline tubes as geometry of an ordinary VTK actor.
+
+The engine (`pvfiblets.engine.splines`) finds for each pixel where its ray enters the tubes; its G-buffer holds depth,
+surface normal, tube, segment and value, and the resolve that serves fiblets shows it. It has no regions, filters and
+layers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from pvfiblets.mappers.base import EngineMapper
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.tubes import SurfaceNormals
+
+if TYPE_CHECKING:
+    from pvfiblets.splines.tubes import SplineTubes
+
+__all__ = ["SILHOUETTES", "SOLVERS", "SplineMapper", "SplineOptions", "spline_renderer"]
+
+SILHOUETTES = ("auto", "rectangles", "boxes", "pulled-boxes")
+SOLVERS = ("auto", "bisection", "illinois", "itp", "newton")
+WIDEST = 64.0
+"""Pixels that tubes may be asked to take at least."""
+
+
+@dataclass(frozen=True)
+class SplineOptions(Options):
+    """What can be chosen about casting rays at spline tubes.
+
+    Parameters
+    ----------
+    silhouettes : {'auto', 'rectangles', 'boxes', 'pulled-boxes'}
+        What covers the pixels whose rays are tried.
+    solver : {'auto', 'bisection', 'illinois', 'itp', 'newton'}
+        How the first point of a tube on a ray is searched.
+    iterations : int, optional
+        Steps of a search; as many as float32 has use for by default.
+    min_width : float, default 1.0
+        Pixels that a tube takes at least, 0 to 64, however thin and far it is.
+
+    Raises
+    ------
+    ValueError
+        A value is unknown.
+    """
+
+    silhouettes: str = "auto"
+    solver: str = "auto"
+    iterations: int | None = None
+    min_width: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name, known in (("silhouettes", SILHOUETTES), ("solver", SOLVERS)):
+            if getattr(self, name) not in known:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {', '.join(known)}")
+        if self.iterations is not None:
+            whole = isinstance(self.iterations, (int, float)) and not isinstance(self.iterations, bool)
+            if not whole or int(self.iterations) != self.iterations or self.iterations < 1:
+                raise ValueError(f"iterations is {self.iterations!r}; give a whole number from 1, or None")
+            object.__setattr__(self, "iterations", int(self.iterations))
+        width = float(self.min_width)
+        if not (math.isfinite(width) and 0.0 <= width <= WIDEST):
+            raise ValueError(f"min_width is {self.min_width!r}; give pixels from 0 to {WIDEST:g}")
+        object.__setattr__(self, "min_width", width)
+
+
+def spline_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
+    """Make the engine's renderer of spline tubes; the default ``renderer_factory``.
+
+    Raises
+    ------
+    EngineError
+        The window's OpenGL lacks what is wanted; said before anything is copied to the GPU.
+    """
+    from pvfiblets.engine.splines import SplineRenderer
+
+    return SplineRenderer(ctx, tubes, **options)
+
+
+class SplineMapper(EngineMapper):
+    """Mapper that draws `SplineTubes` through VTK's own lights, passes, clipping planes and selection.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    colouring : Colouring, optional
+        White when left out.
+    options : SplineOptions, optional
+        How rays are cast.
+    renderer_factory : callable, optional
+        Takes a moderngl context, the tubes, and as keywords those options that are not the defaults; returns a
+        renderer as of `pvfiblets.engine.splines`.
+
+    Notes
+    -----
+    Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
+
+    Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020), section 3.2.
+    """
+
+    _NAME = "SplineMapper"
+
+    def __init__(
+        self,
+        tubes: SplineTubes,
+        *,
+        colouring: Colouring | None = None,
+        options: SplineOptions | None = None,
+        renderer_factory: Callable[..., Any] = spline_renderer,
+    ) -> None:
+        super().__init__(
+            tubes,
+            colouring=Colouring("solid") if colouring is None else colouring,
+            options=SplineOptions() if options is None else options,
+            renderer_factory=renderer_factory,
+        )
+        self.set_extra("normals", SurfaceNormals())
+
+    @property
+    def tubes(self) -> SplineTubes:
+        """What is drawn."""
+        tubes: SplineTubes = self._drawn
+        return tubes
+
+    def set_tubes(self, tubes: SplineTubes) -> None:
+        """Draw other tubes from the next frame on.
+
+        Raises
+        ------
+        ValueError
+            The colouring has values for another number of tubes.
+        """
+        self._put(tubes)
+
+    @property
+    def options(self) -> SplineOptions:
+        """How rays are cast; set another `SplineOptions` to change it from the next frame on."""
+        options: SplineOptions = self._options
+        return options
+
+    @options.setter
+    def options(self, options: SplineOptions) -> None:
+        self._options = options
+        self._actor_modified()
+
+    def pick_at(
+        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    ) -> tuple[int, float] | None:
+        """Return the place of the tubes nearest to a pixel of what was drawn last.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 2
+            How many pixels away a tube may be.
+
+        Returns
+        -------
+        tuple of int and float, or None
+            Segment and its parameter, 0 to 1, whose sphere the pixel shows. None where there is no tube. Other
+            actors in front are not looked at.
+        """
+        return self._pick(x, y, renderer=renderer, tolerance=tolerance, what="owner")
+
+    @property
+    def _empty(self) -> bool:
+        return not self._drawn.n_segments
+
+    @property
+    def _width(self) -> float:
+        return max(1.0, self.options.min_width)
