@@ -151,6 +151,8 @@ def make_colouring(
         return Colouring(
             mode="solid", color=pv.Color(settings.color, default_color=theme.color).float_rgb
         )
+    if scalars.kind == "point_rgb":
+        return Colouring(mode="point_rgb", source=scalars.name, see_through=scalars.see_through)
     if not scalars.mapped:
         return Colouring(mode=scalars.kind, values=scalars.values)
     return Colouring(

@@ -1,25 +1,19 @@
-"""The mapper of an actor, as PyVista's scalar bars want to see it."""
+"""The mappers of actors, as PyVista's scalar bars want to see them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import pyvista as pv
 
-from pvfiblets.mappers import FibletMapper
+from pvfiblets.mappers import FibletMapper, SplineMapper
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.actor import FibletActor
+    from pvfiblets.plotting.coloured import Coloured
 
 
-class PlottedMapper(FibletMapper):
-    """A fiblet mapper that shows PyVista's scalar bars the actor's own look-up table.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        What to draw.
-    """
+class Plotted:
+    """The part of a mapper that shows PyVista's scalar bars the actor's own look-up table."""
 
     @property
     def lookup_table(self) -> pv.LookupTable:
@@ -35,5 +29,25 @@ class PlottedMapper(FibletMapper):
     def scalar_range(self, clim: tuple[float, float]) -> None:
         self._shown_by().clim = clim
 
-    def _shown_by(self) -> FibletActor:
-        return cast("FibletActor", self.actor)
+    def _shown_by(self) -> Coloured:
+        return cast("Coloured", cast("Any", self).actor)
+
+
+class PlottedMapper(Plotted, FibletMapper):
+    """A fiblet mapper with scalar bars.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    """
+
+
+class PlottedSplines(Plotted, SplineMapper):
+    """A mapper of spline tubes with scalar bars.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    """

@@ -45,7 +45,7 @@ class Scalars:
     ----------
     name : str
         For the scalar bar, and for the engine where ``kind`` is ``"point_value"``.
-    kind : {"orientation", "streamline_rgb", "streamline_scalar", "point_value"}
+    kind : {"orientation", "streamline_rgb", "streamline_scalar", "point_value", "point_rgb"}
         How the mapper has to use them.
     values : array, optional
         (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
@@ -57,6 +57,8 @@ class Scalars:
         Of numbers that are labels: what each stands for.
     volume : VolumeSource, optional
         To be sampled at the points, where ``kind`` is ``"point_value"``.
+    see_through : bool
+        Whether some of the colours of ``"point_rgb"`` have an alpha below 1.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Scalars:
     positive: float = 1e-6
     volume: VolumeSource | None = None
     categories: dict[int, str] | None = None
+    see_through: bool = False
 
     @property
     def mapped(self) -> bool:
@@ -196,8 +199,8 @@ def missing_message(fiblets: FibletSet, name: str) -> str:
     )
 
 
-def per_streamline(name: str, values: Any, n_streamlines: int) -> Scalars:
-    """Make :class:`Scalars` of one number, or one colour, per streamline.
+def per_streamline(name: str, values: Any, n_streamlines: int, *, whole: str = "streamline") -> Scalars:
+    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called.
 
     Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
     """
@@ -207,7 +210,7 @@ def per_streamline(name: str, values: Any, n_streamlines: int) -> Scalars:
     if values.shape[:1] != (n_streamlines,) or values.ndim > 2 or values.dtype.kind not in "buif":
         raise ValueError(
             f"scalars {name!r} have shape {values.shape} and type {values.dtype}; expected "
-            f"{n_streamlines} numbers, one per streamline, or as many rows of 3 or 4 colour parts"
+            f"{n_streamlines} numbers, one per {whole}, or as many rows of 3 or 4 colour parts"
         )
     if values.ndim == 1:
         numbers = values.astype(np.float64)

@@ -1,4 +1,4 @@
-"""How an actor's lines are shaded: each effect is off, and costs nothing, until it is set."""
+"""How an actor's lines or tubes are shaded: each effect is off, and costs nothing, until it is set."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ STYLES = ("surface", "halo")
 _BACKGROUND = "background"
 
 
-class Shading:
-    """The part of :class:`~pvfiblets.plotting.actor.FibletActor` that shades.
+class SurfaceShading:
+    """The part of actors that shades what they draw, be it lines or surfaces.
 
     Every setting may be changed at any time and takes effect at the next render. An effect is set
     to ``True`` for its defaults, to a dict of what shall differ from them, or to ``False`` or
@@ -29,6 +29,66 @@ class Shading:
 
     def _init_shading(self) -> None:
         self._shades: dict[str, dict[str, Any]] = {}
+
+    @property
+    def ambient_occlusion(self) -> dict[str, Any] | bool:
+        """Darkness where others stand over a line or tube.
+
+        ``radius`` (mm): what is farther does not darken; ``None``, the default, is a 20th of the
+        data's diagonal. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.
+        """
+        return self._shades.get("ambient_occlusion", False)
+
+    @ambient_occlusion.setter
+    def ambient_occlusion(self, wanted: Mapping[str, Any] | bool | None) -> None:
+        self._shade("ambient_occlusion", AmbientOcclusion, wanted)
+
+    @property
+    def depth_cue(self) -> dict[str, Any] | bool:
+        """Fading with the distance from the viewer.
+
+        ``strength`` (0.7): share of the colour at the far end. ``color``: ``None``, the default, is
+        the background's. ``range``: distances (mm) at which fading begins and ends; ``None``, the
+        default, are those of the nearest and the farthest part of the data's bounds.
+        """
+        return self._shades.get("depth_cue", False)
+
+    @depth_cue.setter
+    def depth_cue(self, wanted: Mapping[str, Any] | bool | None) -> None:
+        self._shade("depth_cue", DepthCue, wanted)
+
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        """Set one effect; a refused value leaves all as it was."""
+        if wanted is None or wanted is False:
+            self._shades.pop(name, None)
+            self._mapper.set_extra(name, None)
+            return
+        if wanted is not True and not isinstance(wanted, Mapping):
+            raise ValueError(f"{name} is {wanted!r}; give True, False or a dict of settings")
+        known = [field.name for field in fields(kind)] if is_dataclass(kind) else []
+        settings = {} if wanted is True else dict(wanted)
+        if unknown := sorted(set(settings) - set(known)):
+            raise ValueError(f"{name} has no settings {unknown}; it has {known}")
+        given = dict(settings)
+        if "color" in known:
+            colour = settings.setdefault("color", "white" if kind is Halos else None)
+            plain = colour is None or (isinstance(colour, str) and colour == _BACKGROUND)
+            given["color"] = None if plain else pv.Color(colour).float_rgb
+        extra = kind(**given)
+        self._mapper.set_extra(name, extra)
+        self._shades[name] = {key: settings.get(key, getattr(extra, key)) for key in known}
+
+    def _shade_surface_like(self, other: SurfaceShading) -> None:
+        """Take over the settings that all actors have."""
+        for name in ("ambient_occlusion", "depth_cue"):
+            setattr(self, name, getattr(other, name))
+
+
+class Shading(SurfaceShading):
+    """The part of :class:`~pvfiblets.plotting.actor.FibletActor` that shades."""
+
+    def _init_shading(self) -> None:
+        super()._init_shading()
         self._style = STYLES[0]
 
     @property
@@ -72,33 +132,6 @@ class Shading:
         self._shade("tubes", Tubes, None if radius is None else {"radius": float(radius)})
 
     @property
-    def ambient_occlusion(self) -> dict[str, Any] | bool:
-        """Darkness where other lines stand over a line.
-
-        ``radius`` (mm): what is farther does not darken; ``None``, the default, is a 20th of the
-        data's diagonal. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.
-        """
-        return self._shades.get("ambient_occlusion", False)
-
-    @ambient_occlusion.setter
-    def ambient_occlusion(self, wanted: Mapping[str, Any] | bool | None) -> None:
-        self._shade("ambient_occlusion", AmbientOcclusion, wanted)
-
-    @property
-    def depth_cue(self) -> dict[str, Any] | bool:
-        """Fading with the distance from the viewer.
-
-        ``strength`` (0.7): share of the colour at the far end. ``color``: ``None``, the default, is
-        the background's. ``range``: distances (mm) at which fading begins and ends; ``None``, the
-        default, are those of the nearest and the farthest part of the data's bounds.
-        """
-        return self._shades.get("depth_cue", False)
-
-    @depth_cue.setter
-    def depth_cue(self, wanted: Mapping[str, Any] | bool | None) -> None:
-        self._shade("depth_cue", DepthCue, wanted)
-
-    @property
     def halos(self) -> dict[str, Any] | bool:
         """Gaps that lines cut into what is behind them, the wider the farther it is behind.
 
@@ -137,29 +170,9 @@ class Shading:
         if style == "surface" or not self.halos:
             self.halos = style == "halo"
 
-    def _shade(self, name: str, kind: type, wanted: Any) -> None:
-        """Set one effect; a refused value leaves all as it was."""
-        if wanted is None or wanted is False:
-            self._shades.pop(name, None)
-            self._mapper.set_extra(name, None)
-            return
-        if wanted is not True and not isinstance(wanted, Mapping):
-            raise ValueError(f"{name} is {wanted!r}; give True, False or a dict of settings")
-        known = [field.name for field in fields(kind)] if is_dataclass(kind) else []
-        settings = {} if wanted is True else dict(wanted)
-        if unknown := sorted(set(settings) - set(known)):
-            raise ValueError(f"{name} has no settings {unknown}; it has {known}")
-        given = dict(settings)
-        if "color" in known:
-            colour = settings.setdefault("color", "white" if kind is Halos else None)
-            plain = colour is None or (isinstance(colour, str) and colour == _BACKGROUND)
-            given["color"] = None if plain else pv.Color(colour).float_rgb
-        extra = kind(**given)
-        self._mapper.set_extra(name, extra)
-        self._shades[name] = {key: settings.get(key, getattr(extra, key)) for key in known}
-
     def _shade_like(self, other: Shading) -> None:
         """Take over all settings of another actor."""
         self.style = other.style
-        for name in ("illuminated", "tube_shading", "tube_radius", "ambient_occlusion", "depth_cue", "halos"):
+        self._shade_surface_like(other)
+        for name in ("illuminated", "tube_shading", "tube_radius", "halos"):
             setattr(self, name, getattr(other, name))
