@@ -155,7 +155,7 @@ def moved(curves: Array, low: Array, high: Array) -> Array:
 
 def _exponent(values: Array) -> npt.NDArray[Any]:
     """Return (n,) exponents of 2 of the largest values; of zeros, less than any."""
-    largest = np.abs(values.reshape(len(values), -1)).max(axis=1)
+    largest = np.abs(values).max(axis=tuple(range(1, values.ndim)))
     return np.where(largest > 0.0, np.frexp(largest)[1], -2000)
 
 

@@ -346,6 +346,6 @@ def _limits(limit: npt.ArrayLike, name: str) -> Array:
 
 
 def _check_finite(given: Array, name: str) -> None:
-    wrong = np.flatnonzero(~np.isfinite(given.reshape(len(given), -1)).all(axis=1))
+    wrong = np.flatnonzero(~np.isfinite(given).all(axis=tuple(range(1, given.ndim))))
     if len(wrong):
         raise ValueError(f"{name} {wrong[0]} is {given[wrong[0]].tolist()}, expected finite numbers")
