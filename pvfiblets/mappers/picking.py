@@ -90,10 +90,13 @@ class Layer:
     mapper : FibletMapper
     ids : numpy.ndarray or None
         Which streamlines its own are, where it draws some of another mapper's.
+    starts : numpy.ndarray or None
+        Where it draws spline tubes: the place along its streamline at which each segment begins.
     """
 
     mapper: Any
     ids: npt.NDArray[np.int64] | None = None
+    starts: npt.NDArray[np.int64] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +260,10 @@ def _nearest(seen: Sequence[tuple[Shown, Layer]], box: tuple[int, int, int, int]
             buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
             key = _read(ctx, buffer.depth, box, "u4", 1)[..., 0]
             ids = _read(ctx, buffer.ids, box, "u4", 2)[..., 0].astype(np.int64)
-            position = _read(ctx, buffer.position, box, "f4", 2)
+            position = _read(ctx, buffer.position, box, "f4", 2).astype(np.float64)
+            if layer.starts is not None:
+                segment = _read(ctx, buffer.owner, box, "u4", 1)[..., 0]
+                position[key != EMPTY, 0] += layer.starts[segment[key != EMPTY]]
         depth = np.where(key == EMPTY, 3.0, key / float(EMPTY))
         nearer = depth <= raster[..., 1]
         own = ids[nearer]

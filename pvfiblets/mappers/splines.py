@@ -7,13 +7,13 @@ layers.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
+from pvfiblets.engine.splines import check_choices
 from pvfiblets.mappers.base import EngineMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import Options
@@ -22,13 +22,7 @@ from pvfiblets.mappers.tubes import SurfaceNormals
 if TYPE_CHECKING:
     from pvfiblets.splines.tubes import SplineTubes
 
-__all__ = ["SILHOUETTES", "SOLVERS", "SplineMapper", "SplineOptions", "spline_renderer"]
-
-SILHOUETTES = ("auto", "rectangles", "boxes", "pulled-boxes")
-SOLVERS = ("auto", "bisection", "illinois", "itp", "newton")
-WIDEST = 64.0
-"""Pixels that tubes may be asked to take at least."""
-
+__all__ = ["SplineMapper", "SplineOptions", "spline_renderer"]
 
 @dataclass(frozen=True)
 class SplineOptions(Options):
@@ -41,7 +35,7 @@ class SplineOptions(Options):
     solver : {'auto', 'bisection', 'illinois', 'itp', 'newton'}
         How the first point of a tube on a ray is searched.
     iterations : int, optional
-        Steps of a search; as many as float32 has use for by default.
+        Steps of one search at most; the solver's own number by default.
     min_width : float, default 1.0
         Pixels that a tube takes at least, 0 to 64, however thin and far it is.
 
@@ -58,18 +52,7 @@ class SplineOptions(Options):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        for name, known in (("silhouettes", SILHOUETTES), ("solver", SOLVERS)):
-            if getattr(self, name) not in known:
-                raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {', '.join(known)}")
-        if self.iterations is not None:
-            whole = isinstance(self.iterations, (int, float)) and not isinstance(self.iterations, bool)
-            if not whole or int(self.iterations) != self.iterations or self.iterations < 1:
-                raise ValueError(f"iterations is {self.iterations!r}; give a whole number from 1, or None")
-            object.__setattr__(self, "iterations", int(self.iterations))
-        width = float(self.min_width)
-        if not (math.isfinite(width) and 0.0 <= width <= WIDEST):
-            raise ValueError(f"min_width is {self.min_width!r}; give pixels from 0 to {WIDEST:g}")
-        object.__setattr__(self, "min_width", width)
+        check_choices(self.silhouettes, self.solver, self.iterations, self.min_width)
 
 
 def spline_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:

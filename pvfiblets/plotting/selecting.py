@@ -301,13 +301,9 @@ class Selecting(SelectionMeasures):
             self._standout = self._make_standout(style)
 
     def _make_standout(self, style: SelectionStyle) -> Standout:
-        extra = None
-        if style.as_tubes:
-            from pvfiblets.mappers.tubes import Tubes
-
-            extra = Tubes(style.radius)
         width = self._mapper.line_width if style.width is None else style.width
-        return Standout(self, self.selection, color=style.color, width=width, extra=extra)  # type: ignore[arg-type]  # as above
+        radius = style.radius if style.as_tubes else None
+        return Standout(self, self.selection, color=style.color, width=width, radius=radius)  # type: ignore[arg-type]  # as above
 
     def entered(self, renderer: Any) -> None:
         """Be told that a renderer draws the actor from now on."""

@@ -1,27 +1,56 @@
 """Selected streamlines drawn once more, wider or as tubes, in the place of the actor that they belong to.
 
-A small set of their own (`FibletSet.extract`) on a mapper of its own: the rest is drawn as before. What is drawn
-follows the owner: before each picture its place, looks, cuts and filters are looked at, and taken over where they
-changed.
+A small set of their own on a mapper of its own: the rest is drawn as before. What is drawn follows the owner: before
+each picture its place, looks, cuts and filters are looked at, and taken over where they changed.
+
+Tubes are spline tubes (`pvfiblets.mappers.splines`), smooth through the points. Where the owner is cut to a region,
+filtered point by point or coloured by a volume, which those cannot do, and where there are very many points, tubes are
+the engine's own, straight from point to point, of compressed fiblets (`FibletSet.extract`).
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.mappers import Colouring, FibletMapper
+from pvfiblets.mappers import Colouring, FibletMapper, SplineMapper
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.mappers.scene import renderers_of, to_array
+from pvfiblets.mappers.tubes import Tubes
 from pvfiblets.mappers.windows import weak
+from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.actor import FibletActor
+    from pvfiblets.splines.tubes import SplineTubes
+
+
+MOST_POINTS = 400_000
+"""Of spline tubes: they take 50 bytes for each on the GPU, fiblets two."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Splines:
+    """What spline tubes are made of.
+
+    Attributes
+    ----------
+    ids : numpy.ndarray
+        ``(n,)`` int64 streamlines.
+    kept : numpy.ndarray or None
+        The owner's mask of streamlines, of which `ids` are.
+    values : str or None
+        Name of the per-point value that they are coloured by.
+    """
+
+    ids: np.ndarray
+    kept: np.ndarray | None
+    values: str | None
 
 
 class Standout:
@@ -37,8 +66,8 @@ class Standout:
         One colour for all; the owner's colours by default.
     width : float
         Pixels of the lines.
-    extra : Any
-        An extra of the mapper that makes tubes of them.
+    radius : float, optional
+        Of tubes (mm) in place of lines.
     """
 
     def __init__(
@@ -48,18 +77,20 @@ class Standout:
         *,
         color: tuple[float, ...] | None,
         width: float,
-        extra: Any = None,
+        radius: float | None = None,
     ) -> None:
         self.ids = ids
         self._owner = weak(owner)
         self._color = color
+        self._width, self._radius = width, radius
         self._fiblets = owner.fiblets
+        self._few = radius is not None and int(np.diff(owner.fiblets.offsets())[ids].sum()) <= MOST_POINTS
         self._taken: dict[str, Any] = {}
         self._matrix = vtkMatrix4x4()
         self._renderers: dict[str, tuple[Any, int]] = {}
-        self.mapper = FibletMapper(owner.fiblets.extract(ids), line_width=width, options=owner.mapper.options)
-        if extra is not None:
-            self.mapper.set_extra("tubes", extra)
+        self._plan: _Splines | None = None
+        self._plan = self._plan_for(owner.mapper)
+        self.mapper: Any = self._make(self._plan)
         self.actor = vtkActor()
         self.actor.SetPickable(False)
         self.actor.SetProperty(owner.GetProperty())
@@ -71,7 +102,12 @@ class Standout:
     @property
     def layer(self) -> Layer:
         """What picking sees: pixels that show these streamlines show the owner's."""
-        return Layer(self.mapper, self.ids)
+        if self._plan is None:
+            return Layer(self.mapper, self.ids)
+        # Of a line of n points the segments begin at its points 0 to n - 2.
+        tubes = self.mapper.tubes.tubes
+        first = np.searchsorted(tubes, tubes)
+        return Layer(self.mapper, self._plan.ids, np.arange(len(tubes)) - first)
 
     def enter(self, renderer: Any) -> None:
         """Be drawn by a renderer that draws the owner."""
@@ -128,16 +164,52 @@ class Standout:
             self.mapper.detach()
             self.actor.SetProperty(owner.GetProperty())
             self.mapper.attach(self.actor)
-        if self._changed("options", mapper.options):
-            self.mapper.options = mapper.options
+        self._remake(self._plan_for(mapper))
         if self._changed("colouring", mapper.colouring):
             self.mapper.colouring = self._colours(mapper.colouring)
         if self._changed("planes", mapper.GetClippingPlanes()):
             self.mapper.SetClippingPlanes(mapper.GetClippingPlanes())
+        if self._plan is not None:
+            return
+        if self._changed("options", mapper.options):
+            self.mapper.options = mapper.options
         if self._changed("region", mapper.region):
             self.mapper.region = mapper.region
         if self._changed("filtering", mapper.filtering):
             self.mapper.filtering = part_of_filter(mapper.filtering, self._fiblets, self.ids)
+
+    def _plan_for(self, mapper: Any) -> _Splines | None:
+        """What spline tubes have to be made of that do as the owner's mapper does; None where none can."""
+        filtering = mapper.filtering
+        masked = filtering is not None and filtering.points is not None
+        values = None if self._color is not None else mapper.colouring.point_source
+        if not self._few or mapper.region is not None or masked or not isinstance(values, str | None):
+            return None
+        kept = None if filtering is None else filtering.streamlines
+        if self._plan is not None and self._plan.kept is kept and self._plan.values == values:
+            return self._plan
+        return _Splines(self.ids if kept is None else self.ids[kept[self.ids]], kept, values)
+
+    def _make(self, plan: _Splines | None) -> Any:
+        """Return the mapper that a plan asks for."""
+        if plan is not None:
+            return SplineMapper(spline_tubes_of(self._fiblets, plan.ids, float(self._radius or 0.0), plan.values))
+        mapper = FibletMapper(self._fiblets.extract(self.ids), line_width=self._width)
+        if self._radius is not None:
+            mapper.set_extra("tubes", Tubes(self._radius))
+        return mapper
+
+    def _remake(self, plan: _Splines | None) -> None:
+        """Draw by another mapper where the plan is another one."""
+        if plan is self._plan:
+            return
+        mapper = self._make(plan)
+        self.mapper.release()
+        self.mapper.detach()
+        self.mapper, self._plan = mapper, plan
+        self.mapper.attach(self.actor)
+        for name in ("options", "colouring", "planes", "region", "filtering"):
+            self._taken.pop(name, None)
 
     def _changed(self, name: str, value: Any, *, equal: bool = False) -> bool:
         """Whether the owner has another value now; remembers it."""
@@ -152,7 +224,8 @@ class Standout:
         if self._color is not None:
             return Colouring("solid", color=self._color)
         if colouring.mode in ("streamline_rgb", "streamline_scalar") and colouring.values is not None:
-            return replace(colouring, values=np.asarray(colouring.values)[self.ids])
+            ids = self.ids if self._plan is None else self._plan.ids
+            return replace(colouring, values=np.asarray(colouring.values)[ids])
         return colouring
 
 
@@ -168,6 +241,37 @@ def weak_method(standout: Standout) -> Any:
             alive.before_picture(renderer)
 
     return call
+
+
+def spline_tubes_of(fiblets: FibletSet, ids: np.ndarray, radius: float, values: str | None = None) -> SplineTubes:
+    """Return streamlines as spline tubes of one radius.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        The whole.
+    ids : numpy.ndarray
+        ``(n,)`` int64 streamlines; tube ``i`` is streamline ``ids[i]``.
+    radius : float
+        mm.
+    values : str, optional
+        A per-point value to take along, stored or computed from the geometry.
+
+    Returns
+    -------
+    SplineTubes
+        Smooth through the points.
+    """
+    from pvfiblets.plotting.picked import point_values
+    from pvfiblets.splines.build import as_spline_tubes
+
+    lines = fiblets.decompress(ids, dtype=np.float64)
+    numbers = None
+    if values is not None and (found := point_values(fiblets, ids, values)) is not None:
+        numbers = found[0]
+    per_point = {} if numbers is None or values is None else {values: numbers}
+    bare = Streamlines(lines.points, lines.offsets, per_point=per_point)
+    return as_spline_tubes(bare, radius=radius, scalars=values if per_point else None)
 
 
 def part_of_filter(filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> Any:
