@@ -92,14 +92,19 @@ def least(h: Array, w: Array, signs: Array, sigma: float, starts: Array) -> tupl
     offset, rows = h[:, 0], np.arange(len(h))
     h, w = np.ldexp(h * (0.0, 1.0, 1.0), -size[:, None]), np.ldexp(w, -size[:, None, None])
     starts = np.concatenate([starts, np.broadcast_to([-1.0, 1.0], (len(h), 2))], axis=1)
-    u = starts[rows, _value(h, w, signs, sigma, starts).argmin(axis=1)]
-    u, best = _polished(h, w, signs, sigma, u)
-    tried = _value(h, w, signs, sigma, np.broadcast_to(np.sin(_SPREAD), (len(h), len(_SPREAD))))
+    u, best = _polished(h, w, signs, sigma, starts[rows, _value(h, w, signs, sigma, starts).argmin(axis=1)])
+    spread = np.broadcast_to(np.sin(_SPREAD), (len(h), len(_SPREAD)))
+    tried = _value(h, w, signs, sigma, spread)
     pick = tried.argmin(axis=1)
     missed = np.flatnonzero(tried[rows, pick] < best - 1e-14)
+    second, there = _polished(h, w, signs, sigma, spread[rows, pick])
+    u, best = np.where(there < best - 1e-15, second, u), np.minimum(there, best)
+    # No root led there, so that Newton's method may not have either: the sections do, more slowly.
     if len(missed):
         near = _golden(h[missed], w[missed], signs, sigma, _SPREAD[pick[missed]])
-        u[missed], best[missed] = _polished(h[missed], w[missed], signs, sigma, near)
+        near, there = _polished(h[missed], w[missed], signs, sigma, near)
+        u[missed] = np.where(there < best[missed], near, u[missed])
+        best[missed] = np.minimum(there, best[missed])
     return offset + np.ldexp(best, size), u
 
 

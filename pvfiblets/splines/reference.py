@@ -128,13 +128,13 @@ def hits(
         row, entry, entry_t, leave, leave_t = _stretches(halves[part], origins[part], unit[part])
         row += first
         kind = np.where(entry >= low[row], ENTRY, np.where(leave > low[row], CAP if capped else EXIT, MISS))
-        l = np.choose(kind, [np.inf, entry, leave, low[row]])  # noqa: E741
+        place = np.choose(kind, [np.inf, entry, leave, low[row]])
         t = np.choose(kind, [np.nan, entry_t, leave_t, np.nan])
-        kept = np.flatnonzero((kind != MISS) & (l <= high[row]))
-        kept = kept[np.lexsort((l[kept], row[kept]))]
+        kept = np.flatnonzero((kind != MISS) & (place <= high[row]))
+        kept = kept[np.lexsort((place[kept], row[kept]))]
         kept = kept[np.diff(row[kept], prepend=-1) != 0]
         row = row[kept]
-        found.l[row], found.t[row], found.kind[row] = l[kept], t[kept], kind[kept]
+        found.l[row], found.t[row], found.kind[row] = place[kept], t[kept], kind[kept]
     cut = np.flatnonzero(found.kind == CAP)
     if len(cut):
         found.t[cut] = _deepest(halves[cut], origins[cut] + found.l[cut, None] * unit[cut])[1]
