@@ -287,7 +287,14 @@ def _deepest(halves: Array, points: Array) -> tuple[Array, Array]:
     size = np.frexp(np.abs(local).max(axis=(1, 2)))[1]
     curves = powers(np.ldexp(local, -size[:, None, None]))
     h, w = -curves[:, 0], curves[:, 1:]
-    found, u = least(h, w, np.ones(3), 1.0, critical(h, w, np.ones(3)))
+    found, u = np.full(len(h), np.inf), np.zeros(len(h))
+    for reach in (1.0, 2.0**-7, 2.0**-14):
+        # Roots that lie close together, as about a cusp, come apart only seen from near.
+        low, high = np.maximum(u - reach, -1.0), np.minimum(u + reach, 1.0)
+        near, part = moved(h, low, high), moved(w, low, high)
+        value, v = least(near, part, np.ones(3), 1.0, critical(near, part, np.ones(3)))
+        u = np.where(value < found, 0.5 * (high + low) + 0.5 * (high - low) * v, u)
+        found = np.minimum(value, found)
     return np.ldexp(found, size), np.clip(0.5 + 0.5 * u, 0.0, 1.0)
 
 

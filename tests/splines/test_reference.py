@@ -417,6 +417,13 @@ def test_surface_distance_as_sampled():
     np.testing.assert_allclose(found, [2, -0.5, 1, -1])
 
 
+def test_surface_distance_by_a_thin_cusp():
+    """Its roots lie so close together that they are told apart only from near."""
+    half = np.array([[0, -1, 1, 0], [1, 2, -2, 1e-3], [1, 2, -2, 0.0]])
+    found = hits(half, [1, -1, -2], [0, 3, 0])
+    assert surface_distance(half, [1, found.l[0] - 1, -2])[0] == pytest.approx(0.0, abs=1e-14)
+
+
 def test_what_rays_meet_lies_on_the_surface():
     rng = np.random.default_rng(12)
     halves = rng.normal(size=(500, 3, 4))
