@@ -63,6 +63,7 @@ FEATURES: dict[str, str] = {
     "SPLINE_ILLINOIS": "roots by regula falsi with halved weights",
     "SPLINE_ITP": "roots by interpolating, truncating and projecting",
     "SPLINE_NEWTON": "roots by guarded Newton steps",
+    "SPLINE_CHAIN": "spline tubes by the chain of derivatives: the paper's way, and what cuts and insides need",
     "SPLINE_HOLLOW": "spline tubes whose inside the eye may see",
     "SPLINE_VALUES": "numbers along spline tubes",
     "SPLINE_COLOURS": "colours along spline tubes",

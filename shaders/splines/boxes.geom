@@ -30,6 +30,7 @@ void emit_box(Segment s, int index, Box box, uint which) {
 void main() {
     int index = passed_segment[0];
     Segment s = segment_of(index);
+    if (!has_turn(s)) return;
     vec4 middle = junction(s);
     emit_box(s, index, box_of_half(s.a1, s.a2, middle), 1u);
     emit_box(s, index, box_of_half(middle, s.b2, s.b3), 2u);

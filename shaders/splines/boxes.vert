@@ -15,6 +15,7 @@ void main() {
     handed_ids = uvec2(0u);
     if (index >= spline_counts.y) return;
     Segment s = segment_of(index);
+    if (!has_turn(s)) return;
     vec4 middle = junction(s);
     bool second = (gl_VertexID & 8) != 0;
     Box box = second ? box_of_half(middle, s.b2, s.b3) : box_of_half(s.a1, s.a2, middle);

@@ -83,7 +83,7 @@ void main() {
     handed_ids = uvec2(0u);
     if (index >= spline_counts.y) return;
     Segment s = segment_of(index);
-    if (!corner_of(s, vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)), pixel)) return;
+    if (!has_turn(s) || !corner_of(s, vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)), pixel)) return;
     hand_over(s, index, 3u);
     gl_Position = vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0);
 }

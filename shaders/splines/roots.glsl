@@ -16,17 +16,17 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
     for (int i = 0; i < spline_counts.x; ++i) {
         float t = b - u_b * (b - a) / (u_b - u_a);
         if (!(t >= lo && t <= hi)) t = 0.5 * (a + b);
-        float u_t = u(order, t);
-        if ((u_t < 0.0) != (u_b < 0.0)) {
+        float u_t = u(order, t), step = abs(t - b);
+        bool crossed = (u_t < 0.0) != (u_b < 0.0);
+        if (crossed) {
             a = b;
             u_a = u_b;
         } else {
             u_a *= 0.5;
         }
-        float step = abs(t - b);
         b = t;
         u_b = u_t;
-        if (u_t == 0.0 || step < fine) break;
+        if (u_t == 0.0 || crossed && step < fine) break;      // a short step alone says nothing
     }
     return b;
 }
@@ -64,11 +64,10 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
         float u_t = u_with_step(order, t, step);
         if ((u_t < 0.0) == (u_lo < 0.0)) lo = t;
         else hi = t;
-        float next = t - step;
-        if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
-        step = abs(next - t);
-        t = next;
-        if (u_t == 0.0 || step < fine) break;
+        if (u_t == 0.0 || hi - lo < 2.5 * fine) break;
+        // Almost there: a little too far, so that the root is between the last two.
+        float next = t - step - (abs(step) < fine ? ((u_t < 0.0) == (u_lo < 0.0) ? -fine : fine) : 0.0);
+        t = next > lo && next < hi ? next : 0.5 * (lo + hi);
     }
     return t;
 }

@@ -19,7 +19,8 @@
 // The ray is looked at from `first` on. What it is inside of there is cut open (kind CUT) where a plane of the caller's made
 // `first`; where the near plane did, its exit shows (EXIT): one is inside and sees the wall.
 
-#include "splines/functions.glsl"
+// Needs splines/functions.glsl before it.
+
 #include "splines/roots.glsl"
 
 const int MISS = 0, ENTRY = 1, EXIT = 2, CUT = 3;
@@ -202,11 +203,4 @@ void meet_half(vec4 p0, vec4 p1, vec4 p2, vec3 o, vec3 d, vec3 y_axis, vec3 z_ax
         least_of_part(lo, hi, fine, l, t);
         part_seen(l, t, lo, hi, first, cut, fine, joined, best);
     }
-}
-
-// Two directions across a unit vector and each other (Duff et al. 2017, made stable at all of them).
-void across(vec3 d, out vec3 y_axis, out vec3 z_axis) {
-    float side = d.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (side + d.z), b = d.x * d.y * a;
-    y_axis = vec3(1.0 + side * d.x * d.x * a, side * b, -side * d.x);
-    z_axis = vec3(b, side + d.y * d.y * a, -d.y);
 }

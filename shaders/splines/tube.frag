@@ -14,7 +14,13 @@
 #include "splines/ray.glsl"
 #define HANDED flat in
 #include "splines/handed.glsl"
+#include "splines/across.glsl"
+#include "splines/functions.glsl"
+#if FEATURE_SPLINE_CHAIN
 #include "splines/solver.glsl"
+#else
+#include "splines/quick.glsl"
+#endif
 
 layout(location = 0) out uvec2 shown;
 
@@ -29,7 +35,7 @@ void main() {
     narrow(ray.depth.y, ray.rise.y, first, last);
     bool cut = false;
     uint by = 0u;
-#if FEATURE_CLIP_PLANES
+#if FEATURE_CLIP_PLANES && FEATURE_SPLINE_CHAIN
     for (int plane = 0; plane < clip_count(); ++plane) {
         vec3 normal = clip_planes[plane].xyz;
         float height = clip_height_of(plane, handed_centre.xyz) / handed_centre.w + dot(normal, ray.o), before = first;

@@ -36,9 +36,9 @@ class Solver:
 
 
 SOLVERS: dict[str, Solver] = {
-    "illinois": Solver("SPLINE_ILLINOIS", 16, "regula falsi that halves the weight of an end that stays"),
-    "itp": Solver("SPLINE_ITP", 24, "interpolate, truncate, project (Oliveira and Takahashi 2020)"),
-    "newton": Solver("SPLINE_NEWTON", 16, "Newton's steps inside the bracket, bisection where they leave it"),
+    "illinois": Solver("SPLINE_ILLINOIS", 48, "regula falsi that halves the weight of an end that stays"),
+    "itp": Solver("SPLINE_ITP", 32, "interpolate, truncate, project (Oliveira and Takahashi 2020)"),
+    "newton": Solver("SPLINE_NEWTON", 40, "Newton's steps inside the bracket, bisection where they leave it"),
     "bisection": Solver(None, 20, "the paper's: all derivatives, a fixed number of halvings"),
 }
 """How roots are found inside a bracket; all but the paper's leave the chain of derivatives out where f is convex."""

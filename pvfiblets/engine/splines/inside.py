@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ...splines.curves import controls
 from ..view import View
 
 if TYPE_CHECKING:
@@ -91,8 +92,23 @@ class Inside:
         low, high = near.min(axis=0), near.max(axis=0)
         margin = (1e-6 + min_width / min(view.size)) * float((high - low).max())
         box = np.array([low - margin, high + margin])
-        groups = np.flatnonzero(_overlap(self._groups, box))
-        return any(_overlap(self._boxes(int(group) * _GROUP, _GROUP), box).any() for group in groups)
+        reach = float(np.linalg.norm(high - low)) / 2.0 + margin
+        for group in np.flatnonzero(_overlap(self._groups, box)):
+            boxes = self._boxes(int(group) * _GROUP, _GROUP)
+            near_it = int(group) * _GROUP + np.flatnonzero(_overlap(boxes, box))
+            if len(near_it) and self._reaches(near_it, (low + high) / 2.0, reach):
+                return True
+        return False
+
+    def _reaches(self, segments: npt.NDArray[np.int64], centre: Array, reach: float) -> bool:
+        """Say whether one of some segments comes near to a point, by balls along its halves; rather yes than no."""
+        halves = controls(self._tubes, segments, self._middle)
+        t = np.linspace(0.0, 1.0, 33)[:, None, None, None]
+        balls = (1.0 - t) ** 2 * halves[:, :, 0] + 2.0 * t * (1.0 - t) * halves[:, :, 1] + t**2 * halves[:, :, 2]
+        # Between two balls of 32 steps the curve is at most half a step of its control polygon away from one.
+        steps = np.linalg.norm(np.diff(halves, axis=2), axis=-1).max(axis=2) / 32.0
+        gaps = np.linalg.norm(balls[..., :3] - centre, axis=-1) - balls[..., 3] - 2.0 * steps
+        return bool((gaps < reach).any())
 
 
 def _overlap(boxes: Array, box: Array) -> npt.NDArray[np.bool_]:

@@ -173,21 +173,22 @@ class SplineRenderer:
             iterations=self.iterations,
             n_segments=self._tubes.n_segments,
         )
-        solving = SOLVERS[self.solver].feature
+        hollow = self._inside.touched(view, self._min_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
-        features = [*common, *([solving] if solving else []), *(["SPLINE_DISCARD"] if self._discard else [])]
-        if self._inside.touched(view, self._min_width):
-            features.append("SPLINE_HOLLOW")
+        rounds = self._rounds(common, cut=cut, hollow=hollow)
+        features = set().union(*(chosen for chosen, _ in rounds))
         self._features = sorted({*features, *([reads] if reads else [])} - {"TUBES"})
         self._passes.begin()
         self._ctx.scissor = None
         nodes.bind()
         with self._passes.timed("tubes"):
             target.clear()
-            if self._tubes.n_segments:
-                program = silhouettes.program(features)
+            target.hits_buffer.use()
+            for chosen, sides in rounds if self._tubes.n_segments else ():
+                program = silhouettes.program(chosen)
                 self._prepare(program)
-                target.hits_buffer.use()
+                if "drawn_sides" in program:
+                    program["drawn_sides"] = sides
                 silhouettes.draw(program)
         with self._passes.timed("attributes"):
             program, array = self._programs.screen("splines/attributes.frag", [*common, *([reads] if reads else [])])
@@ -199,6 +200,20 @@ class SplineRenderer:
             self._ctx.enable_only(moderngl.NOTHING)
             array.render(moderngl.TRIANGLES, vertices=3)
         return target
+
+    def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
+        """Return features of each round, and which side of the planes it draws.
+
+        What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the chain.
+        """
+        solving = SOLVERS[self.solver].feature
+        common = [*common, *([solving] if solving else []), *(["SPLINE_DISCARD"] if self._discard else [])]
+        chained = [*common, "SPLINE_CHAIN"]
+        if hollow:
+            return [([*chained, "SPLINE_HOLLOW"], 3)]
+        if solving is None:
+            return [(chained, 3)]
+        return [(common, 1), (chained, 2)] if cut else [(common, 3)]
 
     def _prepare(self, program: moderngl.Program) -> None:
         for sampler, unit in UNITS.items():

@@ -1,0 +1,32 @@
+// The solver alone: where given rays meet given halves, one a pixel, for tests and for the error against run time.
+// pvfiblets/engine/splines/probe.py moves both to the half's own place and size, as splines/segment.glsl does.
+
+#version 430
+
+#include "splines/block.glsl"
+#include "splines/functions.glsl"
+#if FEATURE_SPLINE_CHAIN
+#include "splines/solver.glsl"
+#else
+#include "splines/quick.glsl"
+#endif
+#include "splines/across.glsl"
+
+uniform samplerBuffer cases;     // control points; o and `first`; d, and 1 where a plane made `first`
+uniform int row;                 // pixels of a row
+uniform int count;
+
+out vec4 met;                    // l, t, kind
+
+void main() {
+    int at = int(gl_FragCoord.y) * row + int(gl_FragCoord.x);
+    met = vec4(0.0);
+    if (at >= count) return;
+    vec4 p0 = texelFetch(cases, 5 * at), p1 = texelFetch(cases, 5 * at + 1), p2 = texelFetch(cases, 5 * at + 2);
+    vec4 o = texelFetch(cases, 5 * at + 3), d = texelFetch(cases, 5 * at + 4);
+    vec3 y_axis, z_axis;
+    across(d.xyz, y_axis, z_axis);
+    Found best = Found(3e38, 0.0, MISS);
+    meet_half(p0, p1, p2, o.xyz, d.xyz, y_axis, z_axis, o.w, d.w > 0.0, bvec2(false), best);
+    met = vec4(best.l, best.t, float(best.kind), 0.0);
+}
