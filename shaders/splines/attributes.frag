@@ -73,7 +73,7 @@ void main() {
     uint kind = hit.y >> 25u & 3u;
     vec4 p0 = second ? junction(s) : s.a1, p1 = second ? s.b2 : s.a2, p2 = second ? s.b3 : junction(s);
     Ray ray = ray_through(gl_FragCoord.xy, s.centre, s.size, seen_centre(s.centre));
-    float t = float(hit.y & 0xFFFFFFu) / 16777215.0;
+    float t = (float(hit.y & 0xFFFFFFu) + 0.5) / 16777216.0;
     vec3 normal = -ray.d;
 #if FEATURE_CLIP_PLANES
     if (kind == 3u) {

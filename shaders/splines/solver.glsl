@@ -41,7 +41,7 @@ bool others(float t, bool joined) {
     if (!joined) return false;
     vec3 q = q_a + t * (q_b + t * q_c), dq = q_b + 2.0 * t * q_c;
     float g1 = product(q, dq), s = sqrt(max(product(q, q), 0.0)), sloped = s * (h_b + 2.0 * t * h_c);
-    return abs(sloped - g1) > 0.01 * (abs(sloped) + abs(g1)) + 1e-5 * length(q) * length(dq);
+    return abs(sloped - g1) > 1e-3 * (abs(sloped) + abs(g1)) + 4e-6 * length(q) * length(dq);
 }
 
 // Least f of a part, by the chain of derivatives. Ends of the part that are ends of the half count too.

@@ -66,7 +66,7 @@ void main() {
     float z = depth_along(ray, best.l);
     if (!(z >= 0.0 && z <= 1.0)) discard;
     gl_FragDepth = min(z, 0.99999988);       // that of an empty pixel is 1
-    uint t = uint(clamp(best.t, 0.0, 1.0) * 16777215.0 + 0.5);
+    uint t = min(uint(clamp(best.t, 0.0, 1.0) * 16777216.0), 0xFFFFFFu);
     shown = uvec2(handed_ids.x, t | half_hit << 24u | uint(best.kind) << 25u | by << 27u);
 #endif
 }

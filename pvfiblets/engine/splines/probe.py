@@ -114,8 +114,7 @@ class SolverProbe:
         rows[:, 4, 3] = float(capped)
         found = self._run(rows)
         kind = found[:, 2].astype(np.int64)
-        l = np.where(kind > 0, found[:, 0] * size + along, np.nan)
-        return l, found[:, 1], kind
+        return np.where(kind > 0, found[:, 0] * size + along, np.nan), found[:, 1], kind
 
     def _run(self, rows: Array) -> Array:
         ctx, count = self._ctx, len(rows)

@@ -204,7 +204,8 @@ class SplineRenderer:
     def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
         """Return features of each round, and which side of the planes it draws.
 
-        What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the chain.
+        What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the
+        chain.
         """
         solving = SOLVERS[self.solver].feature
         common = [*common, *([solving] if solving else []), *(["SPLINE_DISCARD"] if self._discard else [])]
