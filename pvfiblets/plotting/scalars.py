@@ -24,6 +24,7 @@ GROUP = "group"
 BUILT_IN = (ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)
 UNITS = {
     "length": "length [mm]",
+    "radius": "radius [mm]",
     "curvature": "curvature [1/mm]",
     "arc_length": "arc length [mm]",
     "mean_curvature": "mean curvature [1/mm]",

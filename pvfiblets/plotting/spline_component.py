@@ -197,8 +197,8 @@ class SplineTubesComponent(Keeping[SplineTubeActor]):
 
         Few points make a smooth tube; with derivatives of your own it goes where you say:
 
-        >>> nodes, slopes = [(0, 0, 0), (10, 0, 0)], [(0, 20, 0), (0, 20, 0)]
-        >>> actor = pl.add_spline_tubes(np.array(nodes), tangents=slopes, radius=[1, 2], color="tomato")
+        >>> nodes, slopes = np.array([(0, 0, 0), (10, 0, 0)]), np.array([(0, 20, 0), (0, 20, 0)])
+        >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")
         """
         theme = self._plotter.theme
         options = SplineOptions(silhouettes, solver, iterations, min_width)  # before the slow part
