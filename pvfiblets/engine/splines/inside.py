@@ -92,23 +92,33 @@ class Inside:
         low, high = near.min(axis=0), near.max(axis=0)
         margin = (1e-6 + min_width / min(view.size)) * float((high - low).max())
         box = np.array([low - margin, high + margin])
-        reach = float(np.linalg.norm(high - low)) / 2.0 + margin
-        for group in np.flatnonzero(_overlap(self._groups, box)):
+        plane = view.model_view_projection[3] + view.model_view_projection[2]
+        plane = plane / (np.linalg.norm(plane[:3]) or 1.0)
+        for group in np.flatnonzero(_overlap(self._groups, box) & _crosses(self._groups, plane, margin)):
             boxes = self._boxes(int(group) * _GROUP, _GROUP)
-            near_it = int(group) * _GROUP + np.flatnonzero(_overlap(boxes, box))
-            if len(near_it) and self._reaches(near_it, (low + high) / 2.0, reach):
+            near_it = int(group) * _GROUP + np.flatnonzero(_overlap(boxes, box) & _crosses(boxes, plane, margin))
+            if len(near_it) and self._reaches(near_it, box, plane, margin):
                 return True
         return False
 
-    def _reaches(self, segments: npt.NDArray[np.int64], centre: Array, reach: float) -> bool:
-        """Say whether one of some segments comes near to a point, by balls along its halves; rather yes than no."""
+    def _reaches(self, segments: npt.NDArray[np.int64], box: Array, plane: Array, margin: float) -> bool:
+        """Say whether one of some segments reaches a plane within a box, by balls along it; rather yes than no."""
         halves = controls(self._tubes, segments, self._middle)
         t = np.linspace(0.0, 1.0, 33)[:, None, None, None]
         balls = (1.0 - t) ** 2 * halves[:, :, 0] + 2.0 * t * (1.0 - t) * halves[:, :, 1] + t**2 * halves[:, :, 2]
-        # Between two balls of 32 steps the curve is at most half a step of its control polygon away from one.
-        steps = np.linalg.norm(np.diff(halves, axis=2), axis=-1).max(axis=2) / 32.0
-        gaps = np.linalg.norm(balls[..., :3] - centre, axis=-1) - balls[..., 3] - 2.0 * steps
-        return bool((gaps < reach).any())
+        # Between two balls of 32 steps the tube is no farther from one than a step of its control polygon.
+        steps = np.linalg.norm(np.diff(halves, axis=2), axis=-1).max(axis=2) / 16.0
+        reach = balls[..., 3] + steps + margin
+        near = np.abs(balls[..., :3] @ plane[:3] + plane[3]) <= reach
+        beside = (balls[..., :3] >= box[0] - reach[..., None]) & (balls[..., :3] <= box[1] + reach[..., None])
+        return bool((near & beside.all(axis=-1)).any())
+
+
+def _crosses(boxes: Array, plane: Array, margin: float) -> npt.NDArray[np.bool_]:
+    """Say which of (n, 2, 3) boxes have a point of a plane, or nearly so."""
+    centre, half = boxes.mean(axis=1), (boxes[:, 1] - boxes[:, 0]) / 2.0
+    crosses: npt.NDArray[np.bool_] = np.abs(centre @ plane[:3] + plane[3]) <= half @ np.abs(plane[:3]) + margin
+    return crosses
 
 
 def _overlap(boxes: Array, box: Array) -> npt.NDArray[np.bool_]:
