@@ -118,8 +118,10 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
 
     @tubes.setter
     def tubes(self, tubes: SplineTubes) -> None:
-        found = self._find(tubes, self._choice)
+        tubes, choice = with_node_values(tubes, self._choice)
+        found = self._find(tubes, choice)
         self._draw(tubes)
+        self._choice = choice
         self._show(found)
 
     @property

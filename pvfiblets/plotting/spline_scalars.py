@@ -57,15 +57,15 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
 
 
 def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> tuple[SplineTubes, Any]:
-    """Store ``scalars`` with the tubes if they are an array with a row for each node.
+    """Store ``scalars`` with the tubes if they are an array with a row for each node, or computed at nodes.
 
     Parameters
     ----------
     tubes : SplineTubes
         Stay as they are.
     scalars : str or array or None
-        ``(n_nodes,)`` numbers, or ``(n_nodes, 3)`` or ``(n_nodes, 4)`` colours, uint8 or from 0 to 1. All else is
-        passed through.
+        ``(n_nodes,)`` numbers, or ``(n_nodes, 3)`` or ``(n_nodes, 4)`` colours, uint8 or from 0 to 1; ``"radius"`` or
+        ``"arc_length"``. All else is passed through.
     rgb : bool, default: True
         Whether floats of three or four columns are colours.
 
@@ -85,6 +85,12 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> t
     -----
     The slope at a node is the mean of those of the segments that meet there.
     """
+    if isinstance(scalars, str) and scalars not in tubes.values and scalars not in tubes.tube_values:
+        if scalars == RADIUS:
+            held = NodeValues(tubes.radius, tubes.radius_slopes)
+            tubes = replace(tubes, values={**tubes.values, RADIUS: held})
+        if scalars == ARC_LENGTH:
+            tubes = _with_arc_length(tubes)
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = np.asarray(scalars)
@@ -128,18 +134,13 @@ def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
     if not isinstance(scalars, str):
         return per_streamline(UNNAMED, scalars, tubes.n_tubes, whole="tube")
     if scalars in tubes.values:
-        return _at_nodes(scalars, tubes.values[scalars])
+        return _at_nodes(scalars, tubes)
     if scalars in tubes.tube_values:
         return per_streamline(scalars, tubes.tube_values[scalars], tubes.n_tubes, whole="tube")
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
-    if scalars == RADIUS:
-        return _numbers(RADIUS, tubes.radius[np.unique(tubes.segments)])
     if scalars == LENGTH:
         return per_streamline(LENGTH, tube_lengths(tubes), tubes.n_tubes, whole="tube")
-    if scalars == ARC_LENGTH:
-        longest = float(tube_lengths(tubes).max(initial=0.0)) or 1.0
-        return Scalars(ARC_LENGTH, "point_value", None, (0.0, longest), longest / 1e3)
     listed = [
         f"{title}: {', '.join(map(repr, names)) or 'none'}"
         for title, names in (("At nodes", tubes.values), ("per tube", tubes.tube_values), ("built in", BUILT_IN))
@@ -160,26 +161,63 @@ def tube_lengths(tubes: SplineTubes) -> np.ndarray:
     Returns
     -------
     numpy.ndarray
-        ``(n_tubes,)`` float64, mm, by Gauss's rule of three points for each half of a segment.
+        ``(n_tubes,)`` float64, mm.
     """
+    found: np.ndarray = np.bincount(tubes.tubes, _segment_lengths(tubes), tubes.n_tubes)
+    return found
+
+
+def _segment_lengths(tubes: SplineTubes) -> np.ndarray:
+    """Lengths of centre lines, mm, by Gauss's rule of three points for each half of a segment."""
     lengths = np.zeros(tubes.n_segments)
     for first in range(0, tubes.n_segments, _BLOCK):
         some = np.arange(first, min(first + _BLOCK, tubes.n_segments))
         halves = controls(tubes, some)[..., :3]
         for place, weight in _GAUSS:
             lengths[some] += weight * np.linalg.norm(derivative(halves, place), axis=-1).sum(axis=1)
-    found: np.ndarray = np.bincount(tubes.tubes, lengths, tubes.n_tubes)
-    return found
+    return lengths
 
 
-def _at_nodes(name: str, held: NodeValues) -> Scalars:
-    if held.is_colour:
-        return Scalars(name, "point_rgb", see_through=bool((held.values[:, 3] < 1.0).any()))
-    return _numbers(name, held.values)
+def _with_arc_length(tubes: SplineTubes) -> SplineTubes:
+    """Tubes whose nodes say how far they are along their tube, in the order of its segments, mm.
+
+    A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
+    """
+    order = np.argsort(tubes.tubes, kind="stable")
+    until = np.cumsum(_segment_lengths(tubes)[order])
+    begin = np.concatenate([np.zeros(1), until])[: len(until)]
+    first = np.searchsorted(tubes.tubes[order], tubes.tubes[order])
+    places = np.empty((tubes.n_segments, 2))
+    places[order] = np.stack([begin, until], axis=1) - begin[first][:, None]
+    ends, flat = tubes.segments.ravel(), places.ravel()
+    rank = np.lexsort((flat, ends))
+    new = np.ones(len(rank), bool)
+    new[1:] = (np.diff(ends[rank]) != 0) | (np.diff(flat[rank]) != 0.0)
+    along = np.zeros(tubes.n_nodes)
+    along[ends] = flat
+    if np.count_nonzero(new) > np.count_nonzero(np.bincount(ends, minlength=tubes.n_nodes)):
+        nodes, along = ends[rank[new]], flat[rank[new]]
+        segments = np.empty(len(rank), np.int64)
+        segments[rank] = np.cumsum(new) - 1
+        tubes = replace(
+            tubes,
+            points=tubes.points[nodes],
+            segments=segments.reshape(-1, 2),
+            radius=tubes.radius[nodes],
+            tangents=tubes.tangents[nodes],
+            radius_slopes=tubes.radius_slopes[nodes],
+            values={key: NodeValues(held.values[nodes], held.slopes[nodes]) for key, held in tubes.values.items()},
+        )
+    held = NodeValues(along, np.linalg.norm(tubes.tangents, axis=1))
+    return replace(tubes, values={**tubes.values, ARC_LENGTH: held})
 
 
-def _numbers(name: str, values: np.ndarray) -> Scalars:
-    """Numbers at nodes: their own range, whatever the curves between them do."""
+def _at_nodes(name: str, tubes: SplineTubes) -> Scalars:
+    """Numbers at nodes have the nodes' own range, whatever the curves between them do."""
+    values = tubes.values[name].values
+    if values.ndim == 2:
+        return Scalars(name, "point_rgb", see_through=bool((values[:, 3] < 1.0).any()))
+    values = values[np.bincount(tubes.segments.ravel(), minlength=tubes.n_nodes) > 0]
     finite = values[np.isfinite(values)]
     if not len(finite):
         return Scalars(name, "point_value")

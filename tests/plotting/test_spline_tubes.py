@@ -135,14 +135,37 @@ def test_lengths_and_places_along_tubes(plotter, front):
     assert actor.clim == pytest.approx((6 * np.pi, 12 * np.pi), rel=1e-4)
 
 
+def test_a_node_that_tubes_share_is_a_place_along_each(plotter, front):
+    """A fork, and a ring that ends at the node where it begins: each has its own zero."""
+    mesh = pv.PolyData(
+        np.array([(-15.0, 0, 0), (0, 0, 0), (12, 0, 0), (0, 0, 12), (-6, 0, -6), (-12, 0, -12), (-6, 0, -18)]),
+        lines=[3, 0, 1, 2, 2, 1, 3, 5, 4, 5, 6, 5, 4],
+    )
+    tangents = np.array([(15.0, 0, 0), (15, 0, 0), (12, 0, 0), (0, 0, 12), (-6, 0, 0), (0, 0, -6), (6, 0, 0)])
+    actor = plotter.add_spline_tubes(
+        mesh, tangents=tangents, radius=0.5, scalars="arc_length", cmap="gray", clim=(0, 27), lighting=False,
+        show_scalar_bar=False,
+    )  # fmt: skip
+    along, segments = actor.tubes.values["arc_length"].values, actor.tubes.segments
+    lengths = tube_lengths(actor.tubes)
+    assert lengths[0] == pytest.approx(27.0)
+    ends = along[segments]
+    assert ends[:3] == pytest.approx(np.array([(0, 15), (15, 27), (0, lengths[1])]), rel=1e-6)
+    assert (ends[3, 0], ends[-1, 1]) == pytest.approx((0.0, lengths[2]))
+    assert actor.tubes.points[segments[:3]].tolist() == mesh.points[[[0, 1], [1, 2], [1, 3]]].tolist()
+    picture = front()
+    assert at(picture, 0.0, 11.5)[0] == pytest.approx(255 * (lengths[1] - 0.4) / 27, abs=3)
+    assert at(picture, 6.0, 0.0)[0] == pytest.approx(255 * 21.1 / 27, abs=3)
+
+
 def test_the_radius_colours(plotter, bars, front):
     actor = plotter.add_spline_tubes(
         bars[1], radius=[1.0, 2.0, 3.0, 4.0, 5.0], scalars="radius", cmap="gray", lighting=False, show_scalar_bar=False
     )
     assert actor.clim == (1.0, 5.0)
     picture = front()
-    for x in (-10.0, 0.0, 10.0):  # the ball that shows lies behind by r r', its radius less by r r'^2
-        ball = (3.0 + (x + 0.1) * 4 / 30) / (1 + (4 / 30) ** 2)
+    for x in (-10.0, 0.0, 10.0):  # the ball of radius r that reaches farthest there lies r r' ahead
+        ball = (3.0 + (x + 0.1) * 4 / 30) / (1 - (4 / 30) ** 2)
         assert at(picture, x, 0.0)[0] == pytest.approx(255 * (ball - 1) / 4, abs=4)
 
 
