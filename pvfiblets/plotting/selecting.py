@@ -150,7 +150,9 @@ class Selecting(SelectionMeasures):
     def selection(self, ids: Any) -> None:
         self.select(ids)
 
-    def select(self, ids: Any, *, mode: str = "replace") -> None:
+    def select(
+        self, ids: Any, *, mode: str = "replace", as_tubes: bool = _AS_BEFORE, radius: float = _AS_BEFORE
+    ) -> None:
         """Select streamlines.
 
         Parameters
@@ -160,13 +162,17 @@ class Selecting(SelectionMeasures):
             or what was picked.
         mode : {"replace", "add", "remove", "toggle"}
             What becomes of the present selection.
+        as_tubes : bool, optional
+            Whether what is selected is drawn as tubes from now on, see :meth:`selection_style`.
+        radius : float, optional
+            Of the tubes, mm.
 
         Raises
         ------
         IndexError
             If an id is out of range or a mask has the wrong length.
         ValueError
-            If there is no such mode.
+            If there is no such mode or radius.
         """
         from pvfiblets.codec.decompress import select_streamlines
 
@@ -180,6 +186,8 @@ class Selecting(SelectionMeasures):
             chosen = {"add": before | chosen, "remove": before & ~chosen, "toggle": before ^ chosen}[mode]
         elif mode == "remove":
             chosen[:] = False
+        if as_tubes is not _AS_BEFORE or radius is not _AS_BEFORE:
+            self.selection_style(as_tubes=as_tubes, radius=radius)
         self._select(chosen)
 
     def deselect(self, ids: Any = None) -> None:
@@ -238,7 +246,9 @@ class Selecting(SelectionMeasures):
         dim : float
             How much of the colours of all others gives way to the background, 0 to 1.
         as_tubes : bool
-            Draw them as tubes.
+            Draw them as tubes that bend smoothly through their points. (Straight from point to
+            point where the actor is cut by a region, filtered point by point or coloured by a
+            volume, and where more than 400,000 points are selected.)
         radius : float
             Of the tubes, mm.
         silhouette : bool or color-like

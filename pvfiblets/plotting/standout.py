@@ -104,10 +104,7 @@ class Standout:
         """What picking sees: pixels that show these streamlines show the owner's."""
         if self._plan is None:
             return Layer(self.mapper, self.ids)
-        # Of a line of n points the segments begin at its points 0 to n - 2.
-        tubes = self.mapper.tubes.tubes
-        first = np.searchsorted(tubes, tubes)
-        return Layer(self.mapper, self._plan.ids, np.arange(len(tubes)) - first)
+        return Layer(self.mapper, self._plan.ids, self._starts)
 
     def enter(self, renderer: Any) -> None:
         """Be drawn by a renderer that draws the owner."""
@@ -193,7 +190,10 @@ class Standout:
     def _make(self, plan: _Splines | None) -> Any:
         """Return the mapper that a plan asks for."""
         if plan is not None:
-            return SplineMapper(spline_tubes_of(self._fiblets, plan.ids, float(self._radius or 0.0), plan.values))
+            tubes = spline_tubes_of(self._fiblets, plan.ids, float(self._radius or 0.0), plan.values)
+            # Of a line of n points the segments begin at its points 0 to n - 2.
+            self._starts = np.arange(tubes.n_segments) - np.searchsorted(tubes.tubes, tubes.tubes)
+            return SplineMapper(tubes)
         mapper = FibletMapper(self._fiblets.extract(self.ids), line_width=self._width)
         if self._radius is not None:
             mapper.set_extra("tubes", Tubes(self._radius))

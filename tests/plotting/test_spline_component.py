@@ -221,6 +221,30 @@ def test_explain_names_what_is_active(plotter):
     assert report["gpu_bytes"] == sum(row["bytes"] for row in report["buffers"])
 
 
+OLDER = """
+import numpy as np
+import pyvista as pv
+plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+tubes = plotter.add_spline_tubes([np.array([(0, 0, 0), (5, 0, 3), (10, 0, 0)])], radius=1.0, scalars="arc_length")
+lines = plotter.add_fiblets([np.array([(0, 0, 5), (5, 0, 8), (10, 0, 5)])])
+lines.select([0], as_tubes=True, radius=0.5)
+plotter.show(auto_close=False)
+for actor in (tubes, lines):
+    actor.raise_pending()
+plotter.close()
+print("drawn")
+"""
+
+
+@pytest.mark.parametrize("version", ["4.1", "3.3"])
+def test_older_opengl_draws_tubes_too(older_opengl, version):
+    """A process of its own: Mesa reads how old it has to be when it is loaded."""
+    done = subprocess.run(
+        [sys.executable, "-c", OLDER], capture_output=True, text=True, check=False, env=older_opengl(version)
+    )
+    assert done.stdout.split()[-1:] == ["drawn"], done.stderr[-2000:]
+
+
 def test_pictures_with_peeling_and_supersampling_have_the_tubes(plotter):
     add(plotter, color="white", lighting=False)
     plotter.view_xz()

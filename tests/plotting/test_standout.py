@@ -52,7 +52,11 @@ def drawn_by(actor):
 
 def test_tubes_follow_what_their_actor_does_by_whichever_way_can(scene):
     actor, front = scene
-    actor.select([0, 2])
+    actor.selection_style(as_tubes=False)
+    with pytest.raises(ValueError, match="radius is -1"):
+        actor.select([1], as_tubes=True, radius=-1)
+    assert len(actor.selection) == 0
+    actor.select([0, 2], as_tubes=True, radius=RADIUS)
     first = front()
     assert drawn_by(actor) is SplineMapper
     assert [rows(first, z) for z in (-10, 0, 10)] == [16, 1, 16]
