@@ -38,6 +38,8 @@ class TessellatedTubes:
         Of the picture, pixels.
     discard : bool, default: False
         Draw nothing: fragments are discarded first thing, to time what comes before them.
+    cull : bool, default: False
+        Leave out back faces: faster, but one looks through the tubes' open ends.
     tolerance : float, optional
         Pixels that a polygon may stray from its curve as long as the levels go that far.
 
@@ -50,9 +52,16 @@ class TessellatedTubes:
     """
 
     def __init__(
-        self, ctx: Any, tubes: Any, size: tuple[int, int], *, discard: bool = False, tolerance: float = TOLERANCE
+        self,
+        ctx: Any,
+        tubes: Any,
+        size: tuple[int, int],
+        *,
+        discard: bool = False,
+        cull: bool = False,
+        tolerance: float = TOLERANCE,
     ) -> None:
-        self._ctx, self._size = ctx, tuple(size)
+        self._ctx, self._size, self._cull = ctx, tuple(size), cull
         self._scaled = bool(tubes.scaled)
         self.origin = tubes.points.mean(axis=0) if tubes.n_nodes else np.zeros(3)
         nodes = np.empty((tubes.n_nodes, 11), np.float32)
@@ -108,7 +117,7 @@ class TessellatedTubes:
             if name in self._program:  # compilers drop what a stage does not use
                 self._program[name].write(np.asarray(value, np.int32 if name == "scaled" else np.float32).tobytes())
         self._ctx.patch_vertices = 2
-        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        self._ctx.enable_only(moderngl.DEPTH_TEST | (moderngl.CULL_FACE if self._cull else 0))
         self._target.use()
         self._target.clear(depth=1.0)
         if count:

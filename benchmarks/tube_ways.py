@@ -6,12 +6,15 @@ one lamp at the eye. What differs is said with each way in :data:`ABOUT`.
 
 from __future__ import annotations
 
+import functools
 import re
 import time
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from orbit import context
+from tessellated import TessellatedTubes
 from tube_reference import Camera, covered, fine_coverage, orbit
 
 ABOUT = {
@@ -20,24 +23,19 @@ ABOUT = {
     "tube-SIDESxN": "the same with every segment of the spline sampled N times",
     "tessellated": "hardware tessellation on a bare context: 6 to 30 sides and up to 5 additional samples along a "
     "segment, by size on the screen; open ends",
+    "tessellated-culled": "the same without back faces: faster, but one looks through the open ends",
     "engine": "this program's ray casting on a bare context: a G-buffer, not lit",
+    "engine-exact": "the same with tubes thinner than a pixel left as thin as they are",
     "splines": "`plotter.add_spline_tubes`: the same in a PyVista scene, lit by VTK",
 }
 MESHES = ("lines-as-tubes", "tube-6", "tube-12", "tube-30", "tube-12x4", "tube-30x4")
-DEFAULT = (*MESHES, "tessellated", "engine", "splines")
+DEFAULT = (*MESHES, "tessellated", "tessellated-culled", "engine", "engine-exact", "splines")
 PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")  # grow with the picture, not with the data
-_TUBE = re.compile(r"tube-(\d+)(?:x(\d+))?")
+TUBE = re.compile(r"tube-(\d+)(?:x(\d+))?")
 
 
 class TooMuchError(Exception):
     """A way needs more than it may take, or something that is not there."""
-
-
-def known(way: str) -> str:
-    """Return a way's name, or raise ValueError: for the command line."""
-    if way not in ("lines-as-tubes", "tessellated", "engine", "splines") and not _TUBE.fullmatch(way):
-        raise ValueError(f"unknown way {way!r}, expected one of {', '.join(ABOUT)}")
-    return way
 
 
 def make_set(name: str, seed: int = 0) -> Any:
@@ -105,29 +103,23 @@ def run(way: str, tubes: Any, options: Any) -> list[dict[str, Any]]:
     TooMuchError
         If the way would need more memory than ``options.limit`` allows, or is not there.
     """
-    drawn = {"tessellated": _Tessellated, "engine": _Engine, "splines": _Splines}.get(way, _Mesh)(way, tubes, options)
-    rows = []
+    kinds = {"tessellated": _Tessellated, "engine": _Engine, "splines": _Splines}
+    drawn = kinds.get(way.split("-")[0], _Mesh)(way, tubes, options)
+    rows: list[dict[str, Any]] = []
     try:
+        empty = drawn.empty()
         for view in options.views:
             cameras = orbit(tubes, view, options.frames, tuple(options.size))
-            times = _times(drawn.draw, cameras, options.seconds)
-            row = {"view": view, **_spread(times, "ms"), "frames": len(times), **drawn.facts(cameras)}
+            draws = {"ms": drawn.draw} if empty is None else {"ms": drawn.draw, "empty_ms": empty.draw}
+            times = _times(draws, cameras, options.seconds)
+            row = {"view": view, "frames": len(times["ms"]), **drawn.facts(cameras)}
+            for name, seconds in times.items():
+                low, row[name], high = (1e3 * float(np.percentile(seconds, q)) for q in (10, 50, 90))
+                row[f"{name}_spread"] = [low, high]
             drawn.draw(cameras[0])
-            row["covered"] = drawn.covered()
-            rows.append(row)
+            rows.append({**row, "covered": drawn.covered()})
     finally:
         drawn.close()
-    if not hasattr(drawn, "empty"):
-        return rows
-    empty = drawn.empty()
-    if isinstance(empty, str):
-        return [{**row, "no_empty": empty} for row in rows]
-    try:
-        for row in rows:
-            cameras = orbit(tubes, row["view"], options.frames, tuple(options.size))
-            row |= _spread(_times(empty.draw, cameras, options.seconds), "empty_ms")
-    finally:
-        empty.close()
     return rows
 
 
@@ -140,24 +132,24 @@ def reference(tubes: Any, options: Any) -> dict[str, Any]:
     return found
 
 
-def _times(draw: Any, cameras: list[Camera], seconds: float) -> list[float]:
-    """Return the seconds of each frame, without two to warm up; fewer than all of them where they take too long."""
-    times: list[float] = []
-    for camera in (cameras[-2 % len(cameras)], cameras[-1]):
-        draw(camera)
+def _times(draws: dict[str, Any], cameras: list[Camera], seconds: float) -> dict[str, list[float]]:
+    """Return the seconds of each frame, without two to warm up; fewer than all of them where they take too long.
+
+    Ways that are compared with each other take turns, so that whatever else the machine does hits both.
+    """
+    times: dict[str, list[float]] = {name: [] for name in draws}
     began = time.perf_counter()
-    for camera in cameras:
-        start = time.perf_counter()
-        draw(camera)
-        times.append(time.perf_counter() - start)
-        if len(times) >= 3 and time.perf_counter() - began > seconds:
+    for frame, camera in enumerate([cameras[-2 % len(cameras)], cameras[-1], *cameras]):
+        if frame == 2:
+            began = time.perf_counter()
+        elif frame > 4 and time.perf_counter() - began > seconds:
             break
+        for name, draw in draws.items():
+            start = time.perf_counter()
+            draw(camera)
+            if frame >= 2:
+                times[name].append(time.perf_counter() - start)
     return times
-
-
-def _spread(times: list[float], name: str) -> dict[str, Any]:
-    low, middle, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
-    return {name: middle, f"{name}_spread": [low, high]}
 
 
 def _check(needed: float, options: Any) -> None:
@@ -182,6 +174,9 @@ class _Plotted:
         self.plotter.render_window.WaitForCompletion()
         self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
 
+    def empty(self) -> None:
+        """VTK has no way to leave out the fragments alone."""
+
     def covered(self) -> np.ndarray:
         return covered(self.plotter)
 
@@ -202,16 +197,13 @@ class _Mesh(_Plotted):
             self.bytes, self.primitives = 12 * mesh.n_points + 8 * segments, 2 * segments
             self.actor = self.plotter.add_mesh(mesh, color="steelblue", render_lines_as_tubes=True)
         else:
-            sides, samples = (int(n or 1) for n in _TUBE.fullmatch(way).groups())
+            sides, samples = (int(n or 1) for n in TUBE.fullmatch(way).groups())
             points = (tubes.n_segments * samples + tubes.n_tubes) * sides
-            _check(points * 2.5 * (24 + 24), options)  # once as made, once as VTK keeps it for drawing, and indices
-            mesh = polylines(tubes, samples)
-            lines = mesh.n_lines
-            mesh = mesh.tube(scalars="radius", absolute=True, n_sides=sides)
-            cells = np.diff(mesh.GetStrips().GetOffsetsArray()) if mesh.n_strips else np.zeros(0, int)
-            self.primitives = int((np.asarray(cells) - 2).sum()) + mesh.n_faces_strict
-            self.bytes = 24 * mesh.n_points + 12 * self.primitives
-            self.note = "" if mesh.n_strips else f"none of {lines} lines drawn"
+            _check(0.7e9 + 115.0 * points, options)  # measured: an empty window, and what VTK holds of each corner
+            mesh = polylines(tubes, samples).tube(scalars="radius", absolute=True, n_sides=sides)
+            strips = np.asarray(mesh.GetStrips().GetOffsetsArray())
+            self.primitives = int((np.diff(strips) - 2).sum())
+            self.bytes = 24 * mesh.n_points + 12 * self.primitives  # positions and normals in float32, and indices
             self.actor = self.plotter.add_mesh(mesh, color="steelblue", show_scalar_bar=False)
             self.actor.prop.interpolation = "Phong"
         self.actor.mapper.scalar_visibility = False
@@ -235,8 +227,7 @@ class _Splines(_Plotted):
         if not hasattr(self.plotter, "add_spline_tubes"):
             self.plotter.close()
             raise TooMuchError("there is no plotter.add_spline_tubes here")
-        choices = {name: value for name in ("silhouettes", "solver") if (value := getattr(options, name))}
-        self.actor = self.plotter.add_spline_tubes(tubes, color="steelblue", **choices)
+        self.actor = self.plotter.add_spline_tubes(tubes, color="steelblue", **_choices(options))
         self.plotter.show(auto_close=False)
 
     def facts(self, _: list[Camera]) -> dict[str, Any]:
@@ -246,21 +237,28 @@ class _Splines(_Plotted):
 class _Engine:
     """Spline tubes by this program without VTK."""
 
-    def __init__(self, _: str, tubes: Any, options: Any, **more: Any) -> None:
+    def __init__(self, way: str, tubes: Any, options: Any) -> None:
         try:
             from pvfiblets.engine.splines import SplineRenderer
         except ImportError as error:
             raise TooMuchError(f"the engine draws no spline tubes: {error}") from error
-        choices = {name: value for name in ("silhouettes", "solver") if (value := getattr(options, name))}
-        self.given = tubes, options
         self.ctx = context()
-        self.renderer = SplineRenderer(self.ctx, tubes, **choices, **more)
-        self.gbuffer: Any = None
+        self.made: list[Any] = []
+        exact = {"min_width": 0.0} if way == "engine-exact" else {}
+        self.make = functools.partial(SplineRenderer, self.ctx, tubes, **{**_choices(options), **exact})
+        self.renderer = self._add()
+
+    def _add(self, **more: Any) -> Any:
+        self.made.append(self.make(**more))
+        return self.made[-1]
 
     def draw(self, camera: Camera) -> None:
+        self._draw(self.renderer, camera)
+
+    def _draw(self, renderer: Any, camera: Camera) -> None:
         from pvfiblets.engine import Style, View
 
-        self.gbuffer = self.renderer.render(View(camera.size, camera.model_view_projection), Style())
+        self.gbuffer = renderer.render(View(camera.size, camera.model_view_projection), Style())
         self.ctx.finish()
 
     def facts(self, _: list[Camera]) -> dict[str, Any]:
@@ -271,30 +269,37 @@ class _Engine:
         keys = np.frombuffer(self.gbuffer.depth.read(), np.uint32).reshape(height, width)
         return keys != 0xFFFFFFFF
 
-    def empty(self) -> _Engine | str:
-        """Return the same that discards every fragment first thing, or why there is none."""
-        try:
-            return _Engine("engine", *self.given, discard=True)
-        except TypeError as error:
-            return f"not to be had: {error}"
+    def empty(self) -> SimpleNamespace:
+        """Return what draws the same and discards every fragment first thing."""
+        renderer = self._add(discard=True)
+        return SimpleNamespace(draw=lambda camera: self._draw(renderer, camera))
 
     def close(self) -> None:
-        self.renderer.release()
+        for renderer in self.made:
+            renderer.release()
         self.ctx.release()
 
 
 class _Tessellated:
     """The paper's rival."""
 
-    def __init__(self, _: str, tubes: Any, options: Any, **more: Any) -> None:
-        from tessellated import TessellatedTubes
-
-        self.given = tubes, options
+    def __init__(self, way: str, tubes: Any, options: Any) -> None:
         self.ctx = context()
-        self.tubes = TessellatedTubes(self.ctx, tubes, tuple(options.size), **more)
+        self.made: list[TessellatedTubes] = []
+        self.make = functools.partial(
+            TessellatedTubes, self.ctx, tubes, tuple(options.size), cull=way == "tessellated-culled"
+        )
+        self.tubes = self._add()
+
+    def _add(self, **more: Any) -> TessellatedTubes:
+        self.made.append(self.make(**more))
+        return self.made[-1]
 
     def draw(self, camera: Camera) -> None:
-        self.tubes.render(camera.model_view_projection)
+        self._draw(self.tubes, camera)
+
+    def _draw(self, tubes: TessellatedTubes, camera: Camera) -> None:
+        tubes.render(camera.model_view_projection)
         self.ctx.finish()
 
     def facts(self, cameras: list[Camera]) -> dict[str, Any]:
@@ -308,12 +313,22 @@ class _Tessellated:
     def covered(self) -> np.ndarray:
         return self.tubes.covered()
 
-    def empty(self) -> _Tessellated:
-        return _Tessellated("tessellated", *self.given, discard=True)
+    def empty(self) -> SimpleNamespace:
+        """Return what draws the same and discards every fragment first thing."""
+        tubes = self._add(discard=True)
+        return SimpleNamespace(draw=lambda camera: self._draw(tubes, camera))
 
     def close(self) -> None:
-        self.tubes.release()
+        for tubes in self.made:
+            tubes.release()
         self.ctx.release()
+
+
+def _choices(options: Any) -> dict[str, Any]:
+    """Return this program's settings that the command line asks for."""
+    return {
+        name: value for name in ("silhouettes", "solver", "min_width") if (value := getattr(options, name)) is not None
+    }
 
 
 def _told(report: dict[str, Any]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from orbit import add_places, card_slug, context, machine, write
 from tube_reference import VIEWS, Reference
-from tube_ways import ABOUT, DEFAULT, TooMuchError, known, make_set, reference, run
+from tube_ways import ABOUT, DEFAULT, TUBE, TooMuchError, make_set, reference, run
 
 SETS = ("fibers", "hotroom", "bundle", "brain", "furball")
 ERRORS = (0.2, 0.1, 0.05, 0.02)  # pixels, for which the least memory is looked up
@@ -35,7 +35,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sets", nargs="+", default=list(SETS), help="or helices-N, N small tubes")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--ways", nargs="+", type=known, default=list(DEFAULT), metavar="WAY")
+    parser.add_argument("--ways", nargs="+", type=known_way, default=list(DEFAULT), metavar="WAY")
     parser.add_argument("--views", nargs="+", choices=list(VIEWS), default=list(VIEWS))
     parser.add_argument("--frames", type=int, default=24, help="in one orbit")
     parser.add_argument("--seconds", type=float, default=20.0, help="of drawing per orbit at most, once 3 frames count")
@@ -44,6 +44,7 @@ def main() -> None:
     parser.add_argument("--supersampling", type=int, default=4, help="of the reference picture; 0 for no reference")
     parser.add_argument("--silhouettes", help="of this program; its own choice if left out")
     parser.add_argument("--solver", help="of this program; its own choice if left out")
+    parser.add_argument("--min-width", type=float, help="pixels that this program makes thinner tubes; 1 if left out")
     parser.add_argument("--run", nargs=3, metavar=("WAY", "SET", "FILE"), help=argparse.SUPPRESS)
     add_places(parser)
     options = parser.parse_args()
@@ -61,9 +62,17 @@ def main() -> None:
         "limit": list(options.limit),
         "silhouettes": options.silhouettes or "auto",
         "solver": options.solver or "auto",
+        "min_width": 1.0 if options.min_width is None else options.min_width,
         "sets": {row["set"]: row["about_set"] for row in results if "about_set" in row},
     }
     write(options.output / f"tubes-{card_slug(ctx)}", about, results, table(about, results), plot)
+
+
+def known_way(name: str) -> str:
+    """Return the name of a way if it is one."""
+    if (name not in ABOUT or name.startswith("tube-")) and not TUBE.fullmatch(name):
+        raise argparse.ArgumentTypeError(f"unknown way {name!r}, expected one of {', '.join(ABOUT)}")
+    return name
 
 
 def child(way: str, name: str, path: str, options: Any) -> dict[str, Any]:
@@ -120,8 +129,9 @@ def started(way: str, name: str, path: Path, options: Any) -> dict[str, Any]:
         command += [f"--{key}", str(getattr(options, key))]
     for key in ("views", "size", "limit"):
         command += [f"--{key}", *map(str, getattr(options, key))]
-    for key in ("silhouettes", "solver"):
-        command += [f"--{key}", getattr(options, key)] if getattr(options, key) else []
+    for key in ("silhouettes", "solver", "min_width"):
+        if (value := getattr(options, key)) is not None:
+            command += ["--" + key.replace("_", "-"), str(value)]
     environment = dict(os.environ)
     if sys.platform.startswith("linux") and not environment.get("DISPLAY"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -148,7 +158,8 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         "",
         f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}; {width}×{height}, 45° from "
         f"top to bottom, {about['frames']} frames around each set, each way in its own process, no anti-aliasing. "
-        f"This program: silhouettes `{about['silhouettes']}`, solver `{about['solver']}`.",
+        f"This program: silhouettes `{about['silhouettes']}`, solver `{about['solver']}`; tubes thinner than "
+        f"{about['min_width']:g} pixels are drawn as wide as that, which counts as wrong here.",
         "",
         "*ms*: median of the orbit's frames, 10th to 90th percentile in brackets; *empty*: with every fragment "
         "discarded first thing; *triangles*: submitted, the mean of an orbit where they depend on the view; *bytes*: "
@@ -238,7 +249,7 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
             axis.set_title(f"{name}, {view}", size="small")
             axis.set_xlabel("ms per frame", size="small")
     axes[0][0].invert_yaxis()
-    figure.suptitle(f"{about['card']}; hatched: without fragment work")
+    figure.suptitle(f"{about['card'].split('(')[0].strip()}; hatched: without fragment work", size="medium")
     figure.savefig(path, dpi=110)
     plt.close(figure)
 
