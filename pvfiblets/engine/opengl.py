@@ -267,7 +267,7 @@ class OpenGL:
         self.function("glTexBuffer")(_TEXTURE_BUFFER, enum, buffer.glo)
         return texture
 
-    def set_sampler(self, program: moderngl.Program, name: str, unit: int) -> None:
+    def set_sampler(self, program: moderngl.Program | moderngl.ComputeShader, name: str, unit: int) -> None:
         """Tell a program from which texture unit a sampler of its reads, once and for all draws.
 
         moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.

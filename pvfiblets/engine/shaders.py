@@ -65,6 +65,7 @@ FEATURES: dict[str, str] = {
     "SPLINE_NEWTON": "roots by guarded Newton steps",
     "SPLINE_CHAIN": "spline tubes by the chain of derivatives: the paper's way, and what cuts and insides need",
     "SPLINE_HOLLOW": "spline tubes whose inside the eye may see",
+    "SPLINE_LISTED": "spline tubes that are not hidden",
     "SPLINE_VALUES": "numbers along spline tubes",
     "SPLINE_COLOURS": "colours along spline tubes",
     "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",

@@ -64,7 +64,11 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
         float u_t = u_with_step(order, t, step);
         if ((u_t < 0.0) == (u_lo < 0.0)) lo = t;
         else hi = t;
-        if (u_t == 0.0 || hi - lo < 2.5 * fine) break;
+        if (u_t == 0.0) break;
+        if (hi - lo < 2.5 * fine) {
+            float last = t - step;                            // costs nothing, and takes back what went too far
+            return last >= lo && last <= hi ? last : t;
+        }
         // Almost there: a little too far, so that the root is between the last two.
         float next = t - step - (abs(step) < fine ? ((u_t < 0.0) == (u_lo < 0.0) ? -fine : fine) : 0.0);
         t = next > lo && next < hi ? next : 0.5 * (lo + hi);

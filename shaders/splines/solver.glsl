@@ -10,7 +10,8 @@
 //   1. g has the five Bezier coefficients <q_i, q_j>: with none positive the ray misses. Most fragments end here.
 //   2. Where g is concave, and f convex for certain, f has one minimum: the root of F1 in all of 0..1, or an end. One search.
 //   3. Else, and always with the paper's own bisection: roots of g'' by formula; between these, of g'; between these, of g:
-//      the parts. In every part roots of f''' (one at most, as the paper found), then f'', then f': the minima.
+//      the parts. In every part roots of f''', then f'', then f': the minima. The paper found one root of f''' at most; tubes
+//      whose radius changes as fast as their length have up to three, so that it is looked for in both halves of a part.
 // All that can be wrong with a t is that it is not the best: every t with g >= 0 is a point of the tube.
 //
 // Ends. A sphere closes each end of a half. Where another one goes on, an entry or exit there that is not also one of f' = 0
@@ -46,17 +47,21 @@ bool others(float t, bool joined) {
 
 // Least f of a part, by the chain of derivatives. Ends of the part that are ends of the half count too.
 void least_of_part(float lo, float hi, float fine, out float l, out float t) {
-    float cuts[4];
+    float cuts[5], stops[3] = float[3](lo, 0.5 * (lo + hi), hi);
     cuts[0] = lo;
     int n = 1;
-    float at_lo = u(4, lo), at_hi = u(4, hi);
-    if ((at_lo < 0.0) != (at_hi < 0.0)) cuts[n++] = root(4, lo, hi, at_lo, at_hi, fine);
-    cuts[n] = hi;
-    float next[4];
+    float at_lo = u(4, lo), at_hi;
+    for (int i = 0; i < 2; ++i) {
+        at_hi = u(4, stops[i + 1]);
+        if ((at_lo < 0.0) != (at_hi < 0.0)) cuts[n++] = root(4, stops[i], stops[i + 1], at_lo, at_hi, fine);
+        cuts[n++] = stops[i + 1];
+        at_lo = at_hi;
+    }
+    float next[6];
     next[0] = lo;
     int m = 1;
     at_lo = u(3, lo);
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < n - 1; ++i) {
         at_hi = u(3, cuts[i + 1]);
         if ((at_lo < 0.0) != (at_hi < 0.0)) next[m++] = root(3, cuts[i], cuts[i + 1], at_lo, at_hi, fine);
         at_lo = at_hi;
@@ -69,6 +74,10 @@ void least_of_part(float lo, float hi, float fine, out float l, out float t) {
         l = f_at(hi);
     }
     at_lo = u(2, lo);
+    if (at_lo >= 0.0 && f_at(lo) < l) {              // by rounding the minimum of a narrow part may lie before it
+        t = lo;
+        l = f_at(lo);
+    }
     for (int i = 0; i < m; ++i) {
         at_hi = u(2, next[i + 1]);
         if (at_lo < 0.0 && at_hi >= 0.0) {
@@ -197,9 +206,10 @@ void meet_half(vec4 p0, vec4 p1, vec4 p2, vec3 o, vec3 d, vec3 y_axis, vec3 z_ax
 #endif
     float cuts[6];
     int pieces = pieces_of_g(fine, cuts);
-    for (int i = 0; i < pieces; ++i) {
+    bool inside = u(0, 0.0) >= 0.0;          // g changes its sign from piece to piece
+    for (int i = 0; i < pieces; ++i, inside = !inside) {
+        if (!inside) continue;
         float lo = cuts[i], hi = cuts[i + 1];
-        if (u(0, 0.5 * (lo + hi)) <= 0.0) continue;
         least_of_part(lo, hi, fine, l, t);
         part_seen(l, t, lo, hi, first, cut, fine, joined, best);
     }

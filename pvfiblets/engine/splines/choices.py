@@ -45,7 +45,11 @@ SOLVERS: dict[str, Solver] = {
 
 
 def check_choices(
-    silhouettes: str = AUTO, solver: str = AUTO, iterations: int | None = None, min_width: float = 1.0
+    silhouettes: str = AUTO,
+    solver: str = AUTO,
+    iterations: int | None = None,
+    min_width: float = 1.0,
+    culling: str | None = None,
 ) -> None:
     """Raise where a choice is none.
 
@@ -57,6 +61,8 @@ def check_choices(
     for name, value, known in (("silhouettes", silhouettes, SILHOUETTES), ("solver", solver, SOLVERS)):
         if value != AUTO and value not in known:
             raise ValueError(f"{name} is {value!r}; use one of {[AUTO, *known]}")
+    if culling not in (None, "two-phase"):
+        raise ValueError(f"culling is {culling!r}; use 'two-phase' or None")
     if iterations is not None and (isinstance(iterations, bool) or int(iterations) != iterations or iterations < 1):
         raise ValueError(f"iterations is {iterations!r}; give a whole number above 0, or None for the solver's own")
     if not (math.isfinite(min_width) and 0.0 <= min_width <= 64.0):

@@ -19,6 +19,7 @@ from .inside import Inside
 from .nodes import TOP, UNITS, Nodes
 from .silhouettes import Silhouettes
 from .target import SplineTarget
+from .visibility import LEAST_SEGMENTS, TwoPhase, supports_two_phase
 
 if TYPE_CHECKING:
     from ...splines.tubes import NodeValues, SplineTubes
@@ -48,6 +49,9 @@ class SplineRenderer:
         Steps of one search for a root; the solver's own number by default.
     min_width : float
         Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
+    culling : {'two-phase', None}
+        How segments behind others are found out, where rectangles, OpenGL 4.3 and some thousand segments are there for
+        it (:mod:`.visibility`). It changes no pixel.
     middle : float
         Share c of a derivative between control points (``shaders/splines/segment.glsl``); the paper has 1/3.
     discard : bool
@@ -83,10 +87,11 @@ class SplineRenderer:
         solver: str = AUTO,
         iterations: int | None = None,
         min_width: float = 1.0,
+        culling: str | None = "two-phase",
         middle: float = MIDDLE,
         discard: bool = False,
     ) -> None:
-        check_choices(silhouettes, solver, iterations, min_width)
+        check_choices(silhouettes, solver, iterations, min_width, culling)
         self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
         self.solver = "illinois" if solver == AUTO else solver
         self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
@@ -98,6 +103,7 @@ class SplineRenderer:
         self._nodes: Nodes | None = None
         self._blocks: SplineBlocks | None = None
         self._silhouettes: Silhouettes | None = None
+        self._visibility: TwoPhase | None = None
         self._target: SplineTarget | None = None
         self._drawn: tuple[View, Style] | None = None
         self._features: list[str] = []
@@ -106,6 +112,9 @@ class SplineRenderer:
             self._nodes = Nodes(ctx, self._gl, tubes)
             self._blocks = SplineBlocks(ctx, (self._nodes.origin, self._nodes.scale, TOP), tubes.scaled)
             self._silhouettes = Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments)
+            many = self.pipeline == "rectangles" and tubes.n_segments >= LEAST_SEGMENTS
+            if culling is not None and many and supports_two_phase(ctx):
+                self._visibility = TwoPhase(ctx, self._gl, self._programs, tubes.n_segments)
         except BaseException:
             self.release()
             raise
@@ -181,15 +190,20 @@ class SplineRenderer:
         self._passes.begin()
         self._ctx.scissor = None
         nodes.bind()
-        with self._passes.timed("tubes"):
+        if self._visibility is not None:
+            with self._passes.timed("last picture"):
+                self._visibility.before(target)
+        with self._passes.timed("clear"):
             target.clear()
-            target.hits_buffer.use()
-            for chosen, sides in rounds if self._tubes.n_segments else ():
-                program = silhouettes.program(chosen)
-                self._prepare(program)
-                if "drawn_sides" in program:
-                    program["drawn_sides"] = sides
-                silhouettes.draw(program)
+        if self._visibility is not None:
+
+            def render(commands: moderngl.Buffer) -> None:
+                self._render(rounds, silhouettes, target, commands)
+
+            self._visibility.draw(target, self._passes, self._prepare, render)
+        elif self._tubes.n_segments:
+            with self._passes.timed("tubes"):
+                self._render(rounds, silhouettes, target)
         with self._passes.timed("attributes"):
             program, array = self._programs.screen("splines/attributes.frag", [*common, *([reads] if reads else [])])
             self._prepare(program)
@@ -201,6 +215,26 @@ class SplineRenderer:
             array.render(moderngl.TRIANGLES, vertices=3)
         return target
 
+    def _render(
+        self,
+        rounds: list[tuple[list[str], int]],
+        silhouettes: Silhouettes,
+        target: SplineTarget,
+        commands: moderngl.Buffer | None = None,
+    ) -> None:
+        """Draw all segments, or those that are listed."""
+        target.hits_buffer.use()
+        for chosen, sides in rounds:
+            program = silhouettes.program(chosen)
+            self._prepare(program)
+            if "drawn_sides" in program:
+                program["drawn_sides"] = sides
+            if commands is None or self._visibility is None:
+                silhouettes.draw(program)
+            else:
+                self._visibility.bind(program)
+                silhouettes.draw_listed(program, commands)
+
     def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
         """Return features of each round, and which side of the planes it draws.
 
@@ -208,7 +242,8 @@ class SplineRenderer:
         chain.
         """
         solving = SOLVERS[self.solver].feature
-        common = [*common, *([solving] if solving else []), *(["SPLINE_DISCARD"] if self._discard else [])]
+        wanted = {"SPLINE_DISCARD": self._discard, "SPLINE_LISTED": self._visibility is not None}
+        common = [*common, *([solving] if solving else []), *(name for name, on in wanted.items() if on)]
         chained = [*common, "SPLINE_CHAIN"]
         if hollow:
             return [([*chained, "SPLINE_HOLLOW"], 3)]
@@ -216,7 +251,7 @@ class SplineRenderer:
             return [(chained, 3)]
         return [(common, 1), (chained, 2)] if cut else [(common, 3)]
 
-    def _prepare(self, program: moderngl.Program) -> None:
+    def _prepare(self, program: moderngl.Program | moderngl.ComputeShader) -> None:
         for sampler, unit in UNITS.items():
             self._gl.set_sampler(program, sampler, unit)
 
@@ -244,12 +279,14 @@ class SplineRenderer:
         -------
         dict
             ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``tubes_total``, ``segments_total``,
-            ``primitives`` (triangles), ``solver``, ``iterations``.
+            ``primitives`` (triangles without culling), ``culling``, ``solver``, ``iterations``.
         """
         sizes: dict[str, int] = {}
         for holder in (self._nodes, self._blocks, self._silhouettes):
             if holder is not None:
                 sizes |= {name: buffer.size for name, buffer in holder.buffers.items()}
+        if self._visibility is not None:
+            sizes["culling"] = self._visibility.nbytes
         if self._target is not None:
             sizes["gbuffer"] = self._target.nbytes
         return {
@@ -259,16 +296,17 @@ class SplineRenderer:
             "tubes_total": int(self._tubes.n_tubes),
             "segments_total": int(self._tubes.n_segments),
             "primitives": 0 if self._silhouettes is None else self._silhouettes.primitives,
+            "culling": None if self._visibility is None else "two-phase",
             "solver": self.solver,
             "iterations": self.iterations,
         }
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        for holder in (self._nodes, self._blocks, self._silhouettes, self._target):
+        for holder in (self._nodes, self._blocks, self._silhouettes, self._visibility, self._target):
             if holder is not None:
                 holder.release()
-        self._nodes = self._blocks = self._silhouettes = self._target = None
+        self._nodes = self._blocks = self._silhouettes = self._visibility = self._target = None
         self._programs.release()
         self._passes.release()
         self._drawn = None

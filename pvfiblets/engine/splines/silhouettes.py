@@ -7,13 +7,16 @@ drivers begin anew with each of them.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from ..shaders import Programs
 
-__all__ = ["Silhouettes"]
+__all__ = ["BATCH", "Silhouettes"]
 
 _RECTANGLE = np.array([0, 1, 2, 2, 1, 3])
 # Outwards, counter-clockwise: corners by their bits x, y, z.
@@ -25,7 +28,8 @@ _SHAPES: dict[str, tuple[str, npt.NDArray[np.int64], int]] = {
     "pulled-boxes": ("splines/boxes.vert", np.concatenate([_BOX, _BOX + 8]), 16),
 }
 _DEPTH_CLAMP = 0x864F
-_BATCH = 65536
+BATCH = 65536
+"""Vertices of a call: what an index of 16 bits reaches."""
 
 
 class Silhouettes:
@@ -57,7 +61,7 @@ class Silhouettes:
             return
         stage, shape, corners = _SHAPES[kind]
         self.stages["vertex"] = stage
-        self._step, self._per_segment = _BATCH // corners, len(shape)
+        self._step, self._per_segment = BATCH // corners, len(shape)
         self.primitives = len(shape) // 3 * n_segments
         count = min(self._step, max(n_segments, 1))
         indices = (np.arange(count)[:, None] * corners + shape).astype("<u2")
@@ -69,10 +73,32 @@ class Silhouettes:
 
     def draw(self, program: moderngl.Program) -> None:
         """Draw all segments; the framebuffer is in use and everything bound."""
+        array = self._array(program)
+        with self._drawing():
+            for first in range(0, self._n, self._step):
+                program["first_segment"] = first
+                count = min(self._step, self._n - first)
+                if "indices" in self.buffers:
+                    array.render(moderngl.TRIANGLES, vertices=count * self._per_segment)
+                else:
+                    array.render(moderngl.POINTS, vertices=count)
+
+    def draw_listed(self, program: moderngl.Program, commands: moderngl.Buffer) -> None:
+        """Draw rectangles of listed segments, as many as the calls in a buffer say."""
+        array = self._array(program)
+        with self._drawing():
+            program["first_segment"] = 0
+            array.render_indirect(commands, moderngl.TRIANGLES)
+
+    def _array(self, program: moderngl.Program) -> moderngl.VertexArray:
         if program not in self._arrays:
             index = self.buffers.get("indices")
             self._arrays[program] = self._ctx.vertex_array(program, [], index, index_element_size=2)
-        array = self._arrays[program]
+        return self._arrays[program]
+
+    @contextmanager
+    def _drawing(self) -> Iterator[None]:
+        """Set what silhouettes are drawn with, and leave nothing on that others do not expect."""
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST | (moderngl.CULL_FACE if self._boxes else moderngl.NOTHING))
         ctx.depth_func = "<"
@@ -83,13 +109,7 @@ class Silhouettes:
             ctx.front_face, ctx.cull_face = "ccw", "front"
             ctx.enable_direct(_DEPTH_CLAMP)
         try:
-            for first in range(0, self._n, self._step):
-                program["first_segment"] = first
-                count = min(self._step, self._n - first)
-                if "indices" in self.buffers:
-                    array.render(moderngl.TRIANGLES, vertices=count * self._per_segment)
-                else:
-                    array.render(moderngl.POINTS, vertices=count)
+            yield
         finally:
             if self._boxes:
                 ctx.disable_direct(_DEPTH_CLAMP)

@@ -31,8 +31,8 @@ class SplineTarget:
     buffer : GBuffer
     hits, depths : moderngl.Texture
         See ``shaders/splines/tube.frag``.
-    hits_buffer, attributes : moderngl.Framebuffer
-        For the two passes.
+    hits_buffer, attributes, keys : moderngl.Framebuffer
+        For the two passes, and for the depth alone.
 
     Raises
     ------
@@ -57,6 +57,8 @@ class SplineTarget:
             self.hits_buffer = ctx.framebuffer([self.hits], self.depths)
             self._things.append(self.hits_buffer)
             kept = self.buffer
+            self.keys = ctx.framebuffer([kept.depth])
+            self._things.append(self.keys)
             shown = [kept.depth, kept.owner, kept.ids, kept.position, kept.across, kept.colours]
             self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None])
             self._things.append(self.attributes)
