@@ -2,8 +2,8 @@
 
 The segments that own a pixel of the last picture are drawn first. A pyramid of that depth, which belongs to this very
 camera, then tells of all others which cannot show; the rest is drawn after. Both lists are made on the GPU, and drawn
-by calls whose numbers it writes itself: the CPU issues the same calls whatever shows, and nothing is read back. In which
-order segments are listed is not determined, and so neither is which of two owns a pixel where both have the same depth.
+by calls whose numbers it writes itself: the CPU issues the same calls whatever shows, and nothing is read back. In what
+order segments are listed is not determined, and so neither is which of two owns a pixel in which both are as deep.
 
 It needs compute stages (OpenGL 4.3), and pays from some thousand segments on.
 """
