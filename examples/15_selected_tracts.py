@@ -35,8 +35,8 @@ def main(folder: Path) -> None:
     plotter = pv.Plotter(off_screen=True, window_size=(1350, 650), shape=(1, 2), border=False)
     plotter.set_background("black", all_renderers=True)
     actor = plotter.add_fiblets(fiblets)
-    actor.select(brain.groups["arcuate"][::3])
-    actor.selection_style(as_tubes=True, radius=0.9, dim=0.75)  # in the colours they had; they follow cuts and filters
+    actor.select(brain.groups["arcuate"][::3], as_tubes=True, radius=0.9)  # colours, cuts and filters stay the actor's
+    actor.selection_style(dim=0.75)
     plotter.view_vector((-1.0, 0.3, 0.4), viewup=(0, 0, 1))
     plotter.camera.zoom(1.5)
 
