@@ -38,6 +38,8 @@ class SplineOptions(Options):
         Steps of one search at most; the solver's own number by default.
     min_width : float, default 1.0
         Pixels that a tube takes at least, 0 to 64, however thin and far it is.
+    culling : {'two-phase', 'none', None}
+        How segments behind others are found out.
 
     Raises
     ------
@@ -49,10 +51,13 @@ class SplineOptions(Options):
     solver: str = "auto"
     iterations: int | None = None
     min_width: float = 1.0
+    culling: str | None = "two-phase"
 
     def __post_init__(self) -> None:
-        """Check the values."""
-        check_choices(self.silhouettes, self.solver, self.iterations, self.min_width)
+        """Check the values, and let None stand for no culling."""
+        if self.culling == "none":
+            object.__setattr__(self, "culling", None)
+        check_choices(self.silhouettes, self.solver, self.iterations, self.min_width, self.culling)
 
 
 def spline_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:

@@ -181,8 +181,8 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``tubes_total``, ``segments_total``; ``primitives``: triangles of the last
-            redraw, 0 before the first; ``silhouettes``, ``solver``, ``iterations``: those in use,
-            ``None`` before the first picture.
+            redraw without culling, 0 before the first; ``silhouettes``, ``solver``, ``iterations``,
+            ``culling``: those in use, ``None`` before the first picture.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -197,6 +197,7 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
             "silhouettes": self._mapper.pipeline_in_use,
             "solver": latest.get("solver"),
             "iterations": latest.get("iterations"),
+            "culling": latest.get("culling"),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -289,6 +290,15 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
     @min_width.setter
     def min_width(self, min_width: float) -> None:
         self._change(min_width=min_width)
+
+    @property
+    def culling(self) -> str | None:
+        """How segments behind others are found out: ``"two-phase"``, or ``None``; the picture is the same."""
+        return self._mapper.options.culling
+
+    @culling.setter
+    def culling(self, culling: str | None) -> None:
+        self._change(culling=culling)
 
     # What a component asks ----------------------------------------------------------------------
 

@@ -87,6 +87,7 @@ class SplineTubesComponent(Keeping[SplineTubeActor]):
         solver: str = "auto",
         iterations: int | None = None,
         min_width: float = 1.0,
+        culling: str | None = "two-phase",
     ) -> SplineTubeActor:
         """Add tubes of varying radius around Hermite splines to the scene.
 
@@ -162,6 +163,8 @@ class SplineTubesComponent(Keeping[SplineTubeActor]):
             Steps of one search at most; the solver's own number by default.
         min_width : float, default: 1.0
             Pixels that a tube takes at least, however thin and far it is.
+        culling : {"two-phase", None}, default: "two-phase"
+            How segments behind others are found out, where there are many; the picture is the same.
 
         Returns
         -------
@@ -201,7 +204,7 @@ class SplineTubesComponent(Keeping[SplineTubeActor]):
         >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")
         """
         theme = self._plotter.theme
-        options = SplineOptions(silhouettes, solver, iterations, min_width)  # before the slow part
+        options = SplineOptions(silhouettes, solver, iterations, min_width, culling)  # before the slow part
         tubes, choice = as_tubes(
             source,
             scalars=scalars,

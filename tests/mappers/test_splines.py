@@ -245,13 +245,15 @@ def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools
     mapper.set_tubes(straight())
     tools.picture(plotter, mapper)
     assert len(asked) == 3
+    assert SplineOptions(culling="none") == SplineOptions(culling=None)
+    assert SplineOptions(culling=None).changed() == {"culling": None}
     assert mapper.share == 1.0
 
 
 @pytest.mark.parametrize(
     "bad",
     [{"silhouettes": "ellipses"}, {"solver": "luck"}, {"iterations": 0}, {"iterations": 2.5}, {"min_width": -1},
-     {"min_width": np.nan}],
+     {"min_width": np.nan}, {"culling": "coverage"}],
 )  # fmt: skip
 def test_unknown_options_are_refused_at_once(bad):
     with pytest.raises(ValueError, match=f"{next(iter(bad))} is "):

@@ -227,6 +227,8 @@ def test_properties_take_effect_at_the_next_render(plotter, bars, front):
         actor.solver = solver
         assert (front() != whole).any(axis=2).mean() < 1e-3
         assert actor.explain()["solver"] == solver
+    actor.culling = None
+    assert (front() == whole).all()
     actor.iterations = 25
     front()
     assert actor.explain()["iterations"] == 25
