@@ -24,12 +24,15 @@ ABOUT = {
     "tessellated": "hardware tessellation on a bare context: 6 to 30 sides and up to 5 additional samples along a "
     "segment, by size on the screen; open ends",
     "tessellated-culled": "the same without back faces: faster, but one looks through the open ends",
-    "engine": "this program's ray casting on a bare context: a G-buffer, not lit",
+    "engine": "this program's ray casting on a bare context: a G-buffer, not lit; its triangles are those without "
+    "culling, its bytes hold the culling's depth pyramid, and empty fragments leave nothing to hide behind",
+    "engine-unculled": "the same without culling, as the paper has it",
     "engine-exact": "the same with tubes thinner than a pixel left as thin as they are",
     "splines": "`plotter.add_spline_tubes`: the same in a PyVista scene, lit by VTK",
 }
 MESHES = ("lines-as-tubes", "tube-6", "tube-12", "tube-30", "tube-12x4", "tube-30x4")
-DEFAULT = (*MESHES, "tessellated", "tessellated-culled", "engine", "engine-exact", "splines")
+TESSELLATED = ("tessellated", "tessellated-culled")
+DEFAULT = (*MESHES, *TESSELLATED, "engine", "engine-unculled", "engine-exact", "splines")
 PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")  # grow with the picture, not with the data
 TUBE = re.compile(r"tube-(\d+)(?:x(\d+))?")
 
@@ -244,8 +247,8 @@ class _Engine:
             raise TooMuchError(f"the engine draws no spline tubes: {error}") from error
         self.ctx = context()
         self.made: list[Any] = []
-        exact = {"min_width": 0.0} if way == "engine-exact" else {}
-        self.make = functools.partial(SplineRenderer, self.ctx, tubes, **{**_choices(options), **exact})
+        more = {"engine-exact": {"min_width": 0.0}, "engine-unculled": {"culling": None}}.get(way, {})
+        self.make = functools.partial(SplineRenderer, self.ctx, tubes, **{**_choices(options), **more})
         self.renderer = self._add()
 
     def _add(self, **more: Any) -> Any:
