@@ -247,39 +247,30 @@ class SplineTubes:
         return cast("Bounds", tuple(np.stack([low, high], axis=1).ravel().tolist()))
 
     @cached_property
-    def free_ends(self) -> npt.NDArray[np.bool_]:
-        """``(n_segments, 2)`` bool: start and end of each segment, True where no other segment's end lies.
+    def joined_ends(self) -> npt.NDArray[np.bool_]:
+        """``(n_segments, 2)`` bool: start and end of each segment, True where it goes on into another.
 
-        Free ends are where a tube begins or stops, and so what closes it is to be seen from within. Ends meet where
-        their positions are equal, be it the same node or another one. A segment that stays at one place is one end.
+        That is one that starts at the node at which it ends, or ends at the one at which it starts, or at a node that
+        equals it in all: position, radius and derivatives, so that their surfaces meet smoothly. Segments from a node
+        to itself go nowhere.
         """
-        ends = self.segments
-        same = np.all(self.points[ends[:, 0]] == self.points[ends[:, 1]], axis=1)
-        still = same if self.scaled else same & ~self.tangents[ends].any(axis=(1, 2))
-        # A still segment's two ends count once together, at its start.
-        counts = np.bincount(ends[:, 0], minlength=self.n_nodes)
-        counts += np.bincount(ends[~still, 1], minlength=self.n_nodes)
-        place, n_places = self._places(np.flatnonzero(counts == 1), np.flatnonzero(counts))
-        # One more place than there are: nodes of no number (-1) find the zero in it, and so are not free.
-        total = np.bincount(place[place >= 0], counts[place >= 0], n_places + 1)
-        result = total[place[ends]] == 1
-        result[still, 1] = result[still, 0]
-        return cast("npt.NDArray[np.bool_]", result)
+        moving = self.segments[:, 0] != self.segments[:, 1]
+        node = self._equal_at_ends()[self.segments]
+        starts, stops = np.zeros((2, self.n_nodes), bool)
+        starts[node[moving, 0]] = True
+        stops[node[moving, 1]] = True
+        joined = np.stack([stops[node[:, 0]], starts[node[:, 1]]], axis=1)
+        return cast("npt.NDArray[np.bool_]", joined & moving[:, None])
 
-    def _places(self, asked: Ints, used: Ints) -> tuple[Ints, int]:
-        """Number the positions that equal one of the nodes `asked`: a number per node, -1 elsewhere; and how many."""
-        place = np.full(self.n_nodes, -1, np.int64)
-        # Sorting all three coordinates of all nodes is slow, and few have an x that is asked for.
-        maybe = used[np.isin(self.points[used, 0], self.points[asked, 0])]
-        if not len(maybe):
-            return place, 0
-        x, y, z = self.points[maybe].T
-        order = np.lexsort((z, y, x))
-        ordered = self.points[maybe[order]]
-        new = np.ones(len(order), bool)
-        new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
-        place[maybe[order]] = np.cumsum(new) - 1
-        return place, int(new.sum())
+    def _equal_at_ends(self) -> Ints:
+        """(n_nodes,): each node, or of those in one segment only the first that equals it: few are, where tubes end."""
+        uses = np.bincount(self.segments.ravel(), minlength=self.n_nodes)
+        ends = np.flatnonzero(uses == 1)
+        rows = np.column_stack([self.points, self.tangents, self.radius, self.radius_slopes])[ends] + 0.0  # -0 is 0
+        _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        node = np.arange(self.n_nodes)
+        node[ends] = ends[first[group.ravel()]]
+        return node
 
     def lengths(self) -> Doubles:
         """``(n_segments,)`` float64: each segment's chord, the distance between its two nodes in mm."""

@@ -102,13 +102,12 @@ def test_lines_of_one_point_are_spheres_and_of_none_nothing():
     assert not tubes.tangents[0].any()
     for tangents in (None, np.ones((4, 3))):
         tubes = as_spline_tubes([HELIX[:1], HELIX[:3]], radius=2.0, tangents=tangents)
-        assert not tubes.free_ends[0].any()  # the other line begins there
         assert not tubes.tangents[0].any()
     assert as_spline_tubes([]).n_tubes == 0
     assert as_spline_tubes(np.zeros((0, 3))).n_segments == 0
     ball = as_spline_tubes(np.ones((1, 3)))
     assert ball.radius.tolist() == [1.0]
-    assert ball.free_ends.all()
+    assert not ball.joined_ends.any()
 
 
 def test_a_fork_shares_its_node_when_tangents_are_given():
@@ -130,7 +129,7 @@ def test_a_ring_by_index_is_smooth_and_may_share_its_node():
     ring = (np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), [[0, 1], [1, 2], [2, 3], [3, 0]])
     tubes = as_spline_tubes(ring, radius=0.1)
     assert tubes.n_tubes == 1
-    assert not tubes.free_ends.any()
+    assert tubes.joined_ends.all()
     np.testing.assert_allclose(tubes.tangents[tubes.segments[0, 0]], [0.5, -0.5, 0])
     np.testing.assert_array_equal(tubes.tangents[tubes.segments[3, 1]], tubes.tangents[tubes.segments[0, 0]])
 

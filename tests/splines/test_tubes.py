@@ -64,40 +64,33 @@ def test_bounds_of_a_straight_tube_are_its_own():
 
 
 @pytest.mark.parametrize(
-    ("points", "segments", "tangents", "scaled", "expected"),
+    ("segments", "expected"),
     [
-        ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1], [1, 2]], 0, True, [[1, 0], [0, 1]]),
-        # the same with the middle node doubled, and with a step of no length there
-        ([[0, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1], [2, 3]], 0, True, [[1, 0], [0, 1]]),
-        ([[0, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1], [1, 2], [2, 3]], 0, True, [[1, 0], [0, 0], [0, 1]]),
-        # a ring, a bifurcation, two tubes that only cross
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 1], [1, 2], [2, 0]], 0, True, [[0, 0], [0, 0], [0, 0]]),
-        ([[0, 0, 0], [1, 0, 0], [2, 1, 0], [2, -1, 0]], [[0, 1], [1, 2], [1, 3]], 0, True, [[1, 0], [0, 1], [0, 1]]),
-        ([[-1, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0]], [[0, 1], [2, 3]], 0, True, [[1, 1], [1, 1]]),
-        # -0.0 is where 0.0 is
-        ([[1, 0, 0], [0.0, 0, 0], [-0.0, 0, 0], [-1, 0, 0]], [[0, 1], [2, 3]], 0, True, [[1, 0], [0, 1]]),
-        # spheres: of one node, of two nodes at one place, two of them at one place; a loop meets itself
-        ([[0, 0, 0]], [[0, 0]], 0, False, [[1, 1]]),
-        ([[0, 0, 0], [0, 0, 0]], [[0, 1]], 1, True, [[1, 1]]),
-        ([[0, 0, 0], [0, 0, 0]], [[0, 0], [1, 1]], 0, True, [[0, 0], [0, 0]]),
-        ([[0, 0, 0]], [[0, 0]], 1, False, [[0, 0]]),
-        ([], [], 0, True, np.zeros((0, 2))),
+        ([[0, 1], [1, 2]], [[0, 1], [1, 0]]),
+        # a ring, a bifurcation, two segments that meet head on, a sphere at the end of a tube
+        ([[0, 1], [1, 2], [2, 0]], [[1, 1], [1, 1], [1, 1]]),
+        ([[0, 1], [1, 2], [1, 3]], [[0, 1], [1, 0], [1, 0]]),
+        ([[0, 1], [2, 1]], [[0, 0], [0, 0]]),
+        ([[0, 1], [1, 1]], [[0, 0], [0, 0]]),
+        ([], np.zeros((0, 2))),
     ],
 )
-def test_free_ends(points, segments, tangents, scaled, expected):
-    found = tubes(points, segments, tangents=tangents, scaled=scaled).free_ends
+def test_joined_ends(segments, expected):
+    found = tubes(np.arange(12.0).reshape(4, 3), segments).joined_ends
     assert found.dtype == bool
     np.testing.assert_array_equal(found, np.array(expected, bool))
 
 
 @given(st.integers(0, 10**6))
-def test_free_ends_agree_with_counting_one_by_one(seed):
+def test_joined_ends_agree_with_looking_one_by_one(seed):
     rng = np.random.default_rng(seed)
-    tube = tubes(rng.integers(0, 3, (12, 3)), rng.integers(0, 12, (7, 2)))
-    places = [[tuple(tube.points[node]) for node in segment] for segment in tube.segments]
-    for k, own in enumerate(places):
-        others = {place for j, both in enumerate(places) if j != k for place in both}
-        assert tube.free_ends[k].tolist() == [place not in others for place in own]
+    segments = rng.integers(0, 12, (7, 2))
+    found = tubes(rng.normal(size=(12, 3)), segments).joined_ends
+    pairs = [tuple(pair) for pair in segments.tolist() if pair[0] != pair[1]]
+    for (i, j), joined in zip(segments.tolist(), found.tolist(), strict=True):
+        before = i != j and any(end == i for _, end in pairs)
+        after = i != j and any(start == j for start, _ in pairs)
+        assert joined == [before, after]
 
 
 def test_lengths_are_right_for_all_sizes():

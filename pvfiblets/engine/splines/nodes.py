@@ -87,8 +87,7 @@ class Nodes:
         words: npt.NDArray[np.uint32] = np.empty((tubes.n_segments, 4), "<u4")
         words[:, :2] = tubes.segments
         words[:, 2] = tubes.tubes
-        goes_on = joined_ends(tubes.segments, tubes.n_nodes)
-        words[:, 3] = goes_on[:, 0] | goes_on[:, 1].astype(np.uint32) << 1
+        words[:, 3] = tubes.joined_ends @ np.array([1, 2])
         return words
 
     def _put(self, sampler: str, name: str, texel: str, data: npt.NDArray[Any]) -> None:
@@ -159,28 +158,3 @@ def _float_bits(values: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.ui
         raise EngineError(f"{name} of spline tubes reach {largest:g}, more than float32 holds; scale the data down")
     bits: npt.NDArray[np.uint32] = np.ascontiguousarray(values, "<f4").view("<u4")
     return bits
-
-
-def joined_ends(segments: npt.NDArray[np.int64], n_nodes: int) -> npt.NDArray[np.bool_]:
-    """Say at which ends a segment goes on into another: one that begins where it ends, or the other way round.
-
-    Both then have one tangent and one radius there, with one derivative each, so that their surfaces meet smoothly.
-
-    Parameters
-    ----------
-    segments : numpy.ndarray
-        (n, 2) nodes.
-    n_nodes : int
-
-    Returns
-    -------
-    numpy.ndarray
-        (n, 2) bool. Segments from a node to itself go nowhere.
-    """
-    moving = segments[:, 0] != segments[:, 1]
-    begins: npt.NDArray[np.bool_] = np.zeros(n_nodes, np.bool_)
-    ends = begins.copy()
-    begins[segments[moving, 0]] = True
-    ends[segments[moving, 1]] = True
-    joined: npt.NDArray[np.bool_] = np.stack([ends[segments[:, 0]], begins[segments[:, 1]]], axis=1)
-    return joined & moving[:, None]
