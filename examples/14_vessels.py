@@ -112,7 +112,6 @@ def main(folder: Path) -> None:
     draw_cut(plotter, tree, tree.points[branches[0, -1]])
     plotter.subplot(1, 2)
     draw_inside(plotter, tree, branches[1, 1:])
-    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
     plotter.screenshot(folder / "vessels.png")
     plotter.close()
 
