@@ -285,7 +285,7 @@ class _Builder:
                 ("point data", lines.point_data), ("line data", lines.line_data)) if data]
             has = " and ".join(known) or "no data"
             raise ValueError(f"{what} is {given!r}, which the source does not have; it has {has}")
-        if _is_list_of_arrays(given):
+        if _is_list_of_arrays(given) and not _is_list_of_rows(given, (n_points, n_lines)):
             array = np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
         else:
             array = np.asarray(given)
@@ -320,3 +320,9 @@ def _flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
 
 def _is_list_of_arrays(given: Any) -> bool:
     return isinstance(given, Sequence) and not isinstance(given, (str, bytes)) and any(np.ndim(p) for p in given)
+
+
+def _is_list_of_rows(given: Sequence[Any], counts: tuple[int, int]) -> bool:
+    """Whether a list holds one row of three or four numbers for each point or line, rather than the arrays of lines."""
+    sizes = {np.shape(part) for part in given}
+    return len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given)

@@ -237,3 +237,11 @@ def test_needs_neither_pyvista_nor_opengl():
     code = ("import sys, numpy as np; from pvfiblets.splines import as_spline_tubes; as_spline_tubes(np.eye(3));"
             "assert not {'vtk', 'vtkmodules', 'pyvista', 'moderngl', 'numba'} & set(sys.modules)")
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_rows_may_be_plain_lists():
+    rows = [(0, 20, 0), (1, 20, 0), (2, 0, 0)]
+    given = as_spline_tubes(np.eye(3), radius=[1, 1, 2], tangents=rows)
+    np.testing.assert_array_equal(given.tangents, rows)
+    colours = as_spline_tubes(np.eye(3), radius=1, scalars=[[1, 0, 0], [0, 1, 0], [0, 0, 1]], rgb=True)
+    assert next(iter(colours.values.values())).is_colour
