@@ -1,6 +1,8 @@
 // What each pixel shows of the segment that won it: the textures of pvfiblets/engine/gbuffer.py.
 // Paper: Russig et al. 2020, section 3.2, "Shading": the normal is that of the sphere at t.
 //
+// Depth is there already (splines/keys.frag), and pixels that show nothing do not come here (screen/far.vert).
+//
 // The ray and the half are made once more, for the pixel's own segment; t is known. Of a cut, t is that whose sphere holds the
 // cut's point deepest: looked for among sixteen, then between the neighbours of the best.
 
@@ -14,7 +16,6 @@
 #include "attributes/tangent.glsl"
 
 uniform usampler2D hits;
-uniform sampler2D depths;
 #if FEATURE_SPLINE_VALUES
 uniform samplerBuffer value_texels;      // value and derivative of each node
 #endif
@@ -22,13 +23,12 @@ uniform samplerBuffer value_texels;      // value and derivative of each node
 uniform samplerBuffer colour_texels;     // RGBA of each node, then its derivatives
 #endif
 
-layout(location = 0) out uint shown_depth;
-layout(location = 1) out uint shown_owner;
-layout(location = 2) out uvec2 shown_ids;
-layout(location = 3) out vec2 shown_position;
-layout(location = 4) out uint shown_normal;
+layout(location = 0) out uint shown_owner;
+layout(location = 1) out uvec2 shown_ids;
+layout(location = 2) out vec2 shown_position;
+layout(location = 3) out uint shown_normal;
 #if FEATURE_SPLINE_COLOURS
-layout(location = 5) out vec4 shown_colour;
+layout(location = 4) out vec4 shown_colour;
 #endif
 
 float inside(vec4 p0, vec4 p1, vec4 p2, vec3 at, float t) {
@@ -66,8 +66,6 @@ vec4 blended(vec4 n_i, vec4 m_i, vec4 n_j, vec4 m_j, bool second, float t) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec2 hit = texelFetch(hits, pixel, 0).xy;
-    float z = texelFetch(depths, pixel, 0).x;
-    if (z >= 1.0) discard;                   // depth and owner were cleared; the others may hold anything
     Segment s = segment_of(int(hit.x));
     bool second = (hit.y >> 24u & 1u) != 0u;
     uint kind = hit.y >> 25u & 3u;
@@ -97,7 +95,6 @@ void main() {
         if (r > 0.0) normal = out_of / r;
         if (kind == 2u) normal = -normal;                          // the wall from inside
     }
-    shown_depth = uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u;
     shown_owner = hit.x;
     shown_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
     shown_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);

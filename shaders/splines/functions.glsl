@@ -23,7 +23,20 @@
 vec3 q_a, q_b, q_c;
 float h_a, h_b, h_c;
 
+// A control point as r, p_y, p_z and p_x.
+vec4 in_ray_space(vec4 p, vec3 o, vec3 d, vec3 y_axis, vec3 z_axis) {
+    vec3 v = p.xyz - o;
+    return vec4(p.w, dot(y_axis, v), dot(z_axis, v), dot(d, v));
+}
+
 float product(vec3 u, vec3 v) { return u.x * v.x - u.y * v.y - u.z * v.z; }
+
+// Whether the ray may meet a half: g has the Bezier coefficients <q_i, q_j>.
+bool may_meet(vec4 k0, vec4 k1, vec4 k2) {
+    float most = max(product(k0.xyz, k0.xyz), product(k2.xyz, k2.xyz));
+    most = max(most, max(product(k0.xyz, k1.xyz), product(k1.xyz, k2.xyz)));
+    return max(most, product(k0.xyz, k2.xyz) + 2.0 * product(k1.xyz, k1.xyz)) > 0.0;
+}
 
 float u(int order, float t) {
     vec3 q = q_a + t * (q_b + t * q_c), dq = q_b + 2.0 * t * q_c;

@@ -1,4 +1,4 @@
-// The depth so far as the keys that the pyramid is made of (pvfiblets/engine/gbuffer.py); all ones where nothing is.
+// The depth as the keys of the G-buffer (pvfiblets/engine/gbuffer.py), of which pyramids are made too; all ones where nothing is.
 
 #version 430
 

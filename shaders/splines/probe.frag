@@ -27,6 +27,7 @@ void main() {
     vec3 y_axis, z_axis;
     across(d.xyz, y_axis, z_axis);
     Found best = Found(3e38, 0.0, MISS);
-    meet_half(p0, p1, p2, o.xyz, d.xyz, y_axis, z_axis, o.w, d.w > 0.0, bvec2(false), best);
+    meet_half(in_ray_space(p0, o.xyz, d.xyz, y_axis, z_axis), in_ray_space(p1, o.xyz, d.xyz, y_axis, z_axis),
+              in_ray_space(p2, o.xyz, d.xyz, y_axis, z_axis), o.w, d.w > 0.0, bvec2(false), best);
     met = vec4(best.l, best.t, float(best.kind), 0.0);
 }

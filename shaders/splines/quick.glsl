@@ -41,15 +41,12 @@ void bottoms(inout vec2 low, inout vec2 high, bool easy) {
     }
 }
 
-void meet_half(vec4 p0, vec4 p1, vec4 p2, vec3 o, vec3 d, vec3 y_axis, vec3 z_axis, float first, bool cut, bvec2 joined,
-               inout Found best) {
-    vec3 v0 = p0.xyz - o, v1 = p1.xyz - o, v2 = p2.xyz - o;
-    vec3 q0 = vec3(p0.w, dot(y_axis, v0), dot(z_axis, v0)), q1 = vec3(p1.w, dot(y_axis, v1), dot(z_axis, v1)),
-         q2 = vec3(p2.w, dot(y_axis, v2), dot(z_axis, v2));
+void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, inout Found best) {
+    vec3 q0 = k0.xyz, q1 = k1.xyz, q2 = k2.xyz;
     float g_0 = product(q0, q0), g_1 = product(q0, q1), g_2 = (product(q0, q2) + 2.0 * product(q1, q1)) / 3.0,
           g_3 = product(q1, q2), g_4 = product(q2, q2);
     float most = max(max(max(g_0, g_1), max(g_2, g_3)), g_4);
-    float h0 = dot(d, v0), h1 = dot(d, v1), h2 = dot(d, v2), widest = max(max(p0.w, p1.w), p2.w);
+    float h0 = k0.w, h1 = k1.w, h2 = k2.w, widest = max(max(k0.x, k1.x), k2.x);
     if (most <= 0.0 || min(min(h0, h1), h2) - widest >= best.l) return;
     q_a = q0;
     q_b = 2.0 * (q1 - q0);

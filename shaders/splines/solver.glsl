@@ -45,7 +45,7 @@ bool others(float t, bool joined) {
     return abs(sloped - g1) > 1e-3 * (abs(sloped) + abs(g1)) + 4e-6 * length(q) * length(dq);
 }
 
-// Least f of a part, by the chain of derivatives. Ends of the part that are ends of the half count too.
+// Least f of a part, by the chain of derivatives.
 void least_of_part(float lo, float hi, float fine, out float l, out float t) {
     float cuts[5], stops[3] = float[3](lo, 0.5 * (lo + hi), hi);
     cuts[0] = lo;
@@ -67,19 +67,25 @@ void least_of_part(float lo, float hi, float fine, out float l, out float t) {
         at_lo = at_hi;
     }
     next[m] = hi;
-    t = lo == 0.0 ? lo : hi;
-    l = f_at(t);
-    if (hi == 1.0 && f_at(hi) < l) {
-        t = hi;
-        l = f_at(hi);
-    }
+    // f' goes to - at a root of g that begins a part, to + at one that ends it. Where it does not, that is the half's own end,
+    // or the part is so narrow, or ends in so fine a point, that rounding decides: then the sign is that of beside it.
+    l = 3e38;
+    t = hi;
     at_lo = u(2, lo);
-    if (at_lo >= 0.0 && f_at(lo) < l) {              // by rounding the minimum of a narrow part may lie before it
+    if (at_lo >= 0.0) {
         t = lo;
         l = f_at(lo);
+        at_lo = u(2, mix(lo, hi, 1e-3));
     }
     for (int i = 0; i < m; ++i) {
         at_hi = u(2, next[i + 1]);
+        if (i + 1 == m && at_hi < 0.0) {
+            if (f_at(hi) < l) {
+                t = hi;
+                l = f_at(hi);
+            }
+            at_hi = u(2, mix(hi, lo, 1e-3));
+        }
         if (at_lo < 0.0 && at_hi >= 0.0) {
             float found = root(2, next[i], next[i + 1], at_lo, at_hi, fine), value = f_at(found);
             if (value < l) {
@@ -164,19 +170,16 @@ void part_seen(float l, float t, float lo, float hi, float first, bool cut, floa
 #endif
 }
 
-// Looks for something nearer than `best` on the half with control points p0, p1, p2.
-void meet_half(vec4 p0, vec4 p1, vec4 p2, vec3 o, vec3 d, vec3 y_axis, vec3 z_axis, float first, bool cut, bvec2 joined,
-               inout Found best) {
-    vec3 v0 = p0.xyz - o, v1 = p1.xyz - o, v2 = p2.xyz - o;
-    vec3 q0 = vec3(p0.w, dot(y_axis, v0), dot(z_axis, v0)), q1 = vec3(p1.w, dot(y_axis, v1), dot(z_axis, v1)),
-         q2 = vec3(p2.w, dot(y_axis, v2), dot(z_axis, v2));
+// Looks for something nearer than `best` on the half with control points k0, k1, k2, in ray space.
+void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, inout Found best) {
+    vec3 q0 = k0.xyz, q1 = k1.xyz, q2 = k2.xyz;
     float g_0 = product(q0, q0), g_1 = product(q0, q1), g_2 = (product(q0, q2) + 2.0 * product(q1, q1)) / 3.0,
           g_3 = product(q1, q2), g_4 = product(q2, q2);
     float most = max(max(max(g_0, g_1), max(g_2, g_3)), g_4);
     if (most <= 0.0) return;
-    float h0 = dot(d, v0), h1 = dot(d, v1), h2 = dot(d, v2);
+    float h0 = k0.w, h1 = k1.w, h2 = k2.w;
     // Nothing of this half is nearer than its control points less the largest radius.
-    float widest = max(max(p0.w, p1.w), p2.w);
+    float widest = max(max(k0.x, k1.x), k2.x);
     if (min(min(h0, h1), h2) - widest >= best.l) return;
     q_a = q0;
     q_b = 2.0 * (q1 - q0);

@@ -50,17 +50,25 @@ void main() {
     vec3 y_axis, z_axis;
     across(ray.d, y_axis, z_axis);
     Found best = Found(last, 0.0, MISS);
-    vec4 middle = 0.5 * (handed_a2 + handed_b2);
+    vec4 k0 = in_ray_space(handed_a1, ray.o, ray.d, y_axis, z_axis), k1 = in_ray_space(handed_a2, ray.o, ray.d, y_axis, z_axis),
+         k3 = in_ray_space(handed_b2, ray.o, ray.d, y_axis, z_axis), k4 = in_ray_space(handed_b3, ray.o, ray.d, y_axis, z_axis);
+    vec4 k2 = 0.5 * (k1 + k3);
+    bool in_first = (handed_ids.y & 0x100u) != 0u && may_meet(k0, k1, k2);
+    bool in_second = (handed_ids.y & 0x200u) != 0u && may_meet(k2, k3, k4);
     uint half_hit = 0u;
-    if ((handed_ids.y & 0x100u) != 0u) {
-        meet_half(handed_a1, handed_a2, middle, ray.o, ray.d, y_axis, z_axis, first, cut,
-                  bvec2((handed_ids.y & 1u) != 0u, true), best);
-    }
-    if ((handed_ids.y & 0x200u) != 0u) {
+    // One half after the other; but where the ray can meet only one, that one at once: neighbours then search together. The
+    // loop is left at its end, as some processors go through all of a body that any of their lanes has entered.
+    if (!in_first && !in_second) discard;
+    bool again = in_first && in_second;
+    bool second = !in_first;
+    for (;;) {
         float before = best.l;
-        meet_half(middle, handed_b2, handed_b3, ray.o, ray.d, y_axis, z_axis, first, cut,
-                  bvec2(true, (handed_ids.y & 2u) != 0u), best);
-        if (best.l < before) half_hit = 1u;
+        meet_half(second ? k2 : k0, second ? k3 : k1, second ? k4 : k2, first, cut,
+                  bvec2(second || (handed_ids.y & 1u) != 0u, !second || (handed_ids.y & 2u) != 0u), best);
+        if (best.l < before) half_hit = uint(second);
+        if (!again) break;
+        again = false;
+        second = true;
     }
     if (best.kind == MISS) discard;
     float z = depth_along(ray, best.l);

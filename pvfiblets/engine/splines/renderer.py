@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SplineRenderer"]
 
-HITS_UNIT, DEPTHS_UNIT = 10, 11
+HITS_UNIT = 10
 
 
 class SplineRenderer:
@@ -205,14 +205,17 @@ class SplineRenderer:
             with self._passes.timed("tubes"):
                 self._render(rounds, silhouettes, target)
         with self._passes.timed("attributes"):
-            program, array = self._programs.screen("splines/attributes.frag", [*common, *([reads] if reads else [])])
+            target.write_keys(self._programs)
+            stages = {"vertex": "screen/far.vert", "fragment": "splines/attributes.frag"}
+            program = self._programs.render(stages, [*common, *([reads] if reads else [])])
             self._prepare(program)
             target.hits.use(HITS_UNIT)
-            target.depths.use(DEPTHS_UNIT)
-            program["hits"], program["depths"] = HITS_UNIT, DEPTHS_UNIT
+            program["hits"] = HITS_UNIT
             target.attributes.use()
-            self._ctx.enable_only(moderngl.NOTHING)
-            array.render(moderngl.TRIANGLES, vertices=3)
+            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.depth_func = ">"
+            silhouettes.whole(program).render(moderngl.TRIANGLES, vertices=3)
+            self._ctx.depth_func = "<="
         return target
 
     def _render(

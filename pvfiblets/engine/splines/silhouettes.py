@@ -96,6 +96,12 @@ class Silhouettes:
             self._arrays[program] = self._ctx.vertex_array(program, [], index, index_element_size=2)
         return self._arrays[program]
 
+    def whole(self, program: moderngl.Program) -> moderngl.VertexArray:
+        """Return what draws a program over the whole picture, from no vertex data."""
+        if program not in self._arrays:
+            self._arrays[program] = self._ctx.vertex_array(program, [])
+        return self._arrays[program]
+
     @contextmanager
     def _drawing(self) -> Iterator[None]:
         """Set what silhouettes are drawn with, and leave nothing on that others do not expect."""

@@ -8,8 +8,11 @@ from ..depth_texture import depth_texture
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..opengl import OpenGL
+from ..shaders import Programs
 
-__all__ = ["SplineTarget"]
+__all__ = ["KEYS_UNIT", "SplineTarget"]
+
+KEYS_UNIT = 12
 
 
 class SplineTarget:
@@ -42,7 +45,7 @@ class SplineTarget:
 
     def __init__(self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int], coloured: bool) -> None:
         self.size, self.coloured = size, coloured
-        self._gl = gl
+        self._ctx, self._gl = ctx, gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
         self.buffer = GBuffer(ctx, size)
         try:
@@ -59,9 +62,10 @@ class SplineTarget:
             kept = self.buffer
             self.keys = ctx.framebuffer([kept.depth])
             self._things.append(self.keys)
-            shown = [kept.depth, kept.owner, kept.ids, kept.position, kept.across, kept.colours]
-            self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None])
+            shown = [kept.owner, kept.ids, kept.position, kept.across, kept.colours]
+            self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None], self.depths)
             self._things.append(self.attributes)
+            self.attributes.depth_mask = False
         except moderngl.Error as error:
             self.release()
             raise EngineError(f"no memory for a picture of {size[0]} x {size[1]} pixels: {error}") from error
@@ -70,7 +74,15 @@ class SplineTarget:
         """Empty depths and owners; the others are undefined where depth is empty."""
         self._gl.clear_depth(self.hits_buffer, 1.0)
         self._gl.clear_integers(self.attributes, (EMPTY,), 0)
-        self._gl.clear_integers(self.attributes, (EMPTY,), 1)
+
+    def write_keys(self, programs: Programs) -> None:
+        """Write the depth so far into the G-buffer."""
+        program, array = programs.screen("splines/keys.frag")
+        self.depths.use(KEYS_UNIT)
+        program["depths"] = KEYS_UNIT
+        self.keys.use()
+        self._ctx.enable_only(moderngl.NOTHING)
+        array.render(moderngl.TRIANGLES, vertices=3)
 
     @property
     def nbytes(self) -> int:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["LEAST_SEGMENTS", "TwoPhase"]
 
 LEAST_SEGMENTS = 2000
-LISTED_UNIT, KEYS_UNIT = 20, 12
+LISTED_UNIT, OWNER_UNIT = 20, 12
 _PER_CALL = BATCH // 4
 _GROUP = 64
 
@@ -78,8 +78,8 @@ class TwoPhase:
             return
         program = self._programs.compute("splines/seen.comp")
         seen.bind_to_storage_buffer(0)
-        target.buffer.owner.use(KEYS_UNIT)
-        program["owner"], program["count"] = KEYS_UNIT, self._n
+        target.buffer.owner.use(OWNER_UNIT)
+        program["owner"], program["count"] = OWNER_UNIT, self._n
         width, height = target.size
         program.run(-(-width // 8), -(-height // 8))
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -130,12 +130,7 @@ class TwoPhase:
         ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def _make_pyramid(self, target: SplineTarget) -> None:
-        program, array = self._programs.screen("splines/keys.frag")
-        target.depths.use(KEYS_UNIT)
-        program["depths"] = KEYS_UNIT
-        target.keys.use()
-        self._ctx.enable_only(moderngl.NOTHING)
-        array.render(moderngl.TRIANGLES, vertices=3)
+        target.write_keys(self._programs)
         self._pyramid.build(target.buffer)
 
     def bind(self, program: moderngl.Program) -> None:
