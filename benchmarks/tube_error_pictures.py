@@ -176,7 +176,7 @@ def whole(tubes: Any, picture: Picture, count: int, rng: Any) -> dict[str, Any]:
     deep = -apart(both, picture.lens, directions) / around[holes]
     return result | {
         "covered": int(picture.covered.sum()),
-        "not_nearest": share(gap > GOAL), "not_nearest_grossly": share(gap > 1e-2), "nearest_pixels": len(few),
+        "not_nearest": share(gap > GOAL), "not_nearest_by": float(gap.max(initial=0.0)), "nearest_pixels": len(few),
         "holes": share(np.isfinite(first)), "hole_depth": float(deep.max(initial=0.0)), "rim_pixels": len(rim),
     }  # fmt: skip
 

@@ -55,7 +55,7 @@ def lengthwise(degrees: float, count: int, rng: Any) -> Rays:
 
 
 SWEEPS: dict[str, tuple[str, tuple[float, ...], Callable[[float, int, Any], Rays]]] = {
-    "length": ("length over radius", DECADES, longer),
+    "length": ("length over radius", (1.0, 10.0, 100.0, 300.0, 500.0, 1e3, 3e3, 1e4, 3e4, 1e5, 1e6), longer),
     "radius": ("radius over length", DECADES, thicker),
     "tangents": ("tangents over chord", (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 300.0, 1000.0), overshooting),
     "slope": ("change of radius over length", (0.0, 0.1, 0.5, 0.9, 0.99, 1.0, 1.01, 1.1, 2.0, 5.0, 10.0, 30.0, 100.0),

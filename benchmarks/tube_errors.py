@@ -207,8 +207,9 @@ def picture_lines(rows: list[Row]) -> list[str]:
         "the very segment that it shows. *depth*: as stored, float32 between near and far; *point*: where the ray "
         f"enters the sphere of the parameter stored; *>*: share of pixels off by more than {GOAL:g} r; *format*: what "
         "storing the right depth in float32 would cost alone, p99. *false*: the ray meets nothing of the segment "
-        f"shown; *behind*: another one is nearer, by more than {GOAL:g} r (1e-2 r), of up to {NEAREST} pixels; "
-        "*holes*: share of as many empty pixels next to covered ones that the tubes do cover, and how deep in r.", "",
+        f"shown; *behind*: another one is nearer, by more than {GOAL:g} r, in such a share of up to {NEAREST} pixels, "
+        "and by how many r at most; *holes*: share of as many empty pixels "
+        "next to covered ones that the tubes do cover, and how deep in r.", "",
         "| set | view | ms | depth p50 | p99 | p99.9 | max | > | format | point p99 | p99.9 | max | > | false | behind "
         "| holes |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
@@ -218,8 +219,8 @@ def picture_lines(rows: list[Row]) -> list[str]:
         lines.append(
             f"| {row['set']} | {row['view']} | {row['ms']:.0f} | {numbers(depth)} | {depth['above_goal']:.1e} "
             f"| {row['format']['p99']:.1e} | {point['p99']:.1e} | {point['p99.9']:.1e} | {point['max']:.1e} "
-            f"| {point['above_goal']:.1e} | {depth['false']:.1e} | {row['not_nearest']:.1e} "
-            f"({row['not_nearest_grossly']:.1e}) | {row['holes']:.1e}, {row['hole_depth']:.1e} |"
+            f"| {point['above_goal']:.1e} | {depth['false']:.1e} | {row['not_nearest']:.1e}, "
+            f"{row['not_nearest_by']:.1e} | {row['holes']:.1e}, {row['hole_depth']:.1e} |"
         )
     lines += ["", f"The goal, an error of no more than {GOAL:g} r in every pixel:", "", *map(verdict, whole)]
     size = next((row["size"] for row in rows if not row["default"]), (0, 0))
