@@ -1,0 +1,283 @@
+"""Spline tubes for the engine's tests: halves and rays at random, sets, and what every pixel must show, in float64."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pvfiblets.engine.splines import SplineRenderer
+from pvfiblets.splines import NodeValues, SplineTubes, reference
+from pvfiblets.splines.curves import controls, derivative, evaluate
+from pvfiblets.splines.reference import CAP, ENTRY, EXIT, MISS
+
+from .pictures import EMPTY, unpacked_tangent
+from .tubes import rays
+
+KINDS = {
+    "thin": {"r": 0.02, "bend": 0.05},
+    "usual": {"r": 0.1, "bend": 0.1},
+    "bent": {"r": 0.1, "bend": 0.6},
+    "thick": {"r": 2.0, "bend": 0.3},
+    "blob": {"r": 20.0, "bend": 0.3, "vary": 0.1},
+    "cone": {"r": 0.3, "bend": 0.1, "vary": 1.0},
+    "needle": {"r": 0.001, "bend": 0.01},
+}
+"""Halves 1 mm long; radius and its change, and the sideways pull at the middle control point."""
+
+
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def halves(rng, n, *, r, bend, vary=0.3):
+    """(n, 3, 4) control points."""
+    found = np.zeros((n, 3, 4))
+    found[:, 2, :3] = unit(rng.normal(size=(n, 3)))
+    found[:, 1, :3] = 0.5 * found[:, 2, :3] + rng.normal(0, bend, (n, 3))
+    found[:, :, 3] = r * (1 + vary * rng.uniform(-1, 1, (n, 3)))
+    return found
+
+
+def rays_past(rng, points, away=10.0):
+    """Origins and directions of rays that pass near to a place of each half, most of them through it."""
+    n = len(points)
+    centre = evaluate(points, rng.uniform(0, 1, n))
+    d = unit(rng.normal(size=(n, 3)))
+    aside = rng.normal(size=(n, 3))
+    aside = unit(aside - (aside * d).sum(1, keepdims=True) * d)
+    o = centre[:, :3] + aside * centre[:, 3:] * np.sqrt(rng.uniform(0, 1.3, n))[:, None] - away * d
+    return o, d
+
+
+def grazing(points, o, d, part=1e-4, **limits):
+    """Whether a ray is met or not by how thick the tube is to that part."""
+    kinds = []
+    for scale in (1 - part, 1 + part):
+        changed = points.copy()
+        changed[..., 3] *= scale
+        kinds.append(reference.hits(changed, o, d, **limits).kind)
+    return kinds[0] != kinds[1]
+
+
+# -------------------------------------------------------------------------------------------------------------- sets
+
+
+def bundle(n=4, m=6, seed=0, radius=1.2, spread=14.0, step=5.0, **more):
+    """Wandering tubes of varying radius through nodes of a step of 5 mm, with numbers and colours at the nodes."""
+    rng = np.random.default_rng(seed)
+    d = unit(rng.normal(0, 1, (n, 1, 3)) + np.cumsum(rng.normal(0, 0.4, (n, m, 3)), axis=1))
+    places = rng.uniform(-spread, spread, (n, 1, 3)) + np.cumsum(step * d, axis=1)
+    radii = radius * (1 + 0.5 * np.sin(np.arange(n * m)).reshape(n, m))
+    numbers, colours = rng.normal(size=(n, m)), rng.uniform(0.2, 0.8, (n, m, 4))
+    index = np.arange(n * m).reshape(n, m)
+    return SplineTubes(
+        places.reshape(-1, 3), np.stack([index[:, :-1], index[:, 1:]], -1).reshape(-1, 2), radii.ravel(),
+        np.gradient(places, axis=1).reshape(-1, 3), np.gradient(radii, axis=1).ravel(), False,
+        np.repeat(np.arange(n), m - 1), n,
+        {"number": NodeValues(numbers.ravel(), np.gradient(numbers, axis=1).ravel()),
+         "colour": NodeValues(colours.reshape(-1, 4), np.gradient(colours, axis=1).reshape(-1, 4))},
+        **more,
+    )  # fmt: skip
+
+
+def tube_through(points, radius, **more):
+    """One tube through nodes, with derivatives by the parameter."""
+    points = np.asarray(points, float)
+    m = len(points)
+    radius = np.broadcast_to(np.asarray(radius, float), m)
+    return SplineTubes(
+        points, np.stack([np.arange(m - 1), np.arange(1, m)], 1), radius, np.gradient(points, axis=0),
+        np.gradient(radius), False, np.zeros(m - 1, int), 1, **more,
+    )  # fmt: skip
+
+
+def winding(m=12, radius=2.0, vary=0.3):
+    """A tube that one can be inside of, and see through for a while."""
+    t = np.linspace(0, 1, m)
+    return tube_through(
+        np.stack([40 * t, 10 * np.sin(4 * t), 6 * np.cos(3 * t)], 1), radius * (1 + vary * np.sin(9 * t))
+    )
+
+
+def moved(tubes, matrix):
+    """A set whose places and derivatives a matrix moves; one that keeps lengths, or radii would not be round."""
+    matrix = np.asarray(matrix, float)
+    scale = np.cbrt(abs(np.linalg.det(matrix[:3, :3])))
+    return SplineTubes(
+        tubes.points @ matrix[:3, :3].T + matrix[:3, 3], tubes.segments, tubes.radius * scale,
+        tubes.tangents @ matrix[:3, :3].T, tubes.radius_slopes * scale, tubes.scaled, tubes.tubes, tubes.n_tubes,
+        tubes.values,
+    )  # fmt: skip
+
+
+# ---------------------------------------------------------------------------------------------------------- pictures
+
+
+class SplinePicture(NamedTuple):
+    """What a G-buffer shows, row 0 at the bottom."""
+
+    drawn: np.ndarray  # (h, w)
+    z: np.ndarray  # (h, w) window depth
+    owner: np.ndarray  # (h, w) segment, -1 where nothing is
+    tube: np.ndarray
+    t: np.ndarray  # (h, w) of the segment
+    value: np.ndarray
+    tangent: np.ndarray  # (h, w, 3)
+    normal: np.ndarray  # (h, w, 3)
+    colour: np.ndarray | None  # (h, w, 4) 0..1
+
+
+def read_splines(gbuffer):
+    """Read all textures."""
+    w, h = gbuffer.size
+    get = lambda texture, dtype: np.frombuffer(texture.read(), dtype).reshape(h, w, -1)  # noqa: E731
+    key, owner = get(gbuffer.depth, "<u4")[..., 0], get(gbuffer.owner, "<u4")[..., 0]
+    ids, position = get(gbuffer.ids, "<u4"), get(gbuffer.position, "<f4").astype(float)
+    drawn = key != EMPTY
+    assert (owner[~drawn] == EMPTY).all()
+    assert np.isfinite(position[drawn][:, 0]).all()
+    colour = None if gbuffer.colours is None else get(gbuffer.colours, "u1") / 255.0
+    return SplinePicture(
+        drawn, key / 4294967296.0, np.where(drawn, owner.astype(np.int64), -1), ids[..., 0], position[..., 0],
+        position[..., 1], unpacked_tangent(ids[..., 1]), unpacked_tangent(get(gbuffer.across, "<u4")[..., 0]), colour,
+    )  # fmt: skip
+
+
+def draw_splines(gl, tubes, view, style=None, **options):
+    """Draw one picture with a renderer of its own."""
+    renderer = SplineRenderer(gl, tubes, **options)
+    try:
+        return read_splines(renderer.render(view, style))
+    finally:
+        renderer.release()
+
+
+def widened(points, view, min_width):
+    """(n, 2, 3, 4) halves with radii grown to half of some pixels at the depth of each node and inner control point."""
+    w, h = view.size
+    matrix = view.model_view_projection
+    window = np.array([w / 2 * (matrix[0] + matrix[3]), h / 2 * (matrix[1] + matrix[3]), matrix[3]])
+    along = matrix[3, :3] if matrix[3, :3].any() else matrix[2, :3]
+    across = np.linalg.inv(np.array([window[0, :3], window[1, :3], along]))
+    pixel = max(np.linalg.norm(across[:, 0]), np.linalg.norm(across[:, 1]))
+    found = points.copy()
+    at = np.maximum(found[..., :3] @ matrix[3, :3] + matrix[3, 3], 0.0)
+    found[..., 3] = np.maximum(found[..., 3], 0.5 * min_width * pixel * at)
+    found[:, 0, 2] = found[:, 1, 0] = 0.5 * (found[:, 0, 1] + found[:, 1, 1])
+    return found
+
+
+class Seen(NamedTuple):
+    """What every pixel must show."""
+
+    drawn: np.ndarray
+    z: np.ndarray
+    l: np.ndarray  # noqa: E741 - (h, w) mm from the near plane
+    half: np.ndarray
+    t: np.ndarray  # of the half
+    kind: np.ndarray
+    radius: np.ndarray
+    normal: np.ndarray
+    tangent: np.ndarray
+    facing: np.ndarray  # (h, w) cosine between ray and normal, 0 on a silhouette
+    plane: np.ndarray  # (h, w) of a cap: its plane
+
+    @property
+    def owner(self):
+        return np.where(self.drawn, self.half // 2, -1)
+
+
+def seen(tubes, view, *, min_width=0.0, inside=False, grow=1.0):
+    """Meet the ray of every pixel with every half.
+
+    From the near plane on, or the last plane of the caller's to let it in, and to the far plane or the first that ends
+    it. Where the near plane begins inside of a tube, `inside` shows the wall that the ray leaves by: of all halves that
+    it is in at a place it follows the farthest, until it is in none.
+    """
+    points = widened(controls(tubes), view, min_width).reshape(-1, 3, 4)
+    points[..., 3] *= grow
+    shape = view.size[::-1]
+    o, d = (a.reshape(-1, 3) for a in rays(view.model_view_projection, view.size))
+    far = far_ends(view).reshape(-1)
+    start, end, plane = np.zeros(len(o)), far.copy(), np.full(len(o), -1)
+    planes = np.asarray(view.clip_planes, float).reshape(-1, 4)
+    planes = planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
+    for k, p in enumerate(planes):
+        height, rise = o @ p[:3] + p[3], d @ p[:3]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = -height / rise
+        later = (rise > 0) & (at > start)
+        start[later], plane[later] = at[later], k
+        end = np.where(rise < 0, np.minimum(end, at), end)
+        end = np.where((rise == 0) & (height < 0), -np.inf, end)
+    end = np.where(end < start, -np.inf, end)
+    n = len(o)
+    l, t, kind, half = np.full(n, np.nan), np.zeros(n), np.zeros(n, int), np.full(n, -1)  # noqa: E741
+    for capped in (False, True):
+        rows = np.flatnonzero((plane >= 0) == capped)
+        if len(rows):
+            met = reference.nearest_hits(points, o[rows], d[rows], start=start[rows], end=end[rows], capped=capped)
+            l[rows], t[rows], kind[rows], half[rows] = met.l, met.t, met.kind, met.half
+    outside = np.flatnonzero((kind == EXIT) | (plane < 0)) if not inside else np.zeros(0, int)
+    if len(outside):  # what the near plane opens shows nothing
+        _only_entries(points, o, d, start, end, outside, l, t, kind, half)
+    if inside:
+        _walls(points, o, d, start, end, np.flatnonzero(plane < 0), l, t, kind, half)
+    drawn = kind != MISS
+    ball, slope = np.zeros((n, 4)), np.zeros((n, 4))
+    ball[drawn], slope[drawn] = evaluate(points[half[drawn]], t[drawn]), derivative(points[half[drawn]], t[drawn])
+    at = o + np.where(drawn, l, 0.0)[:, None] * d
+    with np.errstate(divide="ignore", invalid="ignore"):
+        normal = (at - ball[:, :3]) / ball[:, 3:]
+        tangent = unit(slope[:, :3])
+    normal = np.where((kind == EXIT)[:, None], -normal, normal)
+    cap = kind == CAP
+    if cap.any():
+        normal[cap] = -planes[plane[cap], :3]
+    clip = np.concatenate([at, np.ones((n, 1))], 1) @ view.model_view_projection.T
+    z = np.where(drawn, (clip[:, 2] / clip[:, 3] + 1) / 2, 1.0)
+    facing = -(normal * d).sum(1)
+    parts = (drawn, z, l, half, t, kind, ball[:, 3], normal, tangent, facing, np.where(cap, plane, -1))
+    return Seen(*(a.reshape(*shape, *a.shape[1:]) for a in parts))
+
+
+def far_ends(view):
+    """(h, w) mm from the near to the far plane along each pixel's ray."""
+    near, _ = rays(view.model_view_projection, view.size)
+    flipped = view.model_view_projection.copy()
+    flipped[2] *= -1.0
+    far, _ = rays(flipped, view.size)
+    return np.linalg.norm(far - near, axis=-1)
+
+
+def _only_entries(points, o, d, start, end, rows, l, t, kind, half):  # noqa: E741
+    """Of each ray the nearest entry that lies between its limits."""
+    kind[rows], half[rows] = MISS, -1
+    best = np.full(len(o), np.inf)
+    for number, points_of_one in enumerate(points):
+        met = reference.hits(points_of_one, o[rows], d[rows], start=start[rows], end=end[rows])
+        good = (met.kind == ENTRY) & (met.l < best[rows])
+        at = rows[good]
+        best[at], l[at], t[at], kind[at], half[at] = met.l[good], met.l[good], met.t[good], ENTRY, number
+
+
+def _walls(points, o, d, start, end, rows, l, t, kind, half):  # noqa: E741
+    """Where rays that begin inside leave the union of all halves; others keep what they have."""
+    place, left = start[rows].copy(), np.ones(len(rows), bool)
+    last_half, last_t = np.full(len(rows), -1), np.zeros(len(rows))
+    while left.any():
+        some = np.flatnonzero(left)
+        farthest, found_t, found_half = place[some].copy(), np.zeros(len(some)), np.full(len(some), -1)
+        for number, points_of_one in enumerate(points):
+            met = reference.hits(points_of_one, o[rows[some]], d[rows[some]], start=place[some])
+            more = (met.kind == EXIT) & (met.l > farthest * (1 + 1e-9) + 1e-9)
+            farthest[more], found_t[more], found_half[more] = met.l[more], met.t[more], number
+        moved_on = found_half >= 0
+        place[some[moved_on]] = farthest[moved_on]
+        last_half[some[moved_on]], last_t[some[moved_on]] = found_half[moved_on], found_t[moved_on]
+        left[some[~moved_on]] = False
+    was = last_half >= 0
+    shown = was & (place <= end[rows])
+    l[rows[was]], kind[rows[was]], half[rows[was]] = place[was], MISS, -1
+    t[rows[shown]], kind[rows[shown]], half[rows[shown]] = last_t[shown], EXIT, last_half[shown]
