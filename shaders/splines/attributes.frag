@@ -1,7 +1,7 @@
 // What each pixel shows of the segment that won it: the textures of pvfiblets/engine/gbuffer.py.
 // Paper: Russig et al. 2020, section 3.2, "Shading": the normal is that of the sphere at t.
 //
-// Depth is there already (splines/keys.frag), and pixels that show nothing do not come here (screen/far.vert).
+// Pixels that show nothing do not come here (screen/near.vert).
 //
 // The ray and the half are made once more, for the pixel's own segment; t is known. Of a cut, t is that whose sphere holds the
 // cut's point deepest: looked for among sixteen, then between the neighbours of the best.
@@ -23,12 +23,13 @@ uniform samplerBuffer value_texels;      // value and derivative of each node
 uniform samplerBuffer colour_texels;     // RGBA of each node, then its derivatives
 #endif
 
-layout(location = 0) out uint shown_owner;
-layout(location = 1) out uvec2 shown_ids;
-layout(location = 2) out vec2 shown_position;
-layout(location = 3) out uint shown_normal;
+layout(location = 0) out uint shown_depth;
+layout(location = 1) out uint shown_owner;
+layout(location = 2) out uvec2 shown_ids;
+layout(location = 3) out vec2 shown_position;
+layout(location = 4) out uint shown_normal;
 #if FEATURE_SPLINE_COLOURS
-layout(location = 4) out vec4 shown_colour;
+layout(location = 5) out vec4 shown_colour;
 #endif
 
 float inside(vec4 p0, vec4 p1, vec4 p2, vec3 at, float t) {
@@ -70,14 +71,17 @@ void main() {
     bool second = (hit.y >> 24u & 1u) != 0u;
     uint kind = hit.y >> 25u & 3u;
     vec4 p0 = second ? junction(s) : s.a1, p1 = second ? s.b2 : s.a2, p2 = second ? s.b3 : junction(s);
-    Ray ray = ray_through(gl_FragCoord.xy, s.centre, s.size, seen_centre(s.centre));
+    Seen seen = seen_centre(s);
+    Ray ray = ray_through(gl_FragCoord.xy, s.centre, s.size, seen);
     float t = (float(hit.y & 0xFFFFFFu) + 0.5) / 16777216.0;
     vec3 normal = -ray.d;
+    float l = 0.0;
 #if FEATURE_CLIP_PLANES
     if (kind == 3u) {
         vec3 plane = clip_planes[hit.y >> 27u].xyz;
         float height = clip_height_of(int(hit.y >> 27u), s.centre) / s.size + dot(plane, ray.o);
-        t = deepest(p0, p1, p2, ray.o - height / dot(plane, ray.d) * ray.d);
+        l = -height / dot(plane, ray.d);
+        t = deepest(p0, p1, p2, ray.o + l * ray.d);
         normal = -plane;
     }
 #endif
@@ -90,11 +94,13 @@ void main() {
         float along = dot(ray.d, v);
         vec3 beside = v - along * ray.d;                           // from the axis to the ray, across it
         float s2 = sqrt(max(p.w * p.w - dot(beside, beside), 0.0));
+        l = -along + (kind == 2u ? s2 : -s2);
         vec3 out_of = beside + (kind == 2u ? s2 : -s2) * ray.d;    // to the point that shows: r long
         float r = length(out_of);
         if (r > 0.0) normal = out_of / r;
         if (kind == 2u) normal = -normal;                          // the wall from inside
     }
+    shown_depth = key_along(ray, s, seen, l);
     shown_owner = hit.x;
     shown_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
     shown_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);

@@ -17,7 +17,7 @@ layout(local_size_x = 64) in;
 #include "culling/squares.glsl"
 #include "compute/groups.glsl"
 
-layout(std430, binding = 0) readonly buffer Seen { uint seen[]; };
+layout(std430, binding = 0) readonly buffer SeenBits { uint seen[]; };
 layout(std430, binding = 1) writeonly buffer Listed { uint listed[]; };
 layout(std430, binding = 2) buffer Counts { uint counts[]; };      // how many are listed
 

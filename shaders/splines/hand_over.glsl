@@ -33,7 +33,9 @@ bool has_turn(Segment s) {
 
 void hand_over(Segment s, int index, uint halves) {
     handed_centre = vec4(s.centre, s.size);
-    handed_seen = seen_centre(s.centre);
+    Seen seen = seen_centre(s);
+    handed_seen = vec4(seen.whole, seen.part);
+    handed_depth = seen.depth;
     handed_a1 = s.a1;
     handed_a2 = s.a2;
     handed_b2 = s.b2;

@@ -1,7 +1,8 @@
 // What the stages before the fragments hand over of a segment; HANDED is "flat out" or "flat in".
 
 HANDED vec4 handed_centre;     // xyz: local mm; w: size (mm)
-HANDED vec4 handed_seen;       // window coordinates of the centre, see splines/ray.glsl
+HANDED vec4 handed_seen;       // the centre as it is seen, see splines/ray.glsl
+HANDED vec2 handed_depth;
 HANDED vec4 handed_a1;         // control points, see splines/segment.glsl
 HANDED vec4 handed_a2;
 HANDED vec4 handed_b2;

@@ -1,4 +1,4 @@
-// The depth as the keys of the G-buffer (pvfiblets/engine/gbuffer.py), of which pyramids are made too; all ones where nothing is.
+// The depth so far as the keys that the pyramid is made of (pvfiblets/engine/gbuffer.py); all ones where nothing is.
 
 #version 430
 
@@ -7,6 +7,6 @@ uniform sampler2D depths;
 out uint key;
 
 void main() {
-    float z = texelFetch(depths, ivec2(gl_FragCoord.xy), 0).x;
-    key = z >= 1.0 ? 0xFFFFFFFFu : uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u;
+    float far = texelFetch(depths, ivec2(gl_FragCoord.xy), 0).x;
+    key = 0xFFFFFFFFu - (far > 0.0 ? uint(clamp(far * 4294967296.0, 1.0, 4294967040.0)) : 0u);
 }

@@ -5,52 +5,99 @@
 //   o            its point next to the segment's centre, relative to that, over the segment's size
 //   l            position along it from o, in sizes
 //   D, E         see frame/tubes.glsl
+//   U, W         see splines/block.glsl
 //
 // Where the centre shows in the window the ray goes through, beside it, as many pixels away as the pixel is: float32 then
-// rounds relative to the segment and not to its distance from the eye. Where the centre lies beside or behind the eye, the
-// eye itself is near.
+// rounds relative to the segment and not to its distance from the eye. Where the centre is in the window, and how deep, is
+// found in float64 where OpenGL has it, and handed on in two parts. Where the centre lies beside or behind the eye, the eye
+// itself is near.
 
 #include "frame/blocks.glsl"
 
 struct Ray {
     vec3 o;
     vec3 d;
-    vec2 depth;     // of the point o: homogeneous Z and W
+    vec2 depth;     // of the point o: U and W
+    vec2 shift;     // what o adds to those of the centre
     vec2 rise;      // of both by l
+};
+
+// The centre of a segment, as the camera sees it.
+struct Seen {
+    vec2 whole;     // pixel, and the part of one
+    vec2 part;
+    vec2 depth;     // U and W
 };
 
 vec3 window_row(int row) {
     return vec3(window_from_local[0][row], window_from_local[1][row], window_from_local[2][row]);
 }
 
-Ray ray_through(vec2 pixel, vec3 centre, float size, vec4 seen) {
+Ray ray_through(vec2 pixel, vec3 centre, float size, Seen seen) {
     precise vec3 way = tube_ray.xyz + tube.w * (pixel.x * tube_ray_x.xyz + pixel.y * tube_ray_y.xyz);
     precise vec3 d = way / max(length(way), 1e-30);
-    float w = seen.w;
+    float w = seen.depth.y;
     precise vec3 o;
     if (tube.w > 0.0 && w < 0.25 * size * tube.y) {
         o = (tube_eye.xyz - centre) / size;
     } else {
-        vec2 off = pixel - seen.xy;
+        precise vec2 off = (pixel - seen.whole) - seen.part;
         o = w / size * (off.x * tube_ray_x.xyz + off.y * tube_ray_y.xyz);
     }
     precise vec3 next = o - dot(o, d) * d;
-    vec3 z_row = window_row(2) * size, w_row = window_row(3) * size;
-    return Ray(next, d, vec2(seen.z + dot(z_row, next), seen.w + dot(w_row, next)), vec2(dot(z_row, d), dot(w_row, d)));
+    vec3 u_row = spline_rows[6].xyz * size, w_row = spline_rows[4].xyz * size;
+    vec2 shift = vec2(dot(u_row, next), dot(w_row, next));
+    return Ray(next, d, seen.depth + shift, shift, vec2(dot(u_row, d), dot(w_row, d)));
 }
 
-// Window coordinates of a segment's centre: pixels (where it is in front of the eye), then homogeneous Z and W.
-vec4 seen_centre(vec3 p) {
-    precise vec4 c = window_from_local[0] * p.x + window_from_local[1] * p.y + window_from_local[2] * p.z
-                   + window_from_local[3];
-    precise float r = 1.0 / max(c.w, 1e-30);
-    return vec4(c.xy * r, c.zw);
+#if __VERSION__ >= 400
+double row_at(int row, dvec3 p) {
+    vec4 high = spline_rows[2 * row], low = spline_rows[2 * row + 1];
+    return dot(dvec3(high.xyz) + dvec3(low.xyz), p) + (double(high.w) + double(low.w));
 }
 
-float depth_along(Ray ray, float l) {
+dvec3 exact_centre(Segment s) { return dvec3(s.place) * double(spline_scale.x) + dvec3(s.middle); }
+
+Seen seen_centre(Segment s) {
+    dvec3 p = exact_centre(s);
+    double w = row_at(2, p), over = 1.0 / max(w, double(1e-30));
+    dvec2 pixel = dvec2(row_at(0, p), row_at(1, p)) * over;
+    vec2 whole = vec2(floor(clamp(pixel, dvec2(-1e7), dvec2(1e7))));
+    return Seen(whole, vec2(pixel - dvec2(whole)), vec2(float(row_at(3, p)), float(w)));
+}
+#else
+float row_at(int row, vec3 p) { return dot(spline_rows[2 * row].xyz, p) + spline_rows[2 * row].w; }
+
+Seen seen_centre(Segment s) {
+    float w = row_at(2, s.centre);
+    vec2 pixel = vec2(row_at(0, s.centre), row_at(1, s.centre)) / max(w, 1e-30);
+    return Seen(pixel, vec2(0.0), vec2(row_at(3, s.centre), w));
+}
+#endif
+
+// 1 - depth.
+float farness_along(Ray ray, float l) {
     precise vec2 at = ray.depth + l * ray.rise;
-    precise float depth = at.x / max(at.y, 1e-30);
-    return depth;
+    precise float far = at.x / max(at.y, 1e-30);
+    return far;
+}
+
+// Depth as a key of 32 bits (pvfiblets/engine/gbuffer.py): that of the centre, and how far from it l is: (dU - F dW) / W, F the
+// centre's 1 - depth, which is small and has all of its digits.
+uint key_along(Ray ray, Segment s, Seen seen, float l) {
+    const float KEYS = 4294967296.0;
+    float far = farness_along(ray, l);
+    uint bits = uint(clamp(far * KEYS, 1.0, 4294967040.0));
+#if __VERSION__ >= 400
+    dvec3 p = exact_centre(s);
+    double w = row_at(2, p), centre = row_at(3, p) / max(w, double(1e-30));
+    precise vec2 off = ray.shift + l * ray.rise;
+    precise float moved = (off.x - float(centre) * off.y) / max(seen.depth.y + off.y, 1e-30);
+    if (w > 0.0 && abs(moved) < 0.25 && centre > 0.0 && centre < 1.0 && far > 1e-9 && far < 0.9999999) {
+        bits = uint(centre * double(KEYS)) + uint(int(round(moved * KEYS)));      // a negative one wraps round, and back
+    }
+#endif
+    return 0xFFFFFFFFu - bits;
 }
 
 // Narrows first..last to where start + l * rise is at least 0.

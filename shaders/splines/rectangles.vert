@@ -14,6 +14,7 @@ void main() {
     int index = first_segment + (gl_VertexID >> 2);
     gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
     handed_centre = handed_seen = handed_a1 = handed_a2 = handed_b2 = handed_b3 = vec4(0.0);
+    handed_depth = vec2(0.0);
     handed_ids = uvec2(0u);
     if (index >= spline_counts.y) return;
 #if FEATURE_SPLINE_LISTED

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform usampler2D owner;        // 0xFFFFFFFF where nothing shows
 uniform int count;               // segments
 
-layout(std430, binding = 0) buffer Seen { uint seen[]; };
+layout(std430, binding = 0) buffer SeenBits { uint seen[]; };
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -31,6 +31,8 @@ struct Segment {
     vec4 b2;
     vec4 b3;
     uvec2 ids;          // tube, flags
+    ivec3 place;        // of the first node, in integers from the reference
+    vec3 middle;        // from there to the centre, mm
 };
 
 float w_of(vec3 p) {
@@ -67,7 +69,7 @@ Segment segment_of(int index) {
     size = max(size, 1e-30);
     vec4 shift = vec4(middle, 0.0);
     return Segment(start + middle, size, (a1 - shift) / size, (a2 - shift) / size, (b2 - shift) / size,
-                   (b3 - shift) / size, s.zw);
+                   (b3 - shift) / size, s.zw, ivec3(i.xyz) - ivec3(reference.xyz), middle);
 }
 
 vec4 junction(Segment s) { return 0.5 * (s.a2 + s.b2); }

@@ -11,6 +11,7 @@
 #include "frame/blocks.glsl"
 #include "frame/clip_planes.glsl"
 #include "splines/block.glsl"
+#include "splines/segment.glsl"
 #include "splines/ray.glsl"
 #define HANDED flat in
 #include "splines/handed.glsl"
@@ -28,10 +29,11 @@ void main() {
 #if FEATURE_SPLINE_DISCARD
     discard;
 #else
-    Ray ray = ray_through(gl_FragCoord.xy, handed_centre.xyz, handed_centre.w, handed_seen);
+    Ray ray = ray_through(gl_FragCoord.xy, handed_centre.xyz, handed_centre.w,
+                          Seen(handed_seen.xy, handed_seen.zw, handed_depth));
     float first = -3e38, last = 3e38;
-    narrow(ray.depth.x, ray.rise.x, first, last);
-    narrow(ray.depth.y - ray.depth.x, ray.rise.y - ray.rise.x, first, last);
+    narrow(ray.depth.y - ray.depth.x, ray.rise.y - ray.rise.x, first, last);      // from the near plane
+    narrow(ray.depth.x, ray.rise.x, first, last);                                 // to the far plane
     narrow(ray.depth.y, ray.rise.y, first, last);
     bool cut = false;
     uint by = 0u;
@@ -71,9 +73,9 @@ void main() {
         second = true;
     }
     if (best.kind == MISS) discard;
-    float z = depth_along(ray, best.l);
-    if (!(z >= 0.0 && z <= 1.0)) discard;
-    gl_FragDepth = min(z, 0.99999988);       // that of an empty pixel is 1
+    float far = farness_along(ray, best.l);
+    if (!(far > 0.0 && far <= 1.0)) discard;
+    gl_FragDepth = far;                      // the other way round: float32 is fine where much of the picture is, far away
     uint t = min(uint(clamp(best.t, 0.0, 1.0) * 16777216.0), 0xFFFFFFu);
     shown = uvec2(handed_ids.x, t | half_hit << 24u | uint(best.kind) << 25u | by << 27u);
 #endif

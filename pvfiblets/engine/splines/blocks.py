@@ -7,14 +7,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..clipping import BLOCK_BYTES, clip_planes_block
-from ..frame import FRAME_BYTES, frame_block
+from ..frame import FRAME_BYTES, frame_block, local_frame
 from ..shaders import BLOCKS
 from ..tubes import TUBES_BYTES, tubes_block
 from ..view import Style, View
 
-__all__ = ["CONSTANTS", "SplineBlocks"]
+__all__ = ["CONSTANTS", "SPLINES_BYTES", "SplineBlocks"]
 
-SPLINES_BYTES = 32
+SPLINES_BYTES = 160
 Array = npt.NDArray[np.float64]
 
 CONSTANTS = {"max_clip_planes": 8}
@@ -60,9 +60,10 @@ class SplineBlocks:
         tubes = tubes_block(view, 1.0, *self._place)
         rays = np.frombuffer(tubes, "<f4").reshape(5, 4).astype(np.float64)
         pixel = max(np.linalg.norm(rays[2, :3]), np.linalg.norm(rays[3, :3]))
-        block = np.zeros((), [("scale", "<f4", 4), ("counts", "<i4", 4)])
+        block = np.zeros((), [("scale", "<f4", 4), ("counts", "<i4", 4), ("rows", "<f4", (4, 2, 4))])
         block["scale"] = self._place[1][0], middle, 0.5 * min_width * pixel, float(self._scaled)
         block["counts"] = iterations, n_segments, 0, 0
+        block["rows"] = self._rows(view)
         self._put("frame", "Frame", FRAME_BYTES, frame_block(view, Style(), *self._place)[0])
         self._put("tubes", "Tubes", TUBES_BYTES, tubes)
         self._put("splines", "Splines", SPLINES_BYTES, block.tobytes())
@@ -73,6 +74,14 @@ class SplineBlocks:
             return False
         self._put("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
         return True
+
+    def _rows(self, view: View) -> Array:
+        """(4, 2, 4): from local mm to X, Y, W of the window and to W - Z, in two parts."""
+        x, y, z, w = local_frame(view, *self._place)[2]
+        width, height = view.size
+        rows = np.array([width / 2 * (x + w), height / 2 * (y + w), w, (w - z) / 2])
+        high = rows.astype(np.float32).astype(np.float64)
+        return np.stack([high, rows - high], axis=1)
 
     def _put(self, name: str, block: str, size: int, data: bytes) -> None:
         if name not in self.buffers:

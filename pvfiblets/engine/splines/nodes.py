@@ -4,8 +4,8 @@ A node takes 32 bytes: its place as three integers of a lattice, radius, and the
 16: its nodes, its tube, and which of its ends others go on from. Numbers that colour take 8 bytes a node, colours 32,
 while they are shown.
 
-The lattice has 2^31 steps over the set's largest extent. Differences of integers are exact: however far from the origin
-a set lies, a segment is as exact as its own size in float32.
+The lattice has 2^30 to 2^31 steps over the set's largest extent. Differences of integers are exact: however far from
+the origin a set lies, a segment is as exact as its own size in float32.
 """
 
 from __future__ import annotations
@@ -149,7 +149,8 @@ def _lattice(points: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], 
         raise EngineError(f"nodes of spline tubes extend over {extent:g} mm, more than float32 holds; scale them down")
     # A set without extent gets steps that keep its radii in range; none are taken.
     step = extent / TOP if extent > TOP * 1e-36 else 1e-36
-    return low, np.full(3, step)
+    # A power of two, so that integers times it are exact in float32's range and in float64.
+    return low, np.full(3, 2.0 ** np.ceil(np.log2(step)))
 
 
 def _float_bits(values: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.uint32]:

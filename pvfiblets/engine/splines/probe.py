@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ..opengl import OpenGL
 from ..shaders import BLOCKS, Programs
-from .blocks import CONSTANTS
+from .blocks import CONSTANTS, SPLINES_BYTES
 from .choices import SOLVERS, check_choices
 
 __all__ = ["SolverProbe"]
@@ -63,7 +63,7 @@ class SolverProbe:
         features = [name for name, on in wanted.items() if on] + ([feature] if feature else [])
         self._program, self._array = self._programs.screen("splines/probe.frag", features)
         counts = np.array([iterations or SOLVERS[solver].iterations, 0, 0, 0], "<i4")
-        self._block = ctx.buffer(bytes(16) + counts.tobytes())
+        self._block = ctx.buffer((bytes(16) + counts.tobytes()).ljust(SPLINES_BYTES, b"\0"))
         self.seconds = 0.0
 
     def hits(

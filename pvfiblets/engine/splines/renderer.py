@@ -205,15 +205,14 @@ class SplineRenderer:
             with self._passes.timed("tubes"):
                 self._render(rounds, silhouettes, target)
         with self._passes.timed("attributes"):
-            target.write_keys(self._programs)
-            stages = {"vertex": "screen/far.vert", "fragment": "splines/attributes.frag"}
+            stages = {"vertex": "screen/near.vert", "fragment": "splines/attributes.frag"}
             program = self._programs.render(stages, [*common, *([reads] if reads else [])])
             self._prepare(program)
             target.hits.use(HITS_UNIT)
             program["hits"] = HITS_UNIT
             target.attributes.use()
             self._ctx.enable_only(moderngl.DEPTH_TEST)
-            self._ctx.depth_func = ">"
+            self._ctx.depth_func = "<"
             silhouettes.whole(program).render(moderngl.TRIANGLES, vertices=3)
             self._ctx.depth_func = "<="
         return target

@@ -107,7 +107,7 @@ class Silhouettes:
         """Set what silhouettes are drawn with, and leave nothing on that others do not expect."""
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST | (moderngl.CULL_FACE if self._boxes else moderngl.NOTHING))
-        ctx.depth_func = "<"
+        ctx.depth_func = ">"  # depth is the other way round: see shaders/splines/tube.frag
         ctx.wireframe = False
         ctx.provoking_vertex = moderngl.LAST_VERTEX_CONVENTION
         if self._boxes:

@@ -33,7 +33,7 @@ class SplineTarget:
     coloured : bool
     buffer : GBuffer
     hits, depths : moderngl.Texture
-        See ``shaders/splines/tube.frag``.
+        See ``shaders/splines/tube.frag``; depths are 1 at the near plane and 0 at the far one and where nothing is.
     hits_buffer, attributes, keys : moderngl.Framebuffer
         For the two passes, and for the depth alone.
 
@@ -62,7 +62,7 @@ class SplineTarget:
             kept = self.buffer
             self.keys = ctx.framebuffer([kept.depth])
             self._things.append(self.keys)
-            shown = [kept.owner, kept.ids, kept.position, kept.across, kept.colours]
+            shown = [kept.depth, kept.owner, kept.ids, kept.position, kept.across, kept.colours]
             self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None], self.depths)
             self._things.append(self.attributes)
             self.attributes.depth_mask = False
@@ -72,8 +72,9 @@ class SplineTarget:
 
     def clear(self) -> None:
         """Empty depths and owners; the others are undefined where depth is empty."""
-        self._gl.clear_depth(self.hits_buffer, 1.0)
+        self._gl.clear_depth(self.hits_buffer, 0.0)
         self._gl.clear_integers(self.attributes, (EMPTY,), 0)
+        self._gl.clear_integers(self.attributes, (EMPTY,), 1)
 
     def write_keys(self, programs: Programs) -> None:
         """Write the depth so far into the G-buffer."""

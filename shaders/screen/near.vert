@@ -1,0 +1,9 @@
+// One triangle that covers the whole target at depth 0. With a depth buffer that is 0 where nothing has been drawn, and a test of
+// "less", such pixels take none of it.
+
+#version 430
+
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    gl_Position = vec4(corner, -1.0, 1.0);
+}
