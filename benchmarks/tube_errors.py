@@ -204,7 +204,7 @@ def picture_lines(rows: list[Row]) -> list[str]:
     lines = [
         "", "## Whole pictures", "",
         f"Default settings, {whole[0]['size'][0]}×{whole[0]['size'][1]}, 45° from top to bottom; each pixel against "
-        "the very segment that it shows. *depth*: as stored, float32 between near and far; *point*: where the ray "
+        "the very segment that it shows. *depth*: as stored, a key of 32 bits; *point*: where the ray "
         f"enters the sphere of the parameter stored; *>*: share of pixels off by more than {GOAL:g} r; *format*: what "
         "storing the right depth in float32 would cost alone, p99. *false*: the ray meets nothing of the segment "
         f"shown; *behind*: another one is nearer, by more than {GOAL:g} r, in such a share of up to {NEAREST} pixels, "

@@ -7,7 +7,8 @@
 // Algorithm
 //   1. g has the five Bezier coefficients <q_i, q_j>: with none positive the ray misses.
 //   2. Where g is concave, and f convex for certain, F1 has one root in 0..1: one piece. Else there are stops at the roots of
-//      g'' and at the minima of g, which lie where g'' > 0, and half-way: between two stops g > 0 in one part at most.
+//      g'' and at the minima of g, which lie where g'' > 0: between two of them g > 0 in one part at most. Three more stops
+//      between each find minima of f that have a maximum between them.
 //   3. From stop to stop: where F1 goes from - to +, the bracket is narrowed to the root. The ends count where f rises
 //      from 0, or falls to 1. The nearest of all is kept.
 // Stops and roots take turns in one loop with one evaluation, whatever its lanes are at: processors that run many fragments at
@@ -72,13 +73,13 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
     vec4 stops = outside ? vec4(from.x, to.x, t_0, t_1) : vec4(t_0, from.x, to.x, t_1);
 
     bool narrowing = false, at_start = true;
-    int stop = easy ? 13 : 0;
+    int stop = easy ? 27 : 0;
     float lo = 0.0, u_lo = 1.0, hi = 0.0, u_hi = 1.0, top = 0.0, u_top = 0.0, t = 0.0;
 #if FEATURE_SPLINE_ITP
     float slack = 0.0, kappa = 0.0;
 #endif
     int left = spline_counts.x;
-    for (int i = 0; i < 7 * spline_counts.x + 16; ++i) {
+    for (int i = 0; i < 7 * spline_counts.x + 32; ++i) {
         vec3 q = q_a + t * (q_b + t * q_c), dq = q_b + 2.0 * t * q_c;
         float g = product(q, q), g1 = product(q, dq), s = sqrt(max(g, 0.0)), sloped = s * (h_b + 2.0 * t * h_c), u_t = sloped - g1;
         bool done = false, minimum = false;
@@ -144,7 +145,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
             u_lo = u_top;
             ++stop;
         }
-        if (!narrowing && stop > 13) break;
+        if (!narrowing && stop > 27) break;
         if (narrowing) {
 #if FEATURE_SPLINE_ILLINOIS
             t = hi - u_hi * (hi - lo) / (u_hi - u_lo);
@@ -164,10 +165,10 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
             t = next > lo && next < hi ? next : 0.5 * (lo + hi);
 #endif
         } else {
-            int k = stop >> 1;
+            int k = stop >> 2, part = stop & 3;
             t = k < 2 ? (k == 0 ? stops.x : stops.y) : k == 2 ? stops.z : k == 3 ? stops.w : 1.0;
             if (outside && k > 3 && k < 6) t = k == 4 ? from.y : to.y;
-            if ((stop & 1) == 0) t = 0.5 * (lo + t);
+            if (part < 3) t = lo + (t - lo) / float(4 - part);
         }
     }
 }
