@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvfiblets.engine.splines import SplineRenderer
+from pvfiblets.engine.splines import SILHOUETTES, SplineRenderer
 from pvfiblets.splines import NodeValues, SplineTubes, reference
-from pvfiblets.splines.curves import controls, derivative, evaluate
-from pvfiblets.splines.reference import CAP, ENTRY, EXIT, MISS
+from pvfiblets.splines.curves import MIDDLE, controls, derivative, evaluate
+from pvfiblets.splines.reference import CAP, EXIT, MISS, surface_distance
 
 from .pictures import EMPTY, unpacked_tangent
 from .tubes import rays
@@ -63,11 +63,12 @@ def grazing(points, o, d, part=1e-4, **limits):
 # -------------------------------------------------------------------------------------------------------------- sets
 
 
-def bundle(n=4, m=6, seed=0, radius=1.2, spread=14.0, step=5.0, **more):
+def bundle(n=6, m=6, seed=0, radius=1.8, spread=8.0, step=5.0, **more):
     """Wandering tubes of varying radius through nodes of a step of 5 mm, with numbers and colours at the nodes."""
     rng = np.random.default_rng(seed)
     d = unit(rng.normal(0, 1, (n, 1, 3)) + np.cumsum(rng.normal(0, 0.4, (n, m, 3)), axis=1))
-    places = rng.uniform(-spread, spread, (n, 1, 3)) + np.cumsum(step * d, axis=1)
+    places = np.cumsum(step * d, axis=1)
+    places += rng.uniform(-spread, spread, (n, 1, 3)) - places.mean(axis=1, keepdims=True)
     radii = radius * (1 + 0.5 * np.sin(np.arange(n * m)).reshape(n, m))
     numbers, colours = rng.normal(size=(n, m)), rng.uniform(0.2, 0.8, (n, m, 4))
     index = np.arange(n * m).reshape(n, m)
@@ -188,14 +189,14 @@ class Seen(NamedTuple):
         return np.where(self.drawn, self.half // 2, -1)
 
 
-def seen(tubes, view, *, min_width=0.0, inside=False, grow=1.0):
+def seen(tubes, view, *, min_width=0.0, inside=False, grow=1.0, middle=MIDDLE):
     """Meet the ray of every pixel with every half.
 
     From the near plane on, or the last plane of the caller's to let it in, and to the far plane or the first that ends
-    it. Where the near plane begins inside of a tube, `inside` shows the wall that the ray leaves by: of all halves that
-    it is in at a place it follows the farthest, until it is in none.
+    it. Where the near plane begins inside of a tube, `inside` shows the wall that the ray leaves by: of all the tube's
+    halves that it is in at a place it follows the farthest, until it is in none. Another tube that is met before shows.
     """
-    points = widened(controls(tubes), view, min_width).reshape(-1, 3, 4)
+    points = widened(controls(tubes, middle=middle), view, min_width).reshape(-1, 3, 4)
     points[..., 3] *= grow
     shape = view.size[::-1]
     o, d = (a.reshape(-1, 3) for a in rays(view.model_view_projection, view.size))
@@ -219,18 +220,24 @@ def seen(tubes, view, *, min_width=0.0, inside=False, grow=1.0):
         if len(rows):
             met = reference.nearest_hits(points, o[rows], d[rows], start=start[rows], end=end[rows], capped=capped)
             l[rows], t[rows], kind[rows], half[rows] = met.l, met.t, met.kind, met.half
-    outside = np.flatnonzero((kind == EXIT) | (plane < 0)) if not inside else np.zeros(0, int)
-    if len(outside):  # what the near plane opens shows nothing
-        _only_entries(points, o, d, start, end, outside, l, t, kind, half)
     if inside:
-        _walls(points, o, d, start, end, np.flatnonzero(plane < 0), l, t, kind, half)
+        rows = np.flatnonzero(plane < 0)
+        kind[rows], l[rows] = MISS, np.inf
+        for number in np.unique(tubes.tubes):
+            some = np.flatnonzero(np.repeat(tubes.tubes, 2) == number)
+            met = _seen_from(points[some], o[rows], d[rows], start[rows], end[rows])
+            nearer = (met.kind != MISS) & (met.l < l[rows])
+            at = rows[nearer]
+            l[at], t[at], kind[at], half[at] = met.l[nearer], met.t[nearer], met.kind[nearer], some[met.half[nearer]]
+    else:
+        assert not (kind == EXIT).any(), "the near plane opens a tube: say inside=True"
     drawn = kind != MISS
     ball, slope = np.zeros((n, 4)), np.zeros((n, 4))
     ball[drawn], slope[drawn] = evaluate(points[half[drawn]], t[drawn]), derivative(points[half[drawn]], t[drawn])
     at = o + np.where(drawn, l, 0.0)[:, None] * d
     with np.errstate(divide="ignore", invalid="ignore"):
-        normal = (at - ball[:, :3]) / ball[:, 3:]
-        tangent = unit(slope[:, :3])
+        normal = np.nan_to_num((at - ball[:, :3]) / ball[:, 3:], posinf=0.0, neginf=0.0)
+        tangent = np.nan_to_num(unit(slope[:, :3]))
     normal = np.where((kind == EXIT)[:, None], -normal, normal)
     cap = kind == CAP
     if cap.any():
@@ -251,33 +258,88 @@ def far_ends(view):
     return np.linalg.norm(far - near, axis=-1)
 
 
-def _only_entries(points, o, d, start, end, rows, l, t, kind, half):  # noqa: E741
-    """Of each ray the nearest entry that lies between its limits."""
-    kind[rows], half[rows] = MISS, -1
-    best = np.full(len(o), np.inf)
-    for number, points_of_one in enumerate(points):
-        met = reference.hits(points_of_one, o[rows], d[rows], start=start[rows], end=end[rows])
-        good = (met.kind == ENTRY) & (met.l < best[rows])
-        at = rows[good]
-        best[at], l[at], t[at], kind[at], half[at] = met.l[good], met.l[good], met.t[good], ENTRY, number
+def _seen_from(points, o, d, start, end):
+    """Of one tube: the wall by which rays leave it that begin inside, the nearest entry of the others."""
+    met = reference.nearest_hits(points, o, d, start=start, end=end)
+    place, t, half = start.copy(), np.zeros(len(o)), np.full(len(o), -1)
+    left = np.arange(len(o))
+    while len(left):
+        before = place[left]
+        for number, one in enumerate(points):
+            found = reference.hits(one, o[left], d[left], start=before)
+            farther = (found.kind == EXIT) & (found.l > place[left] * (1 + 1e-9) + 1e-9)
+            at = left[farther]
+            place[at], t[at], half[at] = found.l[farther], found.t[farther], number
+        left = left[place[left] > before]
+    within = half >= 0
+    hidden = within & (place > end)
+    met.l[within], met.t[within], met.half[within] = place[within], t[within], half[within]
+    met.kind[within] = EXIT
+    met.kind[hidden] = MISS
+    return met
 
 
-def _walls(points, o, d, start, end, rows, l, t, kind, half):  # noqa: E741
-    """Where rays that begin inside leave the union of all halves; others keep what they have."""
-    place, left = start[rows].copy(), np.ones(len(rows), bool)
-    last_half, last_t = np.full(len(rows), -1), np.zeros(len(rows))
-    while left.any():
-        some = np.flatnonzero(left)
-        farthest, found_t, found_half = place[some].copy(), np.zeros(len(some)), np.full(len(some), -1)
-        for number, points_of_one in enumerate(points):
-            met = reference.hits(points_of_one, o[rows[some]], d[rows[some]], start=place[some])
-            more = (met.kind == EXIT) & (met.l > farthest * (1 + 1e-9) + 1e-9)
-            farthest[more], found_t[more], found_half[more] = met.l[more], met.t[more], number
-        moved_on = found_half >= 0
-        place[some[moved_on]] = farthest[moved_on]
-        last_half[some[moved_on]], last_t[some[moved_on]] = found_half[moved_on], found_t[moved_on]
-        left[some[~moved_on]] = False
-    was = last_half >= 0
-    shown = was & (place <= end[rows])
-    l[rows[was]], kind[rows[was]], half[rows[was]] = place[was], MISS, -1
-    t[rows[shown]], kind[rows[shown]], half[rows[shown]] = last_t[shown], EXIT, last_half[shown]
+# ---------------------------------------------------------------------------------------------------- comparisons
+
+
+def distances(picture, view):
+    """(h, w) mm from the near plane to what the window depth says."""
+    w, h = view.size
+    y, x = np.mgrid[:h, :w] + 0.5
+    clip = np.stack([2 * x / w - 1, 2 * y / h - 1, 2 * picture.z - 1, np.ones_like(x)], -1)
+    at = clip @ np.linalg.inv(view.model_view_projection).T
+    o, d = rays(view.model_view_projection, view.size)
+    return ((at[..., :3] / at[..., 3:] - o) * d).sum(-1)
+
+
+def degrees(a, b):
+    """Angles between unit vectors, right for small ones too."""
+    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=-1) / 2, 0, 1)))
+
+
+def assert_shows(picture, tubes, view, *, expected=None, wrong=0.002, depth=2e-3, least=300, **options):
+    """Compare all that a picture has; return what was expected.
+
+    `wrong` is the share of pixels that may show something else: on edges, where a sliver of the radius decides, and
+    where two segments are met at the same place. `depth` is over the radius.
+    """
+    expected = expected or seen(tubes, view, **options)
+    assert expected.drawn.sum() >= least
+    count = expected.drawn.sum()
+    assert (picture.drawn != expected.drawn).sum() <= wrong * count
+    both = picture.drawn & expected.drawn
+    # Beyond this slope float32 rounds along the surface.
+    clear = both & (np.abs(expected.facing) > 0.05)
+    step = np.spacing(picture.z.astype(np.float32)).astype(float) + 2.0**-31
+    o, d = rays(view.model_view_projection, view.size)
+    l = distances(picture, view)  # noqa: E741
+    finer = np.abs(distances(picture._replace(z=picture.z - 4 * step), view) - l)
+    off = np.abs(l - expected.l) / (depth * np.maximum(expected.radius, 1e-30) + finer)
+    assert (off > 1)[clear].sum() <= wrong * count
+    same = clear & (picture.owner == expected.owner)
+    # A hit at a node belongs to either segment.
+    t = 0.5 * (expected.t + (expected.half % 2))
+    at_node = np.minimum(t, 1 - t) < 2e-3
+    cap = expected.kind == CAP
+    assert (clear & ~same & ~at_node & ~cap).sum() <= wrong * count
+    if (cap & both).any():  # where several segments are cut at once, any that is cut there will do
+        cut = cap & both
+        second = (picture.t[cut] >= 0.5).astype(int)
+        half = controls(tubes)[picture.owner[cut], second]
+        inside = surface_distance(half, (o + l[..., None] * d)[cut]) < depth * half[:, :, 3].max(axis=1)
+        assert (~inside).sum() <= wrong * count
+    assert (np.abs(picture.t - t) > 0.01)[same & ~cap].sum() <= wrong * count
+    assert np.median(np.abs(picture.t - t)[same & ~cap]) < 1e-3 if (same & ~cap).any() else True
+    assert (degrees(picture.normal, expected.normal) > 1.0)[same].sum() <= wrong * count
+    assert (degrees(picture.tangent, expected.tangent) > 1.5)[same].sum() <= wrong * count
+    assert (picture.tube == tubes.tubes[np.maximum(picture.owner, 0)])[picture.drawn].all()
+    return expected
+
+
+def assert_all_show(gl, tubes, view, *, solver="auto", inside=False, **bounds):
+    """Draw with every kind of silhouettes; return what was expected and the last picture."""
+    expected = seen(tubes, view, inside=inside)
+    for silhouettes in SILHOUETTES:
+        picture = draw_splines(gl, tubes, view, silhouettes=silhouettes, solver=solver, min_width=0.0)
+        assert_shows(picture, tubes, view, expected=expected, **bounds)
+    return expected, picture
