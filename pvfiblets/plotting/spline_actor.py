@@ -15,12 +15,12 @@ from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.mapper import PlottedSplines
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.shading import SurfaceShading
-from pvfiblets.plotting.spline_scalars import find_tube_scalars, with_node_values
+from pvfiblets.plotting.spline_scalars import find_tube_scalars, with_built_in, with_node_values
+from pvfiblets.splines.tubes import SplineTubes
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.plotting.scalars import Scalars
-    from pvfiblets.splines.tubes import SplineTubes
 
 
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
@@ -95,10 +95,11 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
         options: SplineOptions | None = None,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
-        self._tubes, scalars = with_node_values(tubes, scalars)
+        self._tubes, scalars = with_node_values(_checked(tubes), scalars)
+        self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
         self._init_colours(scalars, settings, theme)
         self._init_shading()
-        mapper = PlottedSplines(self._tubes, options=options)
+        mapper = PlottedSplines(self._shown, options=options)
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
@@ -113,14 +114,18 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
 
     @property
     def tubes(self) -> SplineTubes:
-        """What is drawn; others may be put in their place."""
+        """What is drawn; others may be put in their place.
+
+        Numbers that are computed, such as ``"radius"`` as scalars, are computed anew.
+        """
         return self._tubes
 
     @tubes.setter
     def tubes(self, tubes: SplineTubes) -> None:
-        tubes, choice = with_node_values(tubes, self._choice)
-        found = self._find(tubes, choice)
-        self._draw(tubes)
+        tubes, choice = with_node_values(_checked(tubes), self._choice)
+        shown = with_built_in(tubes, choice)
+        found = self._find(shown, choice)
+        self._draw(tubes, shown)
         self._choice = choice
         self._show(found)
 
@@ -138,9 +143,10 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
         tubes, scalars = with_node_values(self._tubes, scalars)
-        found = self._find(tubes, scalars)
-        if tubes is not self._tubes:
-            self._draw(tubes)
+        shown = with_built_in(self._shown if tubes is self._tubes else tubes, scalars)
+        found = self._find(shown, scalars)
+        if shown is not self._shown:
+            self._draw(tubes, shown)
         self._colour_by(scalars, found)
 
     def copy(self, deep: bool = True) -> SplineTubeActor:
@@ -317,20 +323,29 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
 
     @property
     def _drawn(self) -> SplineTubes:
-        return self._tubes
+        return self._shown
 
     def _change(self, **options: Any) -> None:
         self._mapper.options = replace(self._mapper.options, **options)
 
-    def _draw(self, tubes: SplineTubes) -> None:
-        """Give the mapper other tubes; colours for another number of tubes go first."""
+    def _draw(self, tubes: SplineTubes, shown: SplineTubes) -> None:
+        """Give the mapper other tubes, ``shown``; colours for another number of tubes go first."""
         if tubes.n_tubes != self._tubes.n_tubes:
             self._mapper.colouring = Colouring("solid")
-        self._mapper.set_tubes(tubes)
-        before, self._tubes = self._tubes, tubes
+        self._mapper.set_tubes(shown)
+        before, self._tubes, self._shown = self._tubes, tubes, shown
         outline = self.silhouette
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
         return None if choice is None else find_tube_scalars(tubes, choice)
+
+
+def _checked(tubes: Any) -> SplineTubes:
+    if not isinstance(tubes, SplineTubes):
+        raise TypeError(
+            f"tubes are a {type(tubes).__name__}; give SplineTubes, which pvfiblets.splines.build.as_spline_tubes "
+            "makes of lines"
+        )
+    return tubes

@@ -45,7 +45,9 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     if isinstance(source, SplineTubes):
         return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
     source = _read(source)
-    if isinstance(scalars, str) and scalars in BUILT_IN and not _has(source, scalars):
+    if isinstance(scalars, str) and not _has(source, scalars):
+        if scalars not in BUILT_IN:
+            raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), _names(source), strict=True))))
         return as_spline_tubes(source, **{**shape, "scalar_slopes": None}), scalars
     tubes = as_spline_tubes(source, scalars=scalars, rgb=rgb, **shape)
     if scalars is None or isinstance(scalars, str):
@@ -56,16 +58,39 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     return replace(tubes, tube_values={**rest, UNNAMED: tubes.tube_values[_GIVEN]}), UNNAMED
 
 
-def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> tuple[SplineTubes, Any]:
-    """Store ``scalars`` with the tubes if they are an array with a row for each node, or computed at nodes.
+def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
+    """Return tubes that have numbers at nodes for ``"radius"`` or ``"arc_length"``, computed if that is the choice.
 
     Parameters
     ----------
     tubes : SplineTubes
         Stay as they are.
     scalars : str or array or None
-        ``(n_nodes,)`` numbers, or ``(n_nodes, 3)`` or ``(n_nodes, 4)`` colours, uint8 or from 0 to 1; ``"radius"`` or
-        ``"arc_length"``. All else is passed through.
+        What colours them.
+
+    Returns
+    -------
+    SplineTubes
+        The same where nothing is to be computed. Those with arc lengths may have more nodes, not other segments.
+    """
+    if not isinstance(scalars, str) or scalars in tubes.values or scalars in tubes.tube_values:
+        return tubes
+    if scalars == RADIUS:
+        held = NodeValues(tubes.radius, tubes.radius_slopes)
+        return replace(tubes, values={**tubes.values, RADIUS: held})
+    return _with_arc_length(tubes) if scalars == ARC_LENGTH else tubes
+
+
+def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> tuple[SplineTubes, Any]:
+    """Store ``scalars`` with the tubes if they are an array with a row for each node.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        Stay as they are.
+    scalars : str or array or None
+        ``(n_nodes,)`` numbers, or ``(n_nodes, 3)`` or ``(n_nodes, 4)`` colours, uint8 or from 0 to 1. All else is
+        passed through.
     rgb : bool, default: True
         Whether floats of three or four columns are colours.
 
@@ -85,12 +110,6 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> t
     -----
     The slope at a node is the mean of those of the segments that meet there.
     """
-    if isinstance(scalars, str) and scalars not in tubes.values and scalars not in tubes.tube_values:
-        if scalars == RADIUS:
-            held = NodeValues(tubes.radius, tubes.radius_slopes)
-            tubes = replace(tubes, values={**tubes.values, RADIUS: held})
-        if scalars == ARC_LENGTH:
-            tubes = _with_arc_length(tubes)
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = np.asarray(scalars)
@@ -141,13 +160,9 @@ def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
         return Scalars(ORIENTATION, "orientation")
     if scalars == LENGTH:
         return per_streamline(LENGTH, tube_lengths(tubes), tubes.n_tubes, whole="tube")
-    listed = [
-        f"{title}: {', '.join(map(repr, names)) or 'none'}"
-        for title, names in (("At nodes", tubes.values), ("per tube", tubes.tube_values), ("built in", BUILT_IN))
-    ]
     raise KeyError(
-        f"there is no array {scalars!r}. {'; '.join(listed)}. Only what was asked for as scalars is kept at nodes: "
-        "give an array, or add the tubes with it"
+        _missing(scalars, **{"at nodes": tubes.values, "per tube": tubes.tube_values})
+        + ". Only what was asked for as scalars is kept at nodes: give an array, or add the tubes with it"
     )
 
 
@@ -263,8 +278,22 @@ def _read(source: Any) -> Any:
     return FibletSet.open(source) if os.fspath(source).lower().endswith(".fiblets") else formats.read(source)
 
 
+def _names(source: Any) -> tuple[list[str], list[str]]:
+    """Names of a source's data per point, and per line."""
+    if hasattr(source, "GetPointData"):
+        both = (source.GetPointData(), source.GetCellData())
+        per_point, per_line = ([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())] for data in both)
+        return per_point, per_line
+    return list(getattr(source, "per_point", ())), list(getattr(source, "per_streamline", ()))
+
+
 def _has(source: Any, name: str) -> bool:
     """Whether a source has data of that name."""
-    if hasattr(source, "GetPointData"):
-        return any(data.HasArray(name) for data in (source.GetPointData(), source.GetCellData()))
-    return any(name in getattr(source, kind, {}) for kind in ("per_point", "per_streamline"))
+    return any(name in names for names in _names(source))
+
+
+def _missing(name: str, **groups: Any) -> str:
+    """Say that there is no array ``name``, and which there are."""
+    known = {**groups, "built in": BUILT_IN}
+    listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
+    return f"there is no array {name!r}; {'; '.join(listed)}"

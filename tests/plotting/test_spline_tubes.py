@@ -10,7 +10,7 @@ import pyvista as pv
 import pvfiblets as pf
 from pvfiblets.codec.compress import compress
 from pvfiblets.plotting import SplineTubeActor
-from pvfiblets.plotting.spline_scalars import find_tube_scalars, tube_lengths
+from pvfiblets.plotting.spline_scalars import find_tube_scalars, tube_lengths, with_built_in
 from pvfiblets.splines.build import as_spline_tubes
 
 FLAT = {"lighting": False, "show_scalar_bar": False, "radius": 1.6}
@@ -146,13 +146,14 @@ def test_a_node_that_tubes_share_is_a_place_along_each(plotter, front):
         mesh, tangents=tangents, radius=0.5, scalars="arc_length", cmap="gray", clim=(0, 27), lighting=False,
         show_scalar_bar=False,
     )  # fmt: skip
-    along, segments = actor.tubes.values["arc_length"].values, actor.tubes.segments
+    measured = with_built_in(actor.tubes, "arc_length")
+    along, segments = measured.values["arc_length"].values, measured.segments
     lengths = tube_lengths(actor.tubes)
     assert lengths[0] == pytest.approx(27.0)
     ends = along[segments]
     assert ends[:3] == pytest.approx(np.array([(0, 15), (15, 27), (0, lengths[1])]), rel=1e-6)
     assert (ends[3, 0], ends[-1, 1]) == pytest.approx((0.0, lengths[2]))
-    assert actor.tubes.points[segments[:3]].tolist() == mesh.points[[[0, 1], [1, 2], [1, 3]]].tolist()
+    assert measured.points[segments[:3]].tolist() == mesh.points[[[0, 1], [1, 2], [1, 3]]].tolist()
     picture = front()
     assert at(picture, 0.0, 11.5)[0] == pytest.approx(255 * (lengths[1] - 0.4) / 27, abs=3)
     assert at(picture, 6.0, 0.0)[0] == pytest.approx(255 * 21.1 / 27, abs=3)
@@ -350,7 +351,7 @@ def test_a_refused_change_leaves_the_actor_as_it_was(plotter, bars, front):
     [
         ({"radius": -1.0}, ValueError, "radius"),
         ({"radius": [1.0]}, ValueError, r"radius has the shape \(1,\)"),
-        ({"scalars": "fa"}, ValueError, "'fa'"),
+        ({"scalars": "fa"}, KeyError, "no array 'fa'.*'arc_length'"),
         ({"scalars": np.zeros((15, 2))}, ValueError, r"\(15, 2\)"),
         ({"method": "magic"}, ValueError, "method is 'magic'"),
         ({"opacity": 2}, ValueError, "opacity is 2"),
