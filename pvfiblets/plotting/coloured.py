@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
@@ -200,6 +202,7 @@ class Coloured:
 
 
 def _fraction(opacity: Any) -> float:
-    if not 0.0 <= float(opacity) <= 1.0:
+    number = isinstance(opacity, Real) or (isinstance(opacity, np.ndarray) and opacity.ndim == 0)
+    if not number or not 0.0 <= float(opacity) <= 1.0:
         raise ValueError(f"opacity is {opacity!r}; give a number from 0 to 1")
     return float(opacity)

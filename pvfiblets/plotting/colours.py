@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.scalars import Scalars
 
+MOST_COLOURS = 65536
+"""Entries of a look-up table."""
+
 
 def label_colours(count: int) -> list[Any]:
     """Return so many colours that are easily told apart, over again after twenty."""
@@ -108,8 +111,9 @@ def update_table(
     ValueError
         If the colour map, a colour or ``n_colors`` is none.
     """
-    if int(settings.n_colors) != settings.n_colors or settings.n_colors < 1:
-        raise ValueError(f"n_colors is {settings.n_colors!r}; give a whole number above zero")
+    count = settings.n_colors
+    if not isinstance(count, (int, float, np.number)) or not 1 <= count <= MOST_COLOURS or int(count) != count:
+        raise ValueError(f"n_colors is {count!r}; give a whole number above zero, up to {MOST_COLOURS}")
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None
     usual = label_colours(len(scalars.categories)) if scalars.categories else theme.cmap

@@ -113,7 +113,14 @@ class Keeping(Generic[A]):
         reset_camera: bool | None,
         render: bool,
     ) -> A:
-        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it."""
+        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it.
+
+        Where an argument is refused, the actor is not left behind.
+        """
+        if label is not None and not isinstance(label, str):
+            raise TypeError(f"label is a {type(label).__name__}; give a string")
+        if scalar_bar_args is not None and not isinstance(scalar_bar_args, dict):
+            raise TypeError(f"scalar_bar_args is {scalar_bar_args!r}; give a dict of arguments of add_scalar_bar")
         if user_matrix is not None:
             actor.user_matrix = user_matrix
         if show_scalar_bar is None:
@@ -128,7 +135,11 @@ class Keeping(Generic[A]):
         if label is not None:
             self._add_label(actor, label, renderer)
         self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
-        self._update_bar(actor)
+        try:
+            self._update_bar(actor)
+        except Exception:
+            self._plotter.remove_actor(actor, render=False)
+            raise
         actor.watch(self._update_bar)
         if render:
             self._plotter.render()
@@ -192,8 +203,6 @@ class Keeping(Generic[A]):
         state.title, state.labels = wanted, actor.shows_labels
 
     def _add_label(self, actor: A, label: str, renderer: Any) -> None:
-        if not isinstance(label, str):
-            raise TypeError(f"label is a {type(label).__name__}; give a string")
         face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
         entry = (face, label, pv.Color(actor.prop.color))
         renderer._labels[actor.memory_address] = entry  # noqa: SLF001 - as add_mesh does

@@ -140,8 +140,10 @@ def _from_vtk(mesh: Any) -> Lines:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     if not mesh.IsA("vtkPolyData"):
+        whole = "combine()." if mesh.IsA("vtkCompositeDataSet") else ""
         raise TypeError(
-            f"tubes cannot be made from a {type(mesh).__name__}; give its extract_surface() or extract_all_edges()"
+            f"tubes cannot be made from a {type(mesh).__name__}; give its {whole}extract_surface() or "
+            f"{whole}extract_all_edges()"
         )
     cells = mesh.GetLines()
     n = cells.GetNumberOfCells()

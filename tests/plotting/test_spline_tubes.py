@@ -358,12 +358,32 @@ def test_a_refused_change_leaves_the_actor_as_it_was(plotter, bars, front):
         ({"solver": "luck"}, ValueError, "solver is 'luck'"),
         ({"min_width": 1000}, ValueError, "min_width is 1000"),
         ({"scalars": "length", "clim": (2, 1)}, ValueError, "the low one first"),
+        ({"scalars": "length", "n_colors": None}, ValueError, "n_colors is None"),
+        ({"scalars": "length", "n_colors": 1e30}, ValueError, "n_colors is 1e"),
+        ({"scalars": "length", "scalar_bar_args": {"size": 3}}, TypeError, "size"),
+        ({"scalar_bar_args": "title"}, TypeError, "scalar_bar_args is 'title'"),
+        ({"opacity": None}, ValueError, "opacity is None"),
+        ({"opacity": "linear"}, ValueError, "opacity is 'linear'"),
+        ({"silhouettes": ["boxes"]}, ValueError, r"silhouettes is \['boxes'\]"),
+        ({"solver": {}}, ValueError, "solver is {}"),
+        ({"iterations": "many"}, ValueError, "iterations is 'many'"),
+        ({"iterations": float("inf")}, ValueError, "iterations is inf"),
+        ({"min_width": None}, ValueError, "min_width is None"),
+        ({"label": 3}, TypeError, "label is a int"),
     ],
 )
 def test_nonsense_is_refused_in_words(plotter, bars, arguments, error, message):
     with pytest.raises(error, match=message):
         plotter.add_spline_tubes(bars, **arguments)
     assert not plotter.actors
+
+
+def test_numbers_beyond_float32_and_infinite_ones_are_drawn(plotter, bars, front):
+    numbers = np.array([0.0, 1e300, -1e300, np.inf, -np.inf])
+    actor = plotter.add_spline_tubes(bars[1], scalars=numbers, nan_color="lime", **FLAT)
+    assert actor.clim == (-1e300, 1e300)
+    assert covered(front()) > 100
+    assert at(front(), 12.0, 0.0).tolist() == [0, 255, 0]
 
 
 def test_scalars_with_tubes_that_are_made_already(bars):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
+from typing import Any
 
 __all__ = ["SILHOUETTES", "SOLVERS", "Solver", "check_choices"]
 
@@ -59,11 +61,15 @@ def check_choices(
         Naming the value and what there is.
     """
     for name, value, known in (("silhouettes", silhouettes, SILHOUETTES), ("solver", solver, SOLVERS)):
-        if value != AUTO and value not in known:
+        if not isinstance(value, str) or (value != AUTO and value not in known):
             raise ValueError(f"{name} is {value!r}; use one of {[AUTO, *known]}")
     if culling not in (None, "two-phase"):
         raise ValueError(f"culling is {culling!r}; use 'two-phase' or None")
-    if iterations is not None and (isinstance(iterations, bool) or int(iterations) != iterations or iterations < 1):
+    if iterations is not None and not (_is_number(iterations) and iterations % 1 == 0 and iterations >= 1):
         raise ValueError(f"iterations is {iterations!r}; give a whole number above 0, or None for the solver's own")
-    if not (math.isfinite(min_width) and 0.0 <= min_width <= 64.0):
+    if not (_is_number(min_width) and 0.0 <= min_width <= 64.0):
         raise ValueError(f"min_width is {min_width!r}; give pixels from 0 (as thin as they are) to 64")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -113,7 +113,7 @@ class Nodes:
             self._shown = None
             if values is not None and self._tubes.n_segments:
                 numbers = values.values.ndim == 1
-                data = np.stack([values.values, values.slopes], axis=1).astype("<f4", casting="same_kind")
+                data = _singles(np.stack([values.values, values.slopes], axis=1))
                 if numbers:
                     self._put("value_texels", "values", "rg32f", data)
                 else:
@@ -159,3 +159,9 @@ def _float_bits(values: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.ui
         raise EngineError(f"{name} of spline tubes reach {largest:g}, more than float32 holds; scale the data down")
     bits: npt.NDArray[np.uint32] = np.ascontiguousarray(values, "<f4").view("<u4")
     return bits
+
+
+def _singles(numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.float32]:
+    """As float32; what is larger than that holds becomes its largest, and what is not finite stays so."""
+    within = np.where(np.isfinite(numbers), np.clip(numbers, -_LARGEST, _LARGEST), numbers)
+    return within.astype("<f4")
