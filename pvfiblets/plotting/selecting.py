@@ -297,7 +297,8 @@ class Selecting(SelectionMeasures):
         highlight = silhouette = None
         if selected is not None and (style.dim > 0.0 or style.color is not None):
             highlight = Highlight(selected, style.color, style.dim)
-        if selected is not None and style.silhouette is not None:
+        apart = selected is not None and (style.width is not None or style.as_tubes)
+        if selected is not None and style.silhouette is not None and not apart:
             from pvfiblets.mappers.shading import Silhouette
 
             silhouette = Silhouette(selected, style.silhouette)
@@ -307,13 +308,20 @@ class Selecting(SelectionMeasures):
         if self._standout is not None:
             self._standout.leave()
             self._standout = None
-        if selected is not None and (style.width is not None or style.as_tubes):
+        if apart:
             self._standout = self._make_standout(style)
 
     def _make_standout(self, style: SelectionStyle) -> Standout:
         width = self._mapper.line_width if style.width is None else style.width
         radius = style.radius if style.as_tubes else None
-        return Standout(self, self.selection, color=style.color, width=width, radius=radius)  # type: ignore[arg-type]  # as above
+        return Standout(
+            self,  # type: ignore[arg-type]  # as above
+            self.selection,
+            color=style.color,
+            width=width,
+            radius=radius,
+            outline=style.silhouette,
+        )
 
     def entered(self, renderer: Any) -> None:
         """Be told that a renderer draws the actor from now on."""

@@ -1,7 +1,7 @@
 """Selected streamlines drawn once more, wider or as tubes, in the place of the actor that they belong to.
 
 A small set of their own on a mapper of its own: the rest is drawn as before. What is drawn follows the owner: before
-each picture its place, looks, cuts and filters are looked at, and taken over where they changed.
+each picture its place, looks, shading, cuts and filters are looked at, and taken over where they changed.
 
 Tubes are spline tubes (`pvfiblets.mappers.splines`), smooth through the points. Where the owner is cut to a region,
 filtered point by point or coloured by a volume, which those cannot do, and where there are very many points, tubes are
@@ -20,18 +20,39 @@ from vtkmodules.vtkRenderingCore import vtkActor
 from pvfiblets.mappers import Colouring, FibletMapper, SplineMapper
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.mappers.scene import renderers_of, to_array
+from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import Tubes
 from pvfiblets.mappers.windows import weak
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.mappers.extras import Draw
     from pvfiblets.plotting.actor import FibletActor
     from pvfiblets.splines.tubes import SplineTubes
 
 
 MOST_POINTS = 400_000
 """Of spline tubes: they take 50 bytes for each on the GPU, fiblets two."""
+
+SHADES = ("ambient_occlusion", "depth_cue")
+"""Names of extras whose defaults are the extent of all that the owner has."""
+
+
+class _OfAll:
+    """An extra that takes its defaults from the whole of which a part is drawn."""
+
+    def __init__(self, extra: Any, whole: FibletSet) -> None:
+        self._extra, self._whole = extra, whole
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._extra, name)
+
+    def prepare(self, kept: Any, draw: Draw) -> Any:
+        return self._extra.prepare(kept, replace(draw, fiblets=self._whole))
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
+        self._extra.set_uniforms(kept, program, replace(draw, fiblets=self._whole))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +89,8 @@ class Standout:
         Pixels of the lines.
     radius : float, optional
         Of tubes (mm) in place of lines.
+    outline : tuple of float, optional
+        RGB of an outline around all.
     """
 
     def __init__(
@@ -78,11 +101,12 @@ class Standout:
         color: tuple[float, ...] | None,
         width: float,
         radius: float | None = None,
+        outline: tuple[float, float, float] | None = None,
     ) -> None:
         self.ids = ids
         self._owner = weak(owner)
         self._color = color
-        self._width, self._radius = width, radius
+        self._width, self._radius, self._outline = width, radius, outline
         self._fiblets = owner.fiblets
         self._few = radius is not None and int(np.diff(owner.fiblets.offsets())[ids].sum()) <= MOST_POINTS
         self._taken: dict[str, Any] = {}
@@ -166,6 +190,11 @@ class Standout:
             self.mapper.colouring = self._colours(mapper.colouring)
         if self._changed("planes", mapper.GetClippingPlanes()):
             self.mapper.SetClippingPlanes(mapper.GetClippingPlanes())
+        extras = mapper.extras
+        for name in SHADES:
+            if self._changed(name, extras.get(name)):
+                extra = extras.get(name)
+                self.mapper.set_extra(name, None if extra is None else _OfAll(extra, self._fiblets))
         if self._plan is not None:
             return
         if self._changed("options", mapper.options):
@@ -193,10 +222,14 @@ class Standout:
             tubes = spline_tubes_of(self._fiblets, plan.ids, float(self._radius or 0.0), plan.values)
             # Of a line of n points the segments begin at its points 0 to n - 2.
             self._starts = np.arange(tubes.n_segments) - np.searchsorted(tubes.tubes, tubes.tubes)
-            return SplineMapper(tubes)
-        mapper = FibletMapper(self._fiblets.extract(self.ids), line_width=self._width)
-        if self._radius is not None:
-            mapper.set_extra("tubes", Tubes(self._radius))
+            mapper: Any = SplineMapper(tubes)
+        else:
+            mapper = FibletMapper(self._fiblets.extract(self.ids), line_width=self._width)
+            if self._radius is not None:
+                mapper.set_extra("tubes", Tubes(self._radius))
+        if self._outline is not None:
+            ids = self.ids if plan is None else plan.ids
+            mapper.set_extra("silhouette", Silhouette(np.ones(len(ids), np.bool_), self._outline))
         return mapper
 
     def _remake(self, plan: _Splines | None) -> None:
@@ -208,7 +241,7 @@ class Standout:
         self.mapper.detach()
         self.mapper, self._plan = mapper, plan
         self.mapper.attach(self.actor)
-        for name in ("options", "colouring", "planes", "region", "filtering"):
+        for name in ("options", "colouring", "planes", "region", "filtering", *SHADES):
             self._taken.pop(name, None)
 
     def _changed(self, name: str, value: Any, *, equal: bool = False) -> bool:

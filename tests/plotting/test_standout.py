@@ -197,3 +197,34 @@ def test_memory_is_given_back(scene):
     actor.deselect()
     front()
     assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "gpu_bytes": 0}
+
+
+@pytest.mark.parametrize("style", [{"as_tubes": True, "radius": 2.0}, {"as_tubes": False, "width": 16}])
+def test_an_outline_goes_around_what_is_drawn(scene, style):
+    actor, front = scene
+    actor.select([1])
+    actor.selection_style(**style, color="lime", silhouette="magenta")
+    picture = front()
+    half = 2.0 if style["as_tubes"] else 1.6
+    assert at(picture, 0.0, half - 0.3).tolist() == [0, 255, 0]
+    assert at(picture, 0.0, half + 0.2).tolist() == [255, 0, 255]
+    actor.selection_style(silhouette=False)
+    assert (front() != [255, 0, 255]).any(axis=2).all()
+
+
+@pytest.mark.parametrize("spline", [True, False])
+def test_shading_of_the_actor_is_that_of_its_tubes(scene, spline):
+    """The cue's default distances are those of all bars, of which the selected one is in the middle."""
+    actor, front = scene
+    if not spline:
+        actor.clip(pv.Box((-50, 50, -50, 50, -50, 50)), name="all")
+    actor.position = (0.0, 30.0, 0.0)
+    actor.orientation = (90.0, 0.0, 0.0)  # z away from the viewer
+    actor.select([1])
+    actor.selection_style(color="white")
+    actor.depth_cue = {"color": "black", "strength": 1.0}
+    shade = front()[80:120, 95:105, 1].max()  # of the selected one: lines are red
+    assert drawn_by(actor) is (SplineMapper if spline else FibletMapper)
+    assert 90 < shade < 165
+    actor.depth_cue = False
+    assert front()[80:120, 95:105, 1].max() == 255
