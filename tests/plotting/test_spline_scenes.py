@@ -67,3 +67,47 @@ def test_culling_of_front_faces_leaves_tubes_as_they_are(both):
 
     tube, mesh = both(culled)
     assert (np.abs(tube - mesh).max(axis=2) > 40).mean() < 2e-3
+
+
+SHEAR = np.array([(1, 0.2, 0.5, 3), (-0.3, 1, 0, 0), (0, 0.4, 0.7, -2), (0, 0, 0, 1)], float)
+
+
+@pytest.mark.parametrize("effect", ["shear", "ssao", "eye dome", "stereo", "parallel", "volume"])
+def test_other_passes_and_places_show_the_same_as_for_meshes(both, effect):
+    grid = pv.ImageData(dimensions=(9, 9, 9), spacing=(4, 4, 4), origin=(-16, -16, -16))
+    grid["far"] = np.linalg.norm(grid.points, axis=1)
+
+    def arrange(plotter, actor):
+        lamp(plotter, positional=False)
+        if effect == "shear":
+            actor.user_matrix = SHEAR
+        elif effect == "ssao":
+            plotter.enable_ssao(radius=6)
+        elif effect == "eye dome":
+            plotter.enable_eye_dome_lighting()
+        elif effect == "stereo":
+            plotter.enable_stereo_render()
+        elif effect == "parallel":
+            plotter.enable_parallel_projection()
+        else:
+            plotter.add_volume(grid, opacity=[0.0, 0.2, 0.4], show_scalar_bar=False)
+
+    tube, mesh = both(arrange)
+    assert (tube.max(axis=2) > 0).mean() > 0.1
+    assert (np.abs(tube - mesh).max(axis=2) > 40).mean() < 4e-3
+
+
+def test_pickers_of_pyvista_that_look_at_the_picture_find_tubes(plotter):
+    actor = plotter.add_spline_tubes(BAR, radius=RADIUS)
+    plotter.view_xz()
+    plotter.show(auto_close=False)
+    points, actors = [], []
+    plotter.enable_point_picking(points.append, picker="prop", left_clicking=True, show_message=False, show_point=False)
+    plotter.iren._mouse_left_button_click(100, 100)
+    assert points[0] == pytest.approx([0.0, -RADIUS, 0.0], abs=0.3)
+    plotter.disable_picking()
+    plotter.enable_mesh_picking(
+        actors.append, picker="hardware", use_actor=True, left_clicking=True, show=False, show_message=False
+    )
+    plotter.iren._mouse_left_button_click(100, 100)
+    assert actors == [actor]
