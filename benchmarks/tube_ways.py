@@ -25,7 +25,7 @@ ABOUT = {
     "segment, by size on the screen; open ends",
     "tessellated-culled": "the same without back faces: faster, but one looks through the open ends",
     "engine": "this program's ray casting on a bare context: a G-buffer, not lit; its triangles are those without "
-    "culling, its bytes hold the culling's depth pyramid, and empty fragments leave nothing to hide behind",
+    "culling, and empty fragments leave nothing to hide behind",
     "engine-unculled": "the same without culling, as the paper has it",
     "engine-exact": "the same with tubes thinner than a pixel left as thin as they are",
     "splines": "`plotter.add_spline_tubes`: the same in a PyVista scene, lit by VTK",

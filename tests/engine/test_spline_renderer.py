@@ -225,10 +225,17 @@ def many():
     return bundle(60, 51, seed=5, radius=0.5, step=1.2)
 
 
+@pytest.fixture
+def few_are_many(monkeypatch):
+    """Have culling begin where tests do not take long."""
+    monkeypatch.setattr("pvfiblets.engine.splines.renderer.LEAST_SEGMENTS", 3000)
+
+
+@pytest.mark.usefixtures("few_are_many")
 def test_culling_changes_no_pixel(gl, camera):
     """Hidden segments are left out, and the picture is the same, turn by turn, cut, and from inside."""
     tubes = many()
-    assert tubes.n_segments >= LEAST_SEGMENTS
+    assert 3000 <= tubes.n_segments < LEAST_SEGMENTS
     culled, whole = SplineRenderer(gl, tubes), SplineRenderer(gl, tubes, culling=None)
     plane = [[0.4, 1.0, 0.1, 2.0]]
     views = [
@@ -255,6 +262,7 @@ def test_culling_changes_no_pixel(gl, camera):
     whole.release()
 
 
+@pytest.mark.usefixtures("few_are_many")
 def test_culling_is_for_rectangles_of_many_segments(gl, tubes):
     for options, some in (({}, tubes), ({"silhouettes": "boxes"}, many()), ({"culling": None}, many())):
         renderer = SplineRenderer(gl, some, **options)

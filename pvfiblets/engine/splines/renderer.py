@@ -50,7 +50,7 @@ class SplineRenderer:
     min_width : float
         Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
     culling : {'two-phase', None}
-        How segments behind others are found out, where rectangles, OpenGL 4.3 and some thousand segments are there for
+        How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
         it (:mod:`.visibility`). It changes no pixel.
     middle : float
         Share c of a derivative between control points (``shaders/splines/segment.glsl``); the paper has 1/3.
@@ -289,6 +289,7 @@ class SplineRenderer:
                 sizes |= {name: buffer.size for name, buffer in holder.buffers.items()}
         if self._visibility is not None:
             sizes["culling"] = self._visibility.nbytes
+            sizes["occlusion"] = self._visibility.pyramid_nbytes
         if self._target is not None:
             sizes["gbuffer"] = self._target.nbytes
         return {

@@ -5,7 +5,7 @@ camera, then tells of all others which cannot show; the rest is drawn after. Bot
 by calls whose numbers it writes itself: the CPU issues the same calls whatever shows, and nothing is read back. In what
 order segments are listed is not determined, and so neither is which of two owns a pixel in which both are as deep.
 
-It needs compute stages (OpenGL 4.3), and pays from some thousand segments on.
+It needs compute stages (OpenGL 4.3), and pays from some ten thousand segments on.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LEAST_SEGMENTS", "TwoPhase"]
 
-LEAST_SEGMENTS = 2000
+LEAST_SEGMENTS = 16000
+"""With fewer, two rounds and a pyramid cost more than what they spare: for 3,500 segments as much again."""
 LISTED_UNIT, OWNER_UNIT = 20, 12
 _PER_CALL = BATCH // 4
 _GROUP = 64
@@ -67,8 +68,13 @@ class TwoPhase:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of GPU memory, the pyramid's included."""
-        return self._pyramid.nbytes + sum(buffer.size for buffer in self.buffers.values())
+        """Bytes of GPU memory that go with the segments."""
+        return sum(buffer.size for buffer in self.buffers.values())
+
+    @property
+    def pyramid_nbytes(self) -> int:
+        """Bytes of GPU memory that go with the picture."""
+        return self._pyramid.nbytes
 
     def before(self, target: SplineTarget) -> None:
         """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared."""
