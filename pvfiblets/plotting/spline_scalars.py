@@ -279,10 +279,11 @@ def _read(source: Any) -> Any:
 
 
 def _names(source: Any) -> tuple[list[str], list[str]]:
-    """Names of a source's data per point, and per line."""
+    """Names of a source's numbers per point, and per line."""
     if hasattr(source, "GetPointData"):
         both = (source.GetPointData(), source.GetCellData())
-        per_point, per_line = ([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())] for data in both)
+        arrays = [[data.GetArray(i) for i in range(data.GetNumberOfArrays())] for data in both]  # None for text
+        per_point, per_line = ([a.GetName() for a in some if a is not None and a.GetName()] for some in arrays)
         return per_point, per_line
     return list(getattr(source, "per_point", ())), list(getattr(source, "per_streamline", ()))
 
@@ -296,4 +297,4 @@ def _missing(name: str, **groups: Any) -> str:
     """Say that there is no array ``name``, and which there are."""
     known = {**groups, "built in": BUILT_IN}
     listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
-    return f"there is no array {name!r}; {'; '.join(listed)}"
+    return f"there is no array {name!r} of numbers; {'; '.join(listed)}"
