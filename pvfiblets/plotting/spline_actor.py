@@ -245,8 +245,9 @@ class SplineTubeActor(Coloured, SurfaceShading, pv.Actor):
             raise ValueError(f"silhouette has no settings {unknown}; it has {list(_OUTLINE)}")
         chosen = np.full(self._tubes.n_tubes, settings["tubes"] is None)
         if settings["tubes"] is not None:
+            given = np.asarray(settings["tubes"])
             try:
-                chosen[np.asarray(settings["tubes"])] = True
+                chosen[given if given.size else given.astype(np.int64)] = True
             except IndexError as error:
                 raise IndexError(
                     f"tubes of the silhouette are {settings['tubes']!r}; give numbers from 0 to "

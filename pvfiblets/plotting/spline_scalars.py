@@ -48,7 +48,9 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     if isinstance(scalars, str) and not _has(source, scalars):
         if scalars not in BUILT_IN:
             raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), _names(source), strict=True))))
-        return as_spline_tubes(source, **{**shape, "scalar_slopes": None}), scalars
+        if shape.pop("scalar_slopes", None) is not None:
+            raise ValueError(f"scalar_slopes came with {scalars!r}, which has its own; leave them out")
+        return as_spline_tubes(source, **shape), scalars
     tubes = as_spline_tubes(source, scalars=scalars, rgb=rgb, **shape)
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars

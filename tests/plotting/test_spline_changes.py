@@ -1,4 +1,4 @@
-"""An actor of spline tubes that is given other tubes and other colours stays in step with itself."""
+"""Spline tubes that are given other tubes and colours stay in step with themselves; what is refused leaves nothing."""
 
 from __future__ import annotations
 
@@ -57,3 +57,36 @@ def test_unknown_names_list_what_there_is():
         with pytest.raises(KeyError, match=f"no array 'fa'.*{known}"):
             plotter.add_spline_tubes(source, scalars="fa")
     plotter.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"radius": -1.0}, ValueError, "radius"),
+        ({"radius": [1.0]}, ValueError, r"radius has the shape \(1,\)"),
+        ({"scalars": "fa"}, KeyError, "no array 'fa'.*'arc_length'"),
+        ({"scalars": np.zeros((15, 2))}, ValueError, r"\(15, 2\)"),
+        ({"method": "magic"}, ValueError, "method is 'magic'"),
+        ({"opacity": 2}, ValueError, "opacity is 2"),
+        ({"solver": "luck"}, ValueError, "solver is 'luck'"),
+        ({"min_width": 1000}, ValueError, "min_width is 1000"),
+        ({"scalars": "length", "clim": (2, 1)}, ValueError, "the low one first"),
+        ({"scalars": "length", "n_colors": None}, ValueError, "n_colors is None"),
+        ({"scalars": "length", "n_colors": 1e30}, ValueError, "n_colors is 1e"),
+        ({"scalars": "length", "scalar_bar_args": {"size": 3}}, TypeError, "size"),
+        ({"scalar_bar_args": "title"}, TypeError, "scalar_bar_args is 'title'"),
+        ({"opacity": None}, ValueError, "opacity is None"),
+        ({"opacity": "linear"}, ValueError, "opacity is 'linear'"),
+        ({"silhouettes": ["boxes"]}, ValueError, r"silhouettes is \['boxes'\]"),
+        ({"solver": {}}, ValueError, "solver is {}"),
+        ({"iterations": "many"}, ValueError, "iterations is 'many'"),
+        ({"iterations": float("inf")}, ValueError, "iterations is inf"),
+        ({"min_width": None}, ValueError, "min_width is None"),
+        ({"scalars": "arc_length", "scalar_slopes": np.ones(15)}, ValueError, "scalar_slopes came with 'arc_length'"),
+        ({"label": 3}, TypeError, "label is a int"),
+    ],
+)
+def test_nonsense_is_refused_in_words(plotter, arguments, error, message):
+    with pytest.raises(error, match=message):
+        plotter.add_spline_tubes(BARS, **arguments)
+    assert not plotter.actors
