@@ -178,8 +178,8 @@ def test_silhouettes_give_one_picture(gl, camera, tubes, parallel):
 def test_near_and_far_plane_cut_tubes(gl, camera, tubes, near_plane, far_plane, parallel):
     """Where the near plane opens a tube its inner wall shows; beyond the far plane there is nothing."""
     more = {**EYE, "near": near_plane, "far": far_plane, **({"height": 46.0} if parallel else {})}
-    view = View((96, 72), camera((96, 72), **more))
-    shown, _ = assert_all_show(gl, tubes, view, inside=near_plane > 30, wrong=0.006, least=200)
+    view = View((72, 54), camera((72, 54), **more))
+    shown, _ = assert_all_show(gl, tubes, view, inside=near_plane > 30, wrong=0.006, least=150)
     if near_plane > 30:
         assert (shown.kind == EXIT).sum() > 20
 
@@ -188,12 +188,12 @@ def test_from_inside_of_a_tube(gl, camera):
     """Nodes and halves go on into each other: of their spheres no wall is seen."""
     tube = winding()
     eye = tube.points[3] + [0.2, 0.3, 0.2]
-    size = (80, 60)
+    size = (64, 48)
     view = View(size, camera(size, eye=eye, target=tube.points[6], near=0.05, far=100.0, angle=75))
     shown = seen(tube, view, inside=True)
     for silhouettes, solver in (*((name, "auto") for name in SILHOUETTES), *(("auto", name) for name in SOLVERS)):
         picture = draw_splines(gl, tube, view, silhouettes=silhouettes, solver=solver)
-        assert_shows(picture, tube, view, expected=shown, wrong=0.01, least=4000)
+        assert_shows(picture, tube, view, expected=shown, wrong=0.01, least=2500)
     assert (shown.kind == EXIT).mean() > 0.5
 
 
@@ -238,7 +238,7 @@ def test_planes_cut_with_every_solver(gl, camera, tubes, solver):
 
 def test_the_near_plane_and_a_plane_at_once(gl, camera, tubes):
     """Where the plane makes the start of a ray there is a cap; where the near plane does, the wall shows."""
-    view = View((96, 72), camera((96, 72), **{**EYE, "near": 60.0}), [[0.9, 0.3, 0.2, 4.0]])
+    view = View((72, 54), camera((72, 54), **{**EYE, "near": 60.0}), [[0.9, 0.3, 0.2, 4.0]])
     picture = draw_splines(gl, tubes, view, min_width=0.0)
     shown = assert_shows(picture, tubes, view, inside=True, wrong=0.008, least=150)
     assert (shown.kind == CAP).sum() > 10

@@ -14,7 +14,7 @@ from pvfiblets.splines.reference import CAP, ENTRY, EXIT, Hits, hits, surface_di
 from .splines import KINDS, grazing, halves, rays_past, unit
 
 WAYS = [(solver, chain) for solver in SOLVERS for chain in (False, True) if chain or solver != "bisection"]
-COUNT = 4000
+COUNT = 3000
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +140,41 @@ def test_rays_that_begin_inside_leave_where_the_reference_says(gl, sample, solve
         error = np.abs(place - expected.l)[same] / points[same, :, 3].max(axis=1)
         assert np.quantile(error, 0.99) < 5e-4
         assert (error > 2e-2).mean() < 1e-3
+
+
+RARE = {
+    "two roots of f'''": (
+        [[0, 0, 0, 0.56386533], [-0.1598382, 0.47045471, -0.10475066, 0.060463501],
+         [-0.41588641, 0.90853921, -0.039937526, 0.46529062]],
+        [0.88783252, 5.4784392, -8.6534089], [-0.099692745, -0.49322792, 0.86416872],
+    ),
+    "three roots of f'''": (
+        [[0, 0, 0, 0.53999923], [0.066080128, -0.19119571, -0.46654834, 0.016651728],
+         [0.095674476, -0.045741495, -0.99436116, 0.49259195]],
+        [1.2797924, -8.8876143, 3.8656131], [-0.13651259, 0.88547954, -0.44417373],
+    ),
+    "a sliver at the end": (
+        [[0, 0, 0, 0.54432633], [0.20167911, -0.33254913, -0.40759859, 0.10698721],
+         [0.43918512, -0.48334548, -0.75729358, 0.363973]],
+        [5.8635884, -6.1577577, -6.5549012], [-0.56112456, 0.55220487, 0.6166109],
+    ),
+    "a sliver at the start": (
+        [[0, 0, 0, 0.4444798], [0.25060566, -0.33511105, 0.22612694, 0.07273412],
+         [0.20286107, -0.94080283, 0.27154636, 0.12547209]],
+        [-5.4987363, 3.7116999, -6.675589], [0.57381232, -0.43725948, 0.69249084],
+    ),
+}  # fmt: skip
+"""Half, origin and direction where a chain of derivatives breaks easily: a few in a hundred thousand."""
+
+
+@pytest.mark.parametrize("name", RARE)
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_chain_misses_no_root(gl, solver, name):
+    """More roots of f''' than the paper found, where the radius changes as fast as the place; hardly any of g."""
+    points, o, d = (np.array([a]) for a in RARE[name])
+    place, _, kind = probe(gl, solver, points, o, d, chain=True)
+    assert kind[0] == ENTRY
+    assert abs(place[0] - hits(points, o, d).l[0]) < 1e-4
 
 
 # ------------------------------------------------------------------------------------- halves that are hardly any
