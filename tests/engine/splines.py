@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pvfiblets.engine import Style, View
 from pvfiblets.engine.splines import SILHOUETTES, SplineRenderer
 from pvfiblets.splines import NodeValues, SplineTubes, reference
 from pvfiblets.splines.curves import MIDDLE, controls, derivative, evaluate
@@ -24,6 +25,10 @@ KINDS = {
     "needle": {"r": 0.001, "bend": 0.01},
 }
 """Halves 1 mm long; radius and its change, and the sideways pull at the middle control point."""
+
+
+EYE = {"eye": (3, -62, 14), "near": 20.0, "far": 120.0, "angle": 42.0}
+"""A camera that sees all of a :func:`bundle`."""
 
 
 def unit(vectors):
@@ -82,6 +87,11 @@ def bundle(n=6, m=6, seed=0, radius=1.8, spread=8.0, step=5.0, **more):
     )  # fmt: skip
 
 
+def many():
+    """A set with segments enough for culling."""
+    return bundle(60, 51, seed=5, radius=0.5, step=1.2)
+
+
 def tube_through(points, radius, **more):
     """One tube through nodes, with derivatives by the parameter."""
     points = np.asarray(points, float)
@@ -99,6 +109,12 @@ def winding(m=12, radius=2.0, vary=0.3):
     return tube_through(
         np.stack([40 * t, 10 * np.sin(4 * t), 6 * np.cos(3 * t)], 1), radius * (1 + vary * np.sin(9 * t))
     )
+
+
+def changed(tubes, /, **fields):
+    """The same set with other arrays."""
+    names = ("points", "segments", "radius", "tangents", "radius_slopes", "scaled", "tubes", "n_tubes", "values")
+    return SplineTubes(**({name: getattr(tubes, name) for name in names} | fields))
 
 
 def moved(tubes, matrix):
@@ -152,6 +168,26 @@ def draw_splines(gl, tubes, view, style=None, **options):
         return read_splines(renderer.render(view, style))
     finally:
         renderer.release()
+
+
+def scenes(camera):
+    """Views and styles that a process of its own can draw again."""
+    size, inside = (96, 72), {**EYE, "near": 59.0}
+    return [
+        (View(size, camera(size, **EYE)), Style(values="number")),
+        (View(size, camera(size, **EYE, height=40.0), [[0.4, 1.0, 0, 2.0], [1.0, 0, 0, 8.0]]), Style(values="colour")),
+        (View(size, camera(size, **inside)), Style()),
+    ]
+
+
+def pictures_of(ctx, camera, silhouettes, **options):
+    found = []
+    for some in (bundle(), many()):
+        renderer = SplineRenderer(ctx, some, silhouettes=silhouettes, **options)
+        for view, style in scenes(camera):
+            found.append(read_splines(renderer.render(view, style)))
+        renderer.release()
+    return found
 
 
 def widened(points, view, min_width):

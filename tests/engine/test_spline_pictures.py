@@ -13,6 +13,7 @@ from pvfiblets.splines.reference import CAP, EXIT
 
 from .pictures import near
 from .splines import (
+    EYE,
     SplinePicture,
     assert_all_show,
     assert_shows,
@@ -28,7 +29,6 @@ from .splines import (
 from .tubes import rays
 
 SIZE = (160, 120)
-EYE = {"eye": (3, -62, 14), "near": 20.0, "far": 120.0, "angle": 42.0}
 
 
 def hermite_halves(values, slopes, tubes, expected, t):

@@ -17,11 +17,21 @@ from pvfiblets.engine.splines.choices import check_choices
 from pvfiblets.engine.splines.visibility import LEAST_SEGMENTS
 from pvfiblets.splines import NodeValues, SplineTubes
 
-from .splines import SplinePicture, bundle, degrees, draw_splines, read_splines, winding
+from .splines import (
+    EYE,
+    SplinePicture,
+    bundle,
+    changed,
+    degrees,
+    draw_splines,
+    many,
+    pictures_of,
+    read_splines,
+    winding,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (96, 72)
-EYE = {"eye": (3, -62, 14), "near": 20.0, "far": 120.0, "angle": 42.0}
 
 
 @pytest.fixture(scope="module")
@@ -39,12 +49,6 @@ def renderer(gl, tubes):
     made = SplineRenderer(gl, tubes)
     yield made
     made.release()
-
-
-def changed(tubes, /, **fields):
-    """The same set with other arrays."""
-    names = ("points", "segments", "radius", "tangents", "radius_slopes", "scaled", "tubes", "n_tubes", "values")
-    return SplineTubes(**({name: getattr(tubes, name) for name in names} | fields))
 
 
 def empty():
@@ -221,10 +225,6 @@ def test_discarding_shows_nothing_and_takes_silhouettes_alone(gl, tubes, view):
 # -------------------------------------------------------------------------------------------------------- culling
 
 
-def many():
-    return bundle(60, 51, seed=5, radius=0.5, step=1.2)
-
-
 @pytest.fixture
 def few_are_many(monkeypatch):
     """Have culling begin where tests do not take long."""
@@ -359,26 +359,6 @@ def test_views_without_depth_or_size_are_harmless(gl, tubes, silhouettes):
 # ------------------------------------------------------------------------------------------------ older OpenGL
 
 
-def scenes(camera):
-    """Views and styles that a process of its own can draw again."""
-    inside = {**EYE, "near": 59.0}
-    return [
-        (View(SIZE, camera(SIZE, **EYE)), Style(values="number")),
-        (View(SIZE, camera(SIZE, **EYE, height=40.0), [[0.4, 1.0, 0, 2.0], [1.0, 0, 0, 8.0]]), Style(values="colour")),
-        (View(SIZE, camera(SIZE, **inside)), Style()),
-    ]
-
-
-def pictures_of(ctx, camera, silhouettes, **options):
-    found = []
-    for some in (bundle(), many()):
-        renderer = SplineRenderer(ctx, some, silhouettes=silhouettes, **options)
-        for view, style in scenes(camera):
-            found.append(read_splines(renderer.render(view, style)))
-        renderer.release()
-    return found
-
-
 DRAW_ELSEWHERE = """
 import importlib.util, pickle, sys
 import moderngl
@@ -388,11 +368,11 @@ for name in ("tests", "tests.engine"):
     spec = importlib.util.spec_from_loader(name, loader=None, is_package=True)
     sys.modules[name] = importlib.util.module_from_spec(spec)
 sys.modules["tests"].__path__, sys.modules["tests.engine"].__path__ = [str(here.parent)], [str(here)]
-from tests.engine import conftest, test_spline_renderer
+from tests.engine import conftest, splines
 ctx = moderngl.create_standalone_context(require=330, backend="egl")
 assert ctx.version_code == int(float(sys.argv[2]) * 100 + 0.5), ctx.version_code
 camera = getattr(conftest.camera, "__wrapped__", None) or conftest.camera.__pytest_wrapped__.obj
-found = {s: test_spline_renderer.pictures_of(ctx, camera(), s) for s in test_spline_renderer.SILHOUETTES}
+found = {s: splines.pictures_of(ctx, camera(), s) for s in splines.SILHOUETTES}
 assert ctx.error == "GL_NO_ERROR"
 Path(sys.argv[3]).write_bytes(pickle.dumps({s: [tuple(p) for p in pictures] for s, pictures in found.items()}))
 """
