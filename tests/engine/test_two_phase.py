@@ -264,8 +264,10 @@ def test_random_cameras(both, brain, onion, camera, seed):
 
 
 MUTATIONS = {
-    "the nearest depth instead of the farthest": ("key = max(key, texelFetch", "key = min(key - 1u, texelFetch"),
-    "rectangles too small": ("+ viewport.z + MARGIN", "- 3.0"),
+    "the nearest depth instead of the farthest": (
+        "culling/squares.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
+    ),
+    "rectangles too small": ("culling/hidden.glsl", "+ viewport.z + MARGIN", "- 3.0"),
 }
 
 
@@ -273,7 +275,7 @@ MUTATIONS = {
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(both, onion, camera, monkeypatch, mutation):
     """The pictures above tell a broken hidden() from a right one."""
-    changed(monkeypatch, "culling/hidden.glsl", *MUTATIONS[mutation])
+    changed(monkeypatch, *MUTATIONS[mutation])
     pair = both(onion)
     different = 0
     for view, style in random_views(np.random.default_rng(0), 8, camera):
