@@ -29,7 +29,7 @@
 // r |J| / W_near for the part of it that can show. |J| is convex along the axis, so that the larger of both ends' serves.
 // Next to the eye, where that says little: a box around the capsule in X, Y and W, from W_near on.
 
-#include "raster/project.glsl"
+#include "raster/stretch.glsl"
 #include "frame/clip_planes.glsl"
 
 struct Outline {
@@ -56,15 +56,6 @@ struct Hit {
     float t;       // position along the segment
     vec3 normal;   // unit vector, local mm
 };
-
-vec3 window_gradient(int row) { return vec3(window_from_local[0][row], window_from_local[1][row], window_from_local[2][row]); }
-
-// |J|, the largest stretch of a step in space to a step in the window, at W = 1.
-float stretch_at(vec2 s) {
-    vec3 w = window_gradient(3), x = window_gradient(0) - s.x * w, y = window_gradient(1) - s.y * w;
-    float p = dot(x, x), q = dot(y, y), m = dot(x, y), half_difference = 0.5 * (p - q);
-    return sqrt(0.5 * (p + q) + sqrt(half_difference * half_difference + m * m));
-}
 
 const float BRUSH = 0.5;           // pixels
 const float OUTLINE_ROUNDING = 0.05;

@@ -6,16 +6,7 @@
 //
 // Next to the eye, where that says little: the box of all balls in X, Y and W, cut off at W of the near plane.
 
-// |J|, the largest stretch of a step in space to a step in the window, at W = 1.
-float stretch_at(vec2 s) {
-    vec3 w = window_row(3), x = window_row(0) - s.x * w, y = window_row(1) - s.y * w;
-    float p = dot(x, x), q = dot(y, y), m = dot(x, y), half_difference = 0.5 * (p - q);
-    return sqrt(0.5 * (p + q) + sqrt(half_difference * half_difference + m * m));
-}
-
-vec4 homogeneous(vec3 p) {
-    return window_from_local[0] * p.x + window_from_local[1] * p.y + window_from_local[2] * p.z + window_from_local[3];
-}
+#include "raster/stretch.glsl"
 
 struct Bounds {
     vec2 start;         // a point of the window, and the direction of the long side
@@ -38,7 +29,7 @@ bool bounds_of(Segment s, out Bounds box) {
     box.least = 3e38;
     for (int k = 0; k < 4; ++k) {
         box.balls[k] = vec4(s.centre, 0.0) + s.size * box.balls[k];
-        box.seen[k] = homogeneous(box.balls[k].xyz);
+        box.seen[k] = to_homogeneous(box.balls[k].xyz);
         box.least = min(box.least, box.seen[k].w - box.balls[k].w * slope);
         most = max(most, box.seen[k].w + box.balls[k].w * slope);
     }
@@ -60,7 +51,7 @@ bool bounds_of(Segment s, out Bounds box) {
             box.high = max(box.high, place + reach);
         }
     } else {
-        vec2 sides = vec2(length(window_row(0)), length(window_row(1))), low = box.low, high = box.high;
+        vec2 sides = vec2(length(window_gradient(0)), length(window_gradient(1))), low = box.low, high = box.high;
         for (int k = 0; k < 4; ++k) {
             low = min(low, box.seen[k].xy - box.balls[k].w * sides);
             high = max(high, box.seen[k].xy + box.balls[k].w * sides);

@@ -7,6 +7,8 @@
 // Algorithm: along every axis q - r and q + r have their extremes at t = 0, at t = 1, or where their derivative, which is
 // linear, is zero. The box goes from the least q - r to the greatest q + r.
 
+#include "raster/project.glsl"
+
 struct Box {
     vec3 x;
     vec3 y;
@@ -60,7 +62,6 @@ vec3 box_corner(Box box, vec3 corner) {
 }
 
 vec4 clip_of(vec3 local) {
-    vec4 c = window_from_local[0] * local.x + window_from_local[1] * local.y + window_from_local[2] * local.z
-           + window_from_local[3];
+    vec4 c = to_homogeneous(local);
     return vec4(2.0 * c.xy / viewport.xy - c.w, 2.0 * c.z - c.w, c.w);
 }

@@ -32,19 +32,19 @@ bool half_hidden(Bounds box, int first_ball) {
     vec2 low = vec2(3e38), high = vec2(-3e38);
     vec4 seen[3];
     for (int k = 0; k < 3; ++k) {
-        seen[k] = homogeneous(balls[k].xyz);
+        seen[k] = to_homogeneous(balls[k].xyz);
         vec2 at = seen[k].xy / seen[k].w;
         vec2 reach = balls[k].w / (seen[k].w - balls[k].w * tube.y)
-            * vec2(length(window_row(0) - at.x * window_row(3)), length(window_row(1) - at.y * window_row(3)));
+            * vec2(length(window_gradient(0) - at.x * window_gradient(3)), length(window_gradient(1) - at.y * window_gradient(3)));
         low = min(low, at - reach);
         high = max(high, at + reach);
     }
     ivec2 first = ivec2(clamp(low - 0.6, vec2(0.0), viewport.xy - 1.0)), last = ivec2(clamp(high + 0.6, vec2(0.0), viewport.xy - 1.0));
     float m = farthest_in(first, last);
     if (m > 1.0) return false;
-    float steep = length(window_row(2) - m * window_row(3)), terms = abs(window_from_local[3].z) + abs(window_from_local[3].w);
+    float steep = length(window_gradient(2) - m * window_gradient(3)), terms = abs(window_from_local[3].z) + abs(window_from_local[3].w);
     for (int k = 0; k < 3; ++k) {
-        float slack = ROUNDING * (dot(abs(window_row(2)) + abs(window_row(3)), abs(balls[k].xyz) + balls[k].w) + terms);
+        float slack = ROUNDING * (dot(abs(window_gradient(2)) + abs(window_gradient(3)), abs(balls[k].xyz) + balls[k].w) + terms);
         if (seen[k].z - m * seen[k].w <= balls[k].w * steep + slack) return false;
     }
     return true;

@@ -20,6 +20,14 @@
 // taken and small where the ray passes, and their squares would lose twice the digits. Where g < 0, F1 goes on as -G1: on a
 // concave g that leads back to where g is positive, so that no search needs to know where that begins.
 
+const int MISS = 0, ENTRY = 1, EXIT = 2, CUT = 3;
+
+struct Found {
+    float l;
+    float t;
+    int kind;
+};
+
 vec3 q_a, q_b, q_c;
 float h_a, h_b, h_c;
 
@@ -30,6 +38,17 @@ vec4 in_ray_space(vec4 p, vec3 o, vec3 d, vec3 y_axis, vec3 z_axis) {
 }
 
 float product(vec3 u, vec3 v) { return u.x * v.x - u.y * v.y - u.z * v.z; }
+
+// Have the functions below be those of the half with these control points.
+void take_half(vec4 k0, vec4 k1, vec4 k2) {
+    vec4 b = 2.0 * (k1 - k0), c = (k0 - k1) + (k2 - k1);
+    q_a = k0.xyz;
+    q_b = b.xyz;
+    q_c = c.xyz;
+    h_a = k0.w;
+    h_b = b.w;
+    h_c = c.w;
+}
 
 // Whether the ray may meet a half: g has the Bezier coefficients <q_i, q_j>.
 bool may_meet(vec4 k0, vec4 k1, vec4 k2) {

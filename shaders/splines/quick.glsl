@@ -17,14 +17,6 @@
 
 // Needs splines/functions.glsl before it.
 
-const int MISS = 0, ENTRY = 1;
-
-struct Found {
-    float l;
-    float t;
-    int kind;
-};
-
 // Whether a minimum at an end where another segment goes on is that one's: its slope says so clearly.
 bool others(float sloped, float g1, float size) {
     return abs(sloped - g1) > 0.01 * (abs(sloped) + abs(g1)) + 1e-5 * size;
@@ -49,12 +41,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
     float most = max(max(max(g_0, g_1), max(g_2, g_3)), g_4);
     float h0 = k0.w, h1 = k1.w, h2 = k2.w, widest = max(max(k0.x, k1.x), k2.x);
     if (most <= 0.0 || min(min(h0, h1), h2) - widest >= best.l) return;
-    q_a = q0;
-    q_b = 2.0 * (q1 - q0);
-    q_c = (q0 - q1) + (q2 - q1);
-    h_a = h0;
-    h_b = 2.0 * (h1 - h0);
-    h_c = (h0 - h1) + (h2 - h1);
+    take_half(k0, k1, k2);
     float fine = max(1e-3 * min(widest, 1.0), 2e-7);
     float bend_0 = (g_2 - g_1) + (g_0 - g_1), bend_1 = (g_3 - g_2) + (g_1 - g_2), bend_2 = (g_4 - g_3) + (g_2 - g_3);
     float bend = max(max(bend_0, bend_1), bend_2);

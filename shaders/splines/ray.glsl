@@ -29,10 +29,6 @@ struct Seen {
     vec2 depth;     // U and W
 };
 
-vec3 window_row(int row) {
-    return vec3(window_from_local[0][row], window_from_local[1][row], window_from_local[2][row]);
-}
-
 Ray ray_through(vec2 pixel, vec3 centre, float size, Seen seen) {
     precise vec3 way = tube_ray.xyz + tube.w * (pixel.x * tube_ray_x.xyz + pixel.y * tube_ray_y.xyz);
     precise vec3 d = way / max(length(way), 1e-30);

@@ -21,8 +21,6 @@
 uniform usamplerBuffer node_texels;      // two of each node: place, radius; derivatives of both
 uniform usamplerBuffer segment_texels;   // nodes i and j, tube, flags: 1, 2: another segment goes on before i, after j
 
-const uint JOINED_FIRST = 1u, JOINED_LAST = 2u;
-
 struct Segment {
     vec3 centre;        // of the control points, local mm
     float size;         // mm: their largest distance from it, radius included

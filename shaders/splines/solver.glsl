@@ -24,14 +24,6 @@
 
 #include "splines/roots.glsl"
 
-const int MISS = 0, ENTRY = 1, EXIT = 2, CUT = 3;
-
-struct Found {
-    float l;
-    float t;
-    int kind;
-};
-
 float f_at(float t) {
     vec3 q = q_a + t * (q_b + t * q_c);
     return h_a + t * (h_b + t * h_c) - sqrt(max(product(q, q), 0.0));
@@ -181,12 +173,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
     // Nothing of this half is nearer than its control points less the largest radius.
     float widest = max(max(k0.x, k1.x), k2.x);
     if (min(min(h0, h1), h2) - widest >= best.l) return;
-    q_a = q0;
-    q_b = 2.0 * (q1 - q0);
-    q_c = (q0 - q1) + (q2 - q1);
-    h_a = h0;
-    h_b = 2.0 * (h1 - h0);
-    h_c = (h0 - h1) + (h2 - h1);
+    take_half(k0, k1, k2);
     float fine = max(1e-3 * min(widest, 1.0), 2e-7), l, t;
 #if FEATURE_SPLINE_ILLINOIS || FEATURE_SPLINE_ITP || FEATURE_SPLINE_NEWTON
     float bend = max(max((g_2 - g_1) + (g_0 - g_1), (g_3 - g_2) + (g_1 - g_2)), (g_4 - g_3) + (g_2 - g_3));

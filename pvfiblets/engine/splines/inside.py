@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ...splines.curves import controls
+from ...splines.curves import controls, sample_spheres
 from ..view import View
 
 if TYPE_CHECKING:
@@ -56,17 +56,10 @@ class Inside:
 
     def _boxes(self, first: int, count: int = _GROUP * 256) -> Array:
         """(n, 2, 3) boxes of the balls around the control points of some segments."""
-        tubes = self._tubes
-        ends = tubes.segments[first : first + count]
-        places, radius = tubes.points[ends], tubes.radius[ends]
-        share = np.full(len(ends), self._middle)
-        if tubes.scaled:
-            share *= np.linalg.norm(places[:, 1] - places[:, 0], axis=1)
-        step = share[:, None] * (1.0, -1.0)
-        inner = places + step[..., None] * tubes.tangents[ends]
-        inner_radius = np.maximum(radius + step * tubes.radius_slopes[ends], 0.0)
-        centres = np.concatenate([places, inner], axis=1)
-        reach = np.concatenate([radius, inner_radius], axis=1)[..., None]
+        some = np.arange(first, min(first + count, self._tubes.n_segments))
+        halves = controls(self._tubes, some, self._middle)
+        balls = halves[:, (0, 0, 1, 1), (0, 1, 1, 2)]  # those of the joint lie between these
+        centres, reach = balls[..., :3], balls[..., 3:]
         return np.stack([(centres - reach).min(axis=1), (centres + reach).max(axis=1)], axis=1)
 
     def touched(self, view: View, min_width: float) -> bool:
@@ -104,10 +97,9 @@ class Inside:
     def _reaches(self, segments: npt.NDArray[np.int64], box: Array, plane: Array, margin: float) -> bool:
         """Say whether one of some segments reaches a plane within a box, by balls along it; rather yes than no."""
         halves = controls(self._tubes, segments, self._middle)
-        t = np.linspace(0.0, 1.0, 33)[:, None, None, None]
-        balls = (1.0 - t) ** 2 * halves[:, :, 0] + 2.0 * t * (1.0 - t) * halves[:, :, 1] + t**2 * halves[:, :, 2]
+        balls = sample_spheres(halves, 33)
         # Between two balls of 32 steps the tube is no farther from one than a step of its control polygon.
-        steps = np.linalg.norm(np.diff(halves, axis=2), axis=-1).max(axis=2) / 16.0
+        steps = np.linalg.norm(np.diff(halves, axis=2), axis=-1).max(axis=2)[..., None] / 16.0
         reach = balls[..., 3] + steps + margin
         near = np.abs(balls[..., :3] @ plane[:3] + plane[3]) <= reach
         beside = (balls[..., :3] >= box[0] - reach[..., None]) & (balls[..., :3] <= box[1] + reach[..., None])

@@ -134,7 +134,7 @@ class SplineRenderer:
         view : View
             Its region is not looked at.
         style : Style, optional
-            Only ``values`` is looked at: the name of an attribute of the nodes, or ``'radius'``.
+            Only ``values`` is looked at: the name of an attribute of the nodes.
         outside : moderngl.Texture, optional
             Not looked at.
 
