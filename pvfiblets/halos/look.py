@@ -1,0 +1,108 @@
+"""`Look`: how lines and points with halos are drawn, as one small value that a redraw is decided on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["DISPLACEMENTS", "TABLE_SIZE", "Look"]
+
+DISPLACEMENTS = ("linear", "square", "square root")
+"""Displacement functions by name (paper: figure 17)."""
+
+TABLE_SIZE = 64
+"""Entries of a displacement function given as a table may be as many as that."""
+
+MAX_TAPERED = 1000
+
+
+@dataclass(frozen=True)
+class Look:
+    """How lines, or points, with halos are drawn.
+
+    Parameters
+    ----------
+    line_width : float
+        mm, of a line, or the diameter of a point; above 0.
+    strip_width : float
+        mm, of a line together with the halos on both its sides, or of a point with its own; at least ``line_width``.
+    max_displacement : float
+        mm by which the edge of a halo lies behind its line; 0 lets every halo hide all that is behind its line.
+    displacement : str or tuple of float
+        How far behind its line a halo lies between its middle and its edge (equation 3): one of `DISPLACEMENTS`, or
+        2 to `TABLE_SIZE` numbers in 0..1, the function at equally spaced places from 0 to 1, linear between them.
+    n_tapered : int
+        Vertices over which the ends of lines narrow; 0 leaves them square. Points have no ends.
+    t_tapered : float
+        Where along the mask, from 0 at one end of a line to 1 at the other, the first ``n_tapered`` vertices end
+        (section 3.4), above 0 and at most 0.5. The mask is as wide as the strip from 0.2 to 0.8 of it.
+    width_cue : float
+        0 to 1: by which share the lines farthest away in the data are thinner than the nearest, for depth cueing by
+        line width. Halos keep their width.
+    min_width : float
+        Pixels that a line takes at least, however thin and far it is; 0 leaves it as it is.
+    smooth : bool
+        Whether the edge between a line and its own halo is a gradual transition; else every pixel is one or the other.
+    filter_by : str, optional
+        Values by which lines are filtered (section 3.6): only what has numbers from ``low`` to ``high`` is there, and
+        NaN is not.
+    low, high : float
+        Thresholds; -inf and inf let all numbers pass.
+    filter_taper : float
+        mm over which lines narrow where the filter ends them; 0 leaves those ends square.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range; the message names it.
+
+    Notes
+    -----
+    Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), sections 3.2 to 3.6.
+    """
+
+    line_width: float
+    strip_width: float
+    max_displacement: float
+    displacement: str | tuple[float, ...] = "linear"
+    n_tapered: int = 2
+    t_tapered: float = 0.2
+    width_cue: float = 0.0
+    min_width: float = 1.0
+    smooth: bool = True
+    filter_by: str | None = None
+    low: float = -math.inf
+    high: float = math.inf
+    filter_taper: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._check("line_width", self.line_width > 0.0, "a number of mm above 0")
+        self._check("strip_width", self.strip_width >= self.line_width, f"at least line_width, {self.line_width}")
+        self._check("max_displacement", self.max_displacement >= 0.0, "a number of mm, 0 or more")
+        self._check("t_tapered", 0.0 < self.t_tapered <= 0.5, "a number above 0, at most 0.5")
+        self._check("width_cue", 0.0 <= self.width_cue <= 1.0, "a number from 0 to 1")
+        self._check("min_width", self.min_width >= 0.0, "a number of pixels, 0 or more")
+        self._check("filter_taper", self.filter_taper >= 0.0, "a number of mm, 0 or more")
+        whole = isinstance(self.n_tapered, int) and not isinstance(self.n_tapered, bool)
+        if not whole or not 0 <= self.n_tapered <= MAX_TAPERED:
+            raise ValueError(f"n_tapered is {self.n_tapered!r}; give a whole number from 0 to {MAX_TAPERED}")
+        if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:
+            raise ValueError(f"the thresholds are {self.low} and {self.high}; give the lower one first")
+        self._check_displacement()
+
+    def _check(self, name: str, right: bool, expected: str) -> None:
+        value = getattr(self, name)
+        if not (right and math.isfinite(value)):
+            raise ValueError(f"{name} is {value}; give {expected}")
+
+    def _check_displacement(self) -> None:
+        given: Any = self.displacement
+        if isinstance(given, str):
+            if given not in DISPLACEMENTS:
+                raise ValueError(f"displacement is {given!r}; choose one of {DISPLACEMENTS} or give a table")
+            return
+        table = tuple(float(entry) for entry in given)
+        if not 2 <= len(table) <= TABLE_SIZE or not all(0.0 <= entry <= 1.0 for entry in table):
+            raise ValueError(f"displacement is {given!r}; a table has 2 to {TABLE_SIZE} numbers in 0..1")
+        object.__setattr__(self, "displacement", table)
