@@ -11,7 +11,8 @@ texture        format    content
 ``across``     r16f      only if asked for: where across a wide line the pixel lies, its distance from the line's axis
                          over half the width, in -1..1; positive to the left of the tangent on the screen
   of tubes     r32ui     their surface's unit normal, packed as the tangent is
-``colours``    rgba8     only of spline tubes whose nodes have colours
+  of halos     r16f      1 where a line shows, 0 where its halo does, between at the edge between them
+``colours``    rgba8     only of spline tubes and lines with halos whose points have colours
 =============  ========  ======================================================================================
 
 ``ids``, ``position`` and ``across`` are undefined where ``depth`` is empty.
@@ -30,7 +31,7 @@ __all__ = ["EMPTY", "GBuffer"]
 
 EMPTY = 0xFFFFFFFF
 
-RELIEF = {"across": "f2", "normal": "u4"}
+RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}
 """Type of the texture ``across`` by what it holds."""
 
 
@@ -90,7 +91,7 @@ class GBuffer:
         return texture
 
     def want_relief(self, ctx: moderngl.Context, relief: str | None) -> None:
-        """Have the texture ``across`` for ``'across'`` of wide lines or the ``'normal'`` of tubes, or None.
+        """Have the texture ``across`` for ``'across'`` of wide lines, ``'normal'`` of tubes, ``'ink'``, or None.
 
         Raises
         ------

@@ -130,6 +130,11 @@ class Style:
         return 0.0 if self.line_width == 1.0 else self.line_width / 2.0
 
     @property
+    def reach(self) -> float:
+        """Millimetres that a line reaches to either side of its axis, beside what pixels add."""
+        return 0.0 if self.radius is None else self.radius
+
+    @property
     def relief(self) -> str | None:
         """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
         if not self.across or self.half_width == 0.0:

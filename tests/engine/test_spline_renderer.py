@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError, Style, View, passes
+from pvfiblets.engine.culling.listing import LEAST_SEGMENTS
 from pvfiblets.engine.splines import SILHOUETTES, SOLVERS, SplineRenderer
 from pvfiblets.engine.splines.choices import check_choices
-from pvfiblets.engine.splines.visibility import LEAST_SEGMENTS
 from pvfiblets.splines import NodeValues, SplineTubes
 
 from .splines import (

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.engine import View
+from pvfiblets.engine.lattice import TOP
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.shaders import Programs
 from pvfiblets.engine.splines.blocks import CONSTANTS, SplineBlocks
-from pvfiblets.engine.splines.nodes import TOP, UNITS, Nodes
+from pvfiblets.engine.splines.nodes import UNITS, Nodes
 from pvfiblets.splines import SplineTubes
 from pvfiblets.splines.curves import MIDDLE, boxes, controls, sample_spheres
 from pvfiblets.splines.reference import nearest_hits

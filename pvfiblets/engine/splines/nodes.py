@@ -3,9 +3,6 @@
 A node takes 32 bytes: its place as three integers of a lattice, radius, and the derivatives of both; a segment takes
 16: its nodes, its tube, and which of its ends others go on from. Numbers that colour take 8 bytes a node, colours 32,
 while they are shown.
-
-The lattice has 2^30 to 2^31 steps over the set's largest extent. Differences of integers are exact: however far from
-the origin a set lies, a segment is as exact as its own size in float32.
 """
 
 from __future__ import annotations
@@ -17,15 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import EngineError
+from ..lattice import lattice, places
 from ..opengl import BufferTexture, OpenGL
 
 if TYPE_CHECKING:
     from ...splines.tubes import NodeValues, SplineTubes
 
-__all__ = ["TOP", "UNITS", "Nodes"]
-
-TOP = 2**31 - 1
-"""The largest integer of a place."""
+__all__ = ["UNITS", "Nodes"]
 
 UNITS = {"node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19}
 """Texture units of the samplers."""
@@ -62,7 +57,7 @@ class Nodes:
         self._textures: dict[str, BufferTexture] = {}
         self.buffers: dict[str, moderngl.Buffer] = {}
         self._shown: NodeValues | None = None
-        self.origin, self.scale = _lattice(tubes.points)
+        self.origin, self.scale = lattice(tubes.points, "nodes of spline tubes")
         if not tubes.n_segments:
             return
         try:
@@ -75,8 +70,7 @@ class Nodes:
     def _node_words(self) -> npt.NDArray[np.uint32]:
         tubes = self._tubes
         words: npt.NDArray[np.uint32] = np.zeros((tubes.n_nodes, 8), "<u4")
-        places = np.rint((tubes.points - self.origin) / self.scale)
-        words[:, :3] = np.clip(places, 0, TOP).astype(np.uint32)
+        words[:, :3] = places(tubes.points, self.origin, self.scale)
         words[:, 3] = _float_bits(tubes.radius, "radius")
         words[:, 4:7] = _float_bits(tubes.tangents, "tangents")
         words[:, 7] = _float_bits(tubes.radius_slopes, "radius_slopes")
@@ -137,20 +131,6 @@ class Nodes:
         self._textures.clear()
         self.buffers.clear()
         self._shown = None
-
-
-def _lattice(points: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return the place 0 and mm per integer of a lattice that holds all points."""
-    if not len(points):
-        return np.zeros(3), np.ones(3)
-    low, high = points.min(axis=0), points.max(axis=0)
-    extent = float((high - low).max())
-    if not extent < _LARGEST / 4.0:
-        raise EngineError(f"nodes of spline tubes extend over {extent:g} mm, more than float32 holds; scale them down")
-    # A set without extent gets steps that keep its radii in range; none are taken.
-    step = extent / TOP if extent > TOP * 1e-36 else 1e-36
-    # A power of two, so that integers times it are exact in float32's range and in float64.
-    return low, np.full(3, 2.0 ** np.ceil(np.log2(step)))
 
 
 def _float_bits(values: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.uint32]:

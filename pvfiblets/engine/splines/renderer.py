@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 import moderngl
 
 from ...splines.curves import MIDDLE
+from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
 from ..errors import EngineError
 from ..gbuffer import GBuffer
+from ..hit_target import HitTarget
+from ..lattice import TOP
 from ..opengl import OpenGL
 from ..passes import Passes
 from ..shaders import Programs
@@ -16,10 +19,8 @@ from ..view import Style, View
 from .blocks import CONSTANTS, SplineBlocks
 from .choices import AUTO, SOLVERS, check_choices
 from .inside import Inside
-from .nodes import TOP, UNITS, Nodes
+from .nodes import UNITS, Nodes
 from .silhouettes import Silhouettes
-from .target import SplineTarget
-from .visibility import LEAST_SEGMENTS, TwoPhase, supports_two_phase
 
 if TYPE_CHECKING:
     from ...splines.tubes import NodeValues, SplineTubes
@@ -51,7 +52,7 @@ class SplineRenderer:
         Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
     culling : {'two-phase', None}
         How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
-        it (:mod:`.visibility`). It changes no pixel.
+        it (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
     middle : float
         Share c of a derivative between control points (``shaders/splines/segment.glsl``); the paper has 1/3.
     discard : bool
@@ -103,8 +104,8 @@ class SplineRenderer:
         self._nodes: Nodes | None = None
         self._blocks: SplineBlocks | None = None
         self._silhouettes: Silhouettes | None = None
-        self._visibility: TwoPhase | None = None
-        self._target: SplineTarget | None = None
+        self._visibility: Listing | None = None
+        self._target: HitTarget | None = None
         self._drawn: tuple[View, Style] | None = None
         self._features: list[str] = []
         self._generation = 0
@@ -113,8 +114,10 @@ class SplineRenderer:
             self._blocks = SplineBlocks(ctx, (self._nodes.origin, self._nodes.scale, TOP), tubes.scaled)
             self._silhouettes = Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments)
             many = self.pipeline == "rectangles" and tubes.n_segments >= LEAST_SEGMENTS
-            if culling is not None and many and supports_two_phase(ctx):
-                self._visibility = TwoPhase(ctx, self._gl, self._programs, tubes.n_segments)
+            if culling is not None and many and supports_listing(ctx):
+                self._visibility = Listing(
+                    ctx, self._gl, self._programs, tubes.n_segments, cull="splines/cull.comp", features=["TUBES"]
+                )
         except BaseException:
             self.release()
             raise
@@ -165,14 +168,14 @@ class SplineRenderer:
 
     def _draw(
         self, view: View, reads: str | None, nodes: Nodes, blocks: SplineBlocks, silhouettes: Silhouettes
-    ) -> SplineTarget:
+    ) -> HitTarget:
         """Draw all, whatever was drawn last."""
         coloured = reads == "SPLINE_COLOURS"
         if self._target is None or self._target.size != view.size or self._target.coloured != coloured:
             if self._target is not None:
                 self._target.release()
                 self._target = None
-            self._target = SplineTarget(self._ctx, self._gl, view.size, coloured)
+            self._target = HitTarget(self._ctx, self._gl, view.size, coloured)
         target = self._target
         cut = blocks.write(
             view,
@@ -192,7 +195,7 @@ class SplineRenderer:
         nodes.bind()
         if self._visibility is not None:
             with self._passes.timed("last picture"):
-                self._visibility.before(target)
+                self._visibility.before(target, target.buffer.owner)
         with self._passes.timed("clear"):
             target.clear()
         if self._visibility is not None:
@@ -221,7 +224,7 @@ class SplineRenderer:
         self,
         rounds: list[tuple[list[str], int]],
         silhouettes: Silhouettes,
-        target: SplineTarget,
+        target: HitTarget,
         commands: moderngl.Buffer | None = None,
     ) -> None:
         """Draw all segments, or those that are listed."""

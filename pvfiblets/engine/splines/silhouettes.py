@@ -1,9 +1,4 @@
-"""Geometry around segments, for their fragments: rectangles or boxes, from vertex pulling or the geometry stage.
-
-Vertex pulling draws a few thousand segments a call with one short index buffer for all calls, so that each vertex of a
-shape is computed once and an index takes two bytes. Instances would do without it, but software OpenGL and several
-drivers begin anew with each of them.
-"""
+"""Geometry around segments, for their fragments: rectangles or boxes, from vertex pulling or the geometry stage."""
 
 from __future__ import annotations
 
@@ -14,22 +9,20 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..pulling import BATCH, QUAD, PulledShapes
 from ..shaders import Programs
 
-__all__ = ["BATCH", "Silhouettes"]
+__all__ = ["Silhouettes"]
 
-_RECTANGLE = np.array([0, 1, 2, 2, 1, 3])
 # Outwards, counter-clockwise: corners by their bits x, y, z.
 _BOX = np.array(
     [0, 2, 1, 1, 2, 3, 4, 5, 6, 6, 5, 7, 0, 1, 4, 4, 1, 5, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 5, 3, 7]
 )
 _SHAPES: dict[str, tuple[str, npt.NDArray[np.int64], int]] = {
-    "rectangles": ("splines/rectangles.vert", _RECTANGLE, 4),
+    "rectangles": ("splines/rectangles.vert", QUAD, 4),
     "pulled-boxes": ("splines/boxes.vert", np.concatenate([_BOX, _BOX + 8]), 16),
 }
 _DEPTH_CLAMP = 0x864F
-BATCH = 65536
-"""Vertices of a call: what an index of 16 bits reaches."""
 
 
 class Silhouettes:
@@ -53,19 +46,20 @@ class Silhouettes:
         self._ctx, self._programs, self._n = ctx, programs, n_segments
         self._boxes = kind != "rectangles"
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
-        self.buffers: dict[str, moderngl.Buffer] = {}
+        self._pulled: PulledShapes | None = None
         self.stages = {"fragment": "splines/tube.frag"}
         if kind == "boxes":
             self.stages |= {"vertex": "splines/pass.vert", "geometry": "splines/boxes.geom"}
-            self._step, self.primitives = n_segments, 24 * n_segments
+            self.primitives = 24 * n_segments
             return
-        stage, shape, corners = _SHAPES[kind]
-        self.stages["vertex"] = stage
-        self._step, self._per_segment = BATCH // corners, len(shape)
-        self.primitives = len(shape) // 3 * n_segments
-        count = min(self._step, max(n_segments, 1))
-        indices = (np.arange(count)[:, None] * corners + shape).astype("<u2")
-        self.buffers["indices"] = ctx.buffer(indices.tobytes())
+        self.stages["vertex"], shape, corners = _SHAPES[kind]
+        self._pulled = PulledShapes(ctx, n_segments, shape, corners, "first_segment")
+        self.primitives = self._pulled.primitives
+
+    @property
+    def buffers(self) -> dict[str, moderngl.Buffer]:
+        """What is kept on the GPU, by name."""
+        return {} if self._pulled is None else self._pulled.buffers
 
     def program(self, features: list[str]) -> moderngl.Program:
         """Return the program with some features on."""
@@ -73,31 +67,23 @@ class Silhouettes:
 
     def draw(self, program: moderngl.Program) -> None:
         """Draw all segments; the framebuffer is in use and everything bound."""
-        array = self._array(program)
         with self._drawing():
-            for first in range(0, self._n, self._step):
+            if self._pulled is not None:
+                self._pulled.draw(program)
+                return
+            array = self.whole(program)
+            for first in range(0, self._n, BATCH):
                 program["first_segment"] = first
-                count = min(self._step, self._n - first)
-                if "indices" in self.buffers:
-                    array.render(moderngl.TRIANGLES, vertices=count * self._per_segment)
-                else:
-                    array.render(moderngl.POINTS, vertices=count)
+                array.render(moderngl.POINTS, vertices=min(BATCH, self._n - first))
 
     def draw_listed(self, program: moderngl.Program, commands: moderngl.Buffer) -> None:
         """Draw rectangles of listed segments, as many as the calls in a buffer say."""
-        array = self._array(program)
+        assert self._pulled is not None
         with self._drawing():
-            program["first_segment"] = 0
-            array.render_indirect(commands, moderngl.TRIANGLES)
-
-    def _array(self, program: moderngl.Program) -> moderngl.VertexArray:
-        if program not in self._arrays:
-            index = self.buffers.get("indices")
-            self._arrays[program] = self._ctx.vertex_array(program, [], index, index_element_size=2)
-        return self._arrays[program]
+            self._pulled.draw_listed(program, commands)
 
     def whole(self, program: moderngl.Program) -> moderngl.VertexArray:
-        """Return what draws a program over the whole picture, from no vertex data."""
+        """Return what draws a program from no vertex data, such as over the whole picture."""
         if program not in self._arrays:
             self._arrays[program] = self._ctx.vertex_array(program, [])
         return self._arrays[program]
@@ -126,7 +112,6 @@ class Silhouettes:
         """Give everything back; twice is harmless."""
         for array in self._arrays.values():
             array.release()
-        for buffer in self.buffers.values():
-            buffer.release()
+        if self._pulled is not None:
+            self._pulled.release()
         self._arrays.clear()
-        self.buffers.clear()

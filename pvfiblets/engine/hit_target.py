@@ -1,21 +1,24 @@
-"""What spline tubes are drawn into: hits with their depth, then the G-buffer that is made of them."""
+"""What is drawn in two passes: hits with their depth first, then the G-buffer that is made of them.
+
+Spline tubes and lines with halos are drawn into it.
+"""
 
 from __future__ import annotations
 
 import moderngl
 
-from ..depth_texture import depth_texture
-from ..errors import EngineError
-from ..gbuffer import EMPTY, GBuffer
-from ..opengl import OpenGL
-from ..shaders import Programs
+from .depth_texture import depth_texture
+from .errors import EngineError
+from .gbuffer import EMPTY, GBuffer
+from .opengl import OpenGL
+from .shaders import Programs
 
-__all__ = ["KEYS_UNIT", "SplineTarget"]
+__all__ = ["KEYS_UNIT", "HitTarget"]
 
 KEYS_UNIT = 12
 
 
-class SplineTarget:
+class HitTarget:
     """Textures of one picture.
 
     Parameters
@@ -26,6 +29,8 @@ class SplineTarget:
         Pixels.
     coloured : bool
         Whether the G-buffer has colours.
+    relief : str
+        What its ``across`` holds.
 
     Attributes
     ----------
@@ -33,7 +38,8 @@ class SplineTarget:
     coloured : bool
     buffer : GBuffer
     hits, depths : moderngl.Texture
-        See ``shaders/splines/tube.frag``; depths are 1 at the near plane and 0 at the far one and where nothing is.
+        Two words that the first pass says of each pixel, undefined where nothing is; depths are 1 at the near plane and
+        0 at the far one and where nothing is.
     hits_buffer, attributes, keys : moderngl.Framebuffer
         For the two passes, and for the depth alone.
 
@@ -43,13 +49,15 @@ class SplineTarget:
         If a side is longer than the driver's largest texture, or memory does not suffice.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int], coloured: bool) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int], coloured: bool, relief: str = "normal"
+    ) -> None:
         self.size, self.coloured = size, coloured
         self._ctx, self._gl = ctx, gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
         self.buffer = GBuffer(ctx, size)
         try:
-            self.buffer.want_relief(ctx, "normal")
+            self.buffer.want_relief(ctx, relief)
             if coloured:
                 self.buffer.want_colours(ctx)
             self.hits = ctx.texture(size, 2, dtype="u4")
@@ -78,7 +86,7 @@ class SplineTarget:
 
     def write_keys(self, programs: Programs) -> None:
         """Write the depth so far into the G-buffer."""
-        program, array = programs.screen("splines/keys.frag")
+        program, array = programs.screen("screen/keys.frag")
         self.depths.use(KEYS_UNIT)
         program["depths"] = KEYS_UNIT
         self.keys.use()

@@ -1,9 +1,10 @@
-"""Two-phase culling of spline tubes: what others hide is not drawn, and no pixel changes.
+"""Two-phase culling of items that are drawn as pulled quads: what others hide is not drawn, and no pixel changes.
 
-The segments that own a pixel of the last picture are drawn first. A pyramid of that depth, which belongs to this very
-camera, then tells of all others which cannot show; the rest is drawn after. Both lists are made on the GPU, and drawn
-by calls whose numbers it writes itself: the CPU issues the same calls whatever shows, and nothing is read back. In what
-order segments are listed is not determined, and so neither is which of two owns a pixel in which both are as deep.
+An item is a segment of a spline tube, or some neighbours of lines with halos. Those that own a pixel of the last
+picture are drawn first. A pyramid of that depth, which belongs to this very camera, then tells of all others which
+cannot show; the rest is drawn after. Both lists are made on the GPU, and drawn by calls whose numbers it writes itself:
+the CPU issues the same calls whatever shows, and nothing is read back. In what order items are listed is not
+determined, and so neither is which of two owns a pixel in which both are as deep.
 
 It needs compute stages (OpenGL 4.3), and pays from some ten thousand segments on.
 """
@@ -14,49 +15,67 @@ from typing import TYPE_CHECKING
 
 import moderngl
 
-from ..culling.pyramid import DepthPyramid
 from ..opengl import BufferTexture, OpenGL
 from ..passes import dispatch
+from ..pulling import BATCH
 from ..shaders import Programs
-from .silhouettes import BATCH
+from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from ..hit_target import HitTarget
     from ..passes import Passes
-    from .target import SplineTarget
 
-__all__ = ["LEAST_SEGMENTS", "TwoPhase"]
+__all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
 
 LEAST_SEGMENTS = 16000
 """With fewer, two rounds and a pyramid cost more than what they spare: for 3,500 segments as much again."""
-LISTED_UNIT, OWNER_UNIT = 20, 12
-_PER_CALL = BATCH // 4
+LISTED_UNIT, SHOWN_UNIT = 20, 12
+_QUAD = 4  # vertices
 _GROUP = 64
 
 
-class TwoPhase:
-    """Lists and draws the segments of one set that may show.
+class Listing:
+    """Lists and draws the items of one set that may show.
 
     Parameters
     ----------
     ctx : moderngl.Context
     gl : OpenGL
     programs : Programs
-    n_segments : int
+    n_items : int
+    cull : str
+        The compute shader that lists them, an invocation each.
+    features : sequence of str
+        Of that shader.
+    shift : int
+        Items are ``1 << shift`` quads each, and as much is a quad's number moved to the right to give its item's.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_segments: int) -> None:
-        self._ctx, self._gl, self._programs, self._n = ctx, gl, programs, n_segments
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        gl: OpenGL,
+        programs: Programs,
+        n_items: int,
+        *,
+        cull: str,
+        features: Sequence[str] = (),
+        shift: int = 0,
+    ) -> None:
+        self._ctx, self._gl, self._programs, self._n = ctx, gl, programs, n_items
+        self._cull, self._features, self._shift = cull, list(features), shift
         self._pyramid = DepthPyramid(ctx, gl, programs)
-        self._calls = -(-n_segments // _PER_CALL)
+        self._per_call = BATCH // _QUAD >> shift
+        self._calls = -(-n_items // self._per_call)
         self._max_groups = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
         self.buffers: dict[str, moderngl.Buffer] = {}
         self._texture: BufferTexture | None = None
         try:
             for name, size in (
-                ("seen", 4 * -(-n_segments // 32)),
-                ("listed", 4 * n_segments),
+                ("seen", 4 * -(-n_items // 32)),
+                ("listed", 4 * n_items),
                 ("counts", 16),
                 ("commands", 20 * self._calls),
             ):
@@ -68,7 +87,7 @@ class TwoPhase:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of GPU memory that go with the segments."""
+        """Bytes of GPU memory that go with the items."""
         return sum(buffer.size for buffer in self.buffers.values())
 
     @property
@@ -76,23 +95,30 @@ class TwoPhase:
         """Bytes of GPU memory that go with the picture."""
         return self._pyramid.nbytes
 
-    def before(self, target: SplineTarget) -> None:
-        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared."""
+    def before(self, target: HitTarget, shown: moderngl.Texture) -> None:
+        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared.
+
+        Parameters
+        ----------
+        target : HitTarget
+        shown : moderngl.Texture
+            Its texture with the number of the quad that each pixel shows, EMPTY where there is none.
+        """
         seen = self.buffers["seen"]
         seen.clear()
         if not target.buffer.generation:
             return
-        program = self._programs.compute("splines/seen.comp")
+        program = self._programs.compute("culling/seen_items.comp")
         seen.bind_to_storage_buffer(0)
-        target.buffer.owner.use(OWNER_UNIT)
-        program["owner"], program["count"] = OWNER_UNIT, self._n
+        shown.use(SHOWN_UNIT)
+        program["shown"], program["count"], program["shift"] = SHOWN_UNIT, self._n, self._shift
         width, height = target.size
         program.run(-(-width // 8), -(-height // 8))
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def draw(
         self,
-        target: SplineTarget,
+        target: HitTarget,
         passes: Passes,
         prepare: Callable[[moderngl.ComputeShader], None],
         render: Callable[[moderngl.Buffer], None],
@@ -101,13 +127,13 @@ class TwoPhase:
 
         Parameters
         ----------
-        target : SplineTarget
+        target : HitTarget
             Cleared.
         passes : Passes
         prepare : callable
-            Tells a program where nodes and segments are.
+            Tells a program where its data are.
         render : callable
-            Draws the listed segments by the calls in a buffer.
+            Draws the listed items by the calls in a buffer.
         """
         with passes.timed("seen before"):
             self._list(prepare, second=False)
@@ -123,19 +149,19 @@ class TwoPhase:
         self.buffers["counts"].write(bytes(16))
         for binding, name in enumerate(("seen", "listed", "counts", "commands")):
             self.buffers[name].bind_to_storage_buffer(binding)
-        cull = self._programs.compute("splines/cull.comp", ["TUBES"])
+        cull = self._programs.compute(self._cull, self._features)
         prepare(cull)
         cull["second_round"] = int(second)
         if second:
             self._pyramid.bind(cull)
         dispatch(cull, -(-self._n // _GROUP), self._max_groups)
         ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
-        write = self._programs.compute("splines/commands.comp")
-        write["calls"], write["batch"] = self._calls, _PER_CALL
+        write = self._programs.compute("culling/item_commands.comp")
+        write["calls"], write["batch"], write["quads"] = self._calls, self._per_call, 1 << self._shift
         write.run(-(-self._calls // _GROUP))
         ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
-    def _make_pyramid(self, target: SplineTarget) -> None:
+    def _make_pyramid(self, target: HitTarget) -> None:
         target.write_keys(self._programs)
         self._pyramid.build(target.buffer)
 
@@ -156,6 +182,6 @@ class TwoPhase:
         self._pyramid.release()
 
 
-def supports_two_phase(ctx: moderngl.Context) -> bool:
+def supports_listing(ctx: moderngl.Context) -> bool:
     """Say whether a context has what it takes."""
     return bool(ctx.version_code >= 430)

@@ -1,4 +1,4 @@
-// Two-phase culling: from the number of listed segments to drawing calls, one for each batch that an index buffer of 16 bits
+// Two-phase culling: from the number of listed items to drawing calls, one for each batch that an index buffer of 16 bits
 // reaches. One invocation per call.
 
 #version 430
@@ -8,15 +8,16 @@ layout(std430, binding = 2) readonly buffer Counts { uint counts[]; };
 layout(std430, binding = 3) writeonly buffer Commands { uint commands[]; };    // five words each, as OpenGL has them
 
 uniform int calls;
-uniform int batch;               // segments of a call
+uniform int batch;               // items of a call
+uniform int quads;               // of an item, drawn with six indices and four vertices each
 
 void main() {
     uint call = gl_GlobalInvocationID.x;
     if (call >= uint(calls)) return;
     uint before = call * uint(batch), count = counts[0] > before ? min(counts[0] - before, uint(batch)) : 0u;
-    commands[5u * call] = 6u * count;
+    commands[5u * call] = 6u * uint(quads) * count;
     commands[5u * call + 1u] = 1u;
     commands[5u * call + 2u] = 0u;
-    commands[5u * call + 3u] = 4u * before;       // the base vertex: gl_VertexID counts on from it
+    commands[5u * call + 3u] = 4u * uint(quads) * before;       // the base vertex: gl_VertexID counts on from it
     commands[5u * call + 4u] = 0u;
 }
