@@ -1,4 +1,4 @@
-"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` whose geometry is fiblets or spline tubes. No PyVista here.
+"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes, or lines and points with halos. No PyVista.
 
 >>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
 >>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP
@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions
+from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.mappers.mapper import FibletMapper
 from pvfiblets.mappers.splines import SplineMapper, SplineOptions
 
-__all__ = ["Colouring", "EngineOptions", "FibletMapper", "SplineMapper", "SplineOptions"]
+__all__ = ["Colouring", "EngineOptions", "FibletMapper", "HaloMapper", "HaloOptions", "SplineMapper", "SplineOptions"]

@@ -42,6 +42,7 @@ FEATURES = (
     "ink",
     "depth_cue",
     "halo",
+    "strip",
     "silhouette",
     "layers_covered",
 )

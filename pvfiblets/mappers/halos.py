@@ -1,0 +1,336 @@
+"""`HaloMapper`: lines and points with depth-dependent halos as geometry of an ordinary VTK actor.
+
+The engine (`pvfiblets.engine.halos`) draws lines and their halos into one G-buffer, each at its own depth, and says how
+much of a pixel is line; the resolve that serves fiblets gives lines their colours and halos theirs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from pvfiblets.engine.gbuffer import EMPTY
+from pvfiblets.mappers.base import EngineMapper
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.extras import Draw, styled
+from pvfiblets.mappers.picking import shown_by
+from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.shading import background
+from pvfiblets.mappers.tubes import thickened
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.view import Style
+    from pvfiblets.halos import HaloLines, HaloPoints, Look
+
+    Drawn = HaloLines | HaloPoints
+
+__all__ = ["HaloMapper", "HaloOptions", "Strips", "halo_renderer"]
+
+Colour = tuple[float, float, float]
+
+WHITE: Colour = (1.0, 1.0, 1.0)
+BLACK: Colour = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class HaloOptions(Options):
+    """What can be chosen about drawing lines and points with halos that does not show in the picture.
+
+    Parameters
+    ----------
+    culling : {'two-phase', 'none', None}
+        How those behind others are found out.
+
+    Raises
+    ------
+    ValueError
+        The value is unknown.
+    """
+
+    culling: str | None = "two-phase"
+
+    def __post_init__(self) -> None:
+        """Check the value, and let None stand for no culling."""
+        if self.culling == "none":
+            object.__setattr__(self, "culling", None)
+        if self.culling not in (None, "two-phase"):
+            raise ValueError(f"culling is {self.culling!r}; use 'two-phase' or None")
+
+
+def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
+    """Make the engine's renderer of lines and points with halos; the default ``renderer_factory``.
+
+    Raises
+    ------
+    EngineError
+        Memory does not suffice; nothing stays behind on the GPU.
+    """
+    from pvfiblets.engine.halos import HaloRenderer
+
+    return HaloRenderer(ctx, drawn, **options)
+
+
+@dataclass(frozen=True)
+class Strips:
+    """An `pvfiblets.mappers.extras.Extra` by which the halos in the G-buffer have a colour.
+
+    Parameters
+    ----------
+    color : tuple of 3 floats, optional
+        RGB between 0 and 1; None for the renderer's background, which may be a gradient.
+
+    Raises
+    ------
+    ValueError
+        If the colour is none.
+    """
+
+    color: Colour | None = WHITE
+
+    def __post_init__(self) -> None:
+        if self.color is None:
+            return
+        channels = tuple(float(channel) for channel in self.color)
+        if len(channels) != 3 or not all(0.0 <= channel <= 1.0 for channel in channels):
+            raise ValueError(f"color of halos is {self.color!r}; expected 3 numbers between 0 and 1")
+        object.__setattr__(self, "color", channels)
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve."""
+        return frozenset({"strip"})
+
+    @property
+    def style(self) -> Mapping[str, Any]:
+        """Nothing of the engine."""
+        return {}
+
+    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all extras
+        """Keep nothing: the texture is the G-buffer's."""
+        return
+
+    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+        """Return the engine's texture."""
+        return {"fibletInkMap": draw.buffer.across}
+
+    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set the colours at the lower and the upper edge."""
+        lower, upper = _behind(draw) if self.color is None else (self.color, self.color)
+        program.SetUniform3f("fibletStripLower", lower)
+        program.SetUniform3f("fibletStripUpper", upper)
+
+
+class HaloMapper(EngineMapper):
+    """Mapper that draws `HaloLines` or `HaloPoints` through VTK's own passes, clipping planes and selection.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        What to draw.
+    look : Look
+        Widths and depths, and what else shows.
+    colouring : Colouring, optional
+        Of lines and points; black when left out.
+    halo_color : tuple of 3 floats, optional
+        RGB between 0 and 1, white when left out; None for the renderer's background.
+    options : HaloOptions, optional
+        What does not show.
+    renderer_factory : callable, optional
+        Takes a moderngl context, what is drawn, and as keywords those options that are not the defaults; returns a
+        renderer as of `pvfiblets.engine.halos`.
+
+    Notes
+    -----
+    Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
+
+    Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
+    """
+
+    _NAME = "HaloMapper"
+
+    def __init__(
+        self,
+        drawn: Drawn,
+        look: Look,
+        *,
+        colouring: Colouring | None = None,
+        halo_color: Colour | None = WHITE,
+        options: HaloOptions | None = None,
+        renderer_factory: Callable[..., Any] = halo_renderer,
+    ) -> None:
+        self._look = look
+        super().__init__(
+            drawn,
+            colouring=Colouring("solid", color=BLACK) if colouring is None else colouring,
+            options=HaloOptions() if options is None else options,
+            renderer_factory=renderer_factory,
+        )
+        self.halo_color = halo_color
+
+    @property
+    def drawn(self) -> Drawn:
+        """What is drawn."""
+        drawn: Drawn = self._drawn
+        return drawn
+
+    def set_drawn(self, drawn: Drawn, look: Look | None = None) -> None:
+        """Draw something else from the next frame on, and differently where a look comes with it.
+
+        Raises
+        ------
+        ValueError
+            The colouring has values for another number of lines.
+        """
+        before = self._look
+        self._look = before if look is None else look
+        try:
+            self._put(drawn)
+        except ValueError:
+            self._look = before
+            raise
+        self._actor_modified()
+
+    @property
+    def look(self) -> Look:
+        """Widths and depths, and what else shows; set another `Look` to change them from the next frame on."""
+        return self._look
+
+    @look.setter
+    def look(self, look: Look) -> None:
+        wider = look.strip_width != self._look.strip_width
+        self._look = look
+        if wider:
+            self._set_proxy()
+        self._actor_modified()
+
+    @property
+    def halo_color(self) -> Colour | None:
+        """RGB of the halos, 0 to 1; None for the renderer's background."""
+        strips = self._extras["strips"]
+        return strips.color if isinstance(strips, Strips) else None
+
+    @halo_color.setter
+    def halo_color(self, color: Colour | None) -> None:
+        self.set_extra("strips", Strips(color))
+
+    @property
+    def options(self) -> HaloOptions:
+        """What does not show; set another `HaloOptions` to change it from the next frame on."""
+        options: HaloOptions = self._options
+        return options
+
+    @options.setter
+    def options(self, options: HaloOptions) -> None:
+        self._options = options
+        self._actor_modified()
+
+    def pick_at(
+        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    ) -> tuple[int, float] | int | None:
+        """Return the line or point nearest to a pixel of what was drawn last.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 2
+            How many pixels away it may be. Halos hide what is behind them, and are nothing that is found.
+
+        Returns
+        -------
+        tuple of int and float, int, or None
+            Of lines: the line, and the place along it: the index of the point before plus the fraction of the segment.
+            Of points: the point. None where there is none. Other actors in front are not looked at.
+        """
+        shown = shown_by(self, renderer)
+        if shown is None or tolerance < 0:
+            return None
+        column, row = (int(place) for place in np.floor(shown.to_viewport((x, y))))
+        reach = int(tolerance * shown.enlarged.max())
+        width, height = shown.drawn.viewport[2:]
+        left, lower = max(column - reach, 0), max(row - reach, 0)
+        area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
+        if min(area[2:]) < 1:
+            return None
+        shown.context.window.MakeCurrent()
+        with shown.context.foreign():
+            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
+            ctx = shown.context.ctx
+            depth, owner = (_read(ctx, texture, area, "u4")[..., 0] for texture in (buffer.depth, buffer.owner))
+            ids, position = _read(ctx, buffer.ids, area, "u4"), _read(ctx, buffer.position, area, "f4")
+        rows, columns = np.nonzero((depth != EMPTY) & (owner != EMPTY))
+        distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
+        if not len(rows) or distance.min() > reach * reach:
+            return None
+        best = np.lexsort((depth[rows, columns], distance))[0]
+        at = rows[best], columns[best]
+        if hasattr(self._drawn, "n_segments"):
+            return int(ids[(*at, 0)]), float(position[(*at, 0)])
+        return int(owner[at])
+
+    @property
+    def _empty(self) -> bool:
+        return not getattr(self._drawn, "n_segments", self._drawn.n_points)
+
+    @property
+    def _width(self) -> float:
+        return max(1.0, self._look.min_width)
+
+    def _set_proxy(self) -> None:
+        """Give VTK bounds that hold the strips too."""
+        super()._set_proxy()
+        if not self._empty:
+            self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
+
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
+        """Return the style in pixels of the framebuffer, of which tiles and supersampling have more than the window."""
+        from pvfiblets.engine.halos import HaloStyle
+
+        look = self._look
+        enlarged = _enlarged(renderer, viewport)
+        if enlarged != 1.0:
+            look = replace(look, min_width=look.min_width * enlarged)
+        style = HaloStyle(look=look, line_width=max(1.0, look.min_width), values=self._colouring.point_source)
+        return styled(style, self._extras.values())
+
+
+def _enlarged(renderer: Any, viewport: tuple[int, int, int, int]) -> float:
+    """Return pixels of the whole picture per pixel of the window.
+
+    Supersampling has a framebuffer larger than the window. ``vtkWindowToImageFilter`` enlarges by tiles, each as large
+    as the window: while it does, sizes of window and renderer are those of the whole picture.
+    """
+    window = renderer.GetRenderWindow()
+    left, _, right, _ = renderer.GetViewport()
+    first, _, last, _ = window.GetTileViewport()
+    wanted = (min(right, last) - max(left, first)) * window.GetSize()[0]
+    sampled = viewport[2] / wanted if viewport[2] > wanted + 1.0 and wanted > 0.0 else 1.0
+    return float(sampled * window.GetTileScale()[0])
+
+
+def _behind(draw: Draw) -> tuple[Colour, Colour]:
+    """Return the colours that the renderer's background has at the lower and the upper edge of a draw."""
+    lower, upper = (np.array(colour) for colour in background(draw.renderer))
+    _, low, _, high = draw.renderer.GetViewport()
+    _, first, _, last = draw.renderer.GetRenderWindow().GetTileViewport()
+    # A tile shows a part of a gradient.
+    ends = [(np.clip(end, low, high) - low) / max(high - low, 1e-9) for end in (first, last)]
+    begin, end = (tuple(float(part) for part in lower + share * (upper - lower)) for share in ends)
+    return (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])
+
+
+def _read(ctx: Any, texture: Any, area: tuple[int, int, int, int], dtype: str) -> Any:
+    """Read a rectangle of a texture as (height, width, components)."""
+    framebuffer = ctx.framebuffer([texture])
+    try:
+        data = framebuffer.read(viewport=area, components=texture.components, dtype=dtype, alignment=1)
+    finally:
+        framebuffer.release()
+    return np.frombuffer(data, dtype=dtype).reshape(area[3], area[2], -1)
