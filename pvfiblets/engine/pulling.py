@@ -68,6 +68,12 @@ class PulledShapes:
         program[self._first] = 0
         array.render_indirect(commands, moderngl.TRIANGLES)
 
+    def whole(self, program: moderngl.Program) -> moderngl.VertexArray:
+        """Return what draws a program from no vertex data at all, such as over the whole picture."""
+        if program not in self._arrays:
+            self._arrays[program] = self._ctx.vertex_array(program, [])
+        return self._arrays[program]
+
     def _array(self, program: moderngl.Program) -> moderngl.VertexArray:
         if program not in self._arrays:
             index = self.buffers["indices"]

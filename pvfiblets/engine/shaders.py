@@ -68,6 +68,11 @@ FEATURES: dict[str, str] = {
     "SPLINE_LISTED": "spline tubes that are not hidden",
     "SPLINE_VALUES": "numbers along spline tubes",
     "SPLINE_COLOURS": "colours along spline tubes",
+    "HALO_POINTS": "points with halos, not lines",
+    "HALO_LISTED": "halos that are not hidden",
+    "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
+    "HALO_VALUES": "numbers along lines with halos",
+    "HALO_COLOURS": "colours along lines with halos",
     "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
 }
 """What a program can be made to do, by the name of its switch."""
@@ -88,6 +93,7 @@ BLOCKS = {
     "Sampling": 6,
     "Tubes": 7,
     "Splines": 8,
+    "Halos": 9,
 }
 """Bindings of the uniform blocks, as the sources state them."""
 

@@ -1,0 +1,292 @@
+"""`HaloRenderer`: lines or points with halos on one OpenGL context, drawn into a G-buffer when something changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from ...halos.things import HaloLines, HaloPoints
+from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
+from ..errors import EngineError
+from ..gbuffer import EMPTY, GBuffer
+from ..hit_target import HitTarget
+from ..opengl import OpenGL
+from ..passes import Passes
+from ..pulling import PulledShapes
+from ..shaders import Programs
+from ..view import View
+from .blocks import CONSTANTS, HaloBlocks
+from .style import HaloStyle
+from .vertices import UNITS, Vertices
+
+if TYPE_CHECKING:
+    from ..view import Style
+
+__all__ = ["CULLING", "HaloRenderer"]
+
+CULLING = ("two-phase", None)
+"""How what others hide may be found out."""
+
+HITS_UNIT, DEPTHS_UNIT = 10, 11
+ITEM_SHIFT = 3
+"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
+_CLIP_DISTANCE = 0x3000
+
+
+class HaloRenderer:
+    """Draws one set of lines or points with halos.
+
+    The context must be current in every call. The renderer binds what it needs and leaves it bound; the caller keeps
+    its own OpenGL state.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        OpenGL 3.3 or later.
+    drawn : HaloLines or HaloPoints
+        Copied to the GPU here.
+    culling : {'two-phase', None}
+        How items behind others are found out, where OpenGL 4.3 and many of them are there for it
+        (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
+
+    Attributes
+    ----------
+    pipeline : str
+        ``'strips'`` of lines, ``'discs'`` of points.
+    share : float
+        1.0: all is drawn.
+
+    Raises
+    ------
+    EngineError
+        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
+    ValueError
+        If a choice is none.
+
+    Notes
+    -----
+    Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
+    """
+
+    share = 1.0
+
+    def __init__(
+        self, ctx: moderngl.Context, drawn: HaloLines | HaloPoints, *, culling: str | None = "two-phase"
+    ) -> None:
+        if culling not in CULLING:
+            raise ValueError(f"culling is {culling!r}; choose one of {CULLING}")
+        self._ctx, self._drawn = ctx, drawn
+        points = isinstance(drawn, HaloPoints)
+        self.pipeline = "discs" if points else "strips"
+        self._kind = ["HALO_POINTS"] if points else []
+        self._gl = OpenGL(ctx)
+        self._passes = Passes(ctx)
+        self._programs = Programs(ctx, {**CONSTANTS, "item_shift": ITEM_SHIFT})
+        self._vertices: Vertices | None = None
+        self._blocks: HaloBlocks | None = None
+        self._shapes: PulledShapes | None = None
+        self._listing: Listing | None = None
+        self._target: HitTarget | None = None
+        self._made: tuple[View, Style] | None = None
+        self._features: list[str] = []
+        self._generation = 0
+        try:
+            self._vertices = Vertices(ctx, self._gl, drawn)
+            self._blocks = HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds)
+            self._n = self._vertices.n_items
+            self._shapes = PulledShapes(ctx, self._n)
+            if culling is not None and self._n >= LEAST_SEGMENTS and supports_listing(ctx):
+                self._listing = Listing(
+                    ctx,
+                    self._gl,
+                    self._programs,
+                    -(-self._n >> ITEM_SHIFT),
+                    cull="halos/cull.comp",
+                    features=self._kind,
+                    shift=ITEM_SHIFT,
+                )
+        except BaseException:
+            self.release()
+            raise
+
+    def render(
+        self,
+        view: View,
+        style: Style,
+        *,
+        outside: moderngl.Texture | None = None,  # noqa: ARG002  as other renderers have it
+    ) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style.
+
+        Parameters
+        ----------
+        view : View
+            Its region is not looked at.
+        style : HaloStyle
+        outside : moderngl.Texture, optional
+            Not looked at.
+
+        Returns
+        -------
+        GBuffer
+            The renderer's own; the same object until the size changes. ``owner`` holds segments, each by its first
+            point, or points, and nothing where a halo shows; ``ids`` lines and tangents; ``position`` the point's
+            index within its line plus the fraction along the segment, and the value; ``across`` the ink, 1 on a line,
+            0 on a halo.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, if the picture is too large, or if the style names no values of the points.
+        TypeError
+            If the style has no look.
+        """
+        if not isinstance(style, HaloStyle):
+            raise TypeError(f"style is a {type(style).__name__}; lines and points with halos need a HaloStyle")
+        vertices, blocks, shapes = self._alive()
+        if self._target is not None and self._made == (view, style):
+            return self._target.buffer
+        self._made = None
+        look = style.look
+        reads = vertices.show_values(style.values)
+        filtered = vertices.show_filter(look.filter_by)
+        vertices.show_mask(look.n_tapered, look.t_tapered)
+        with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
+            target = self._target_of(view.size, coloured=reads == "HALO_COLOURS")
+            planes = blocks.write(view, look, self._n)
+            features = [*self._kind, *(["HALO_FILTER"] if filtered else []), *(["CLIP_PLANES"] if planes else [])]
+            self._features = sorted({*features, *([reads] if reads else [])})
+            self._passes.begin()
+            self._ctx.scissor = None
+            vertices.bind()
+            # Equal depths are drawn in the order of the data, which listing does not keep; halos that lie as deep as
+            # their lines would then flicker.
+            listing = self._listing if look.max_displacement > 0.0 else None
+            self._draw(target, shapes, listing, features, planes)
+            self._attributes(target, shapes, [*self._kind, *([reads] if reads else [])])
+        self._generation += 1
+        target.buffer.generation = self._generation
+        self._made = (view, style)
+        return target.buffer
+
+    def _target_of(self, size: tuple[int, int], *, coloured: bool) -> HitTarget:
+        if self._target is None or (self._target.size, self._target.coloured) != (size, coloured):
+            if self._target is not None:
+                self._target.release()
+                self._target = None
+            self._target = HitTarget(self._ctx, self._gl, size, coloured, "ink")
+        return self._target
+
+    def _draw(
+        self, target: HitTarget, shapes: PulledShapes, listing: Listing | None, features: list[str], planes: int
+    ) -> None:
+        """Draw what the depth buffer keeps."""
+        if listing is not None:
+            with self._passes.timed("last picture"):
+                listing.before(target, target.hits)
+        with self._passes.timed("clear"):
+            target.clear()
+            self._gl.clear_integers(target.hits_buffer, (EMPTY, 0), 0)
+        if not self._n:
+            return
+        stages = {"vertex": f"halos/{self.pipeline}.vert", "fragment": "halos/halo.frag"}
+        program = self._programs.render(stages, [*features, *(["HALO_LISTED"] if listing is not None else [])])
+
+        def render(commands: moderngl.Buffer | None = None) -> None:
+            target.hits_buffer.use()
+            self._prepare(program)
+            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.depth_func = ">"  # depth is the other way round: see shaders/halos/halo.frag
+            self._ctx.wireframe = False
+            self._ctx.provoking_vertex = moderngl.LAST_VERTEX_CONVENTION
+            for plane in range(planes):
+                self._ctx.enable_direct(_CLIP_DISTANCE + plane)
+            try:
+                if listing is None or commands is None:
+                    shapes.draw(program)
+                else:
+                    listing.bind(program)
+                    shapes.draw_listed(program, commands)
+            finally:
+                for plane in range(planes):
+                    self._ctx.disable_direct(_CLIP_DISTANCE + plane)
+                self._ctx.depth_func = "<="
+
+        if listing is not None:
+            listing.draw(target, self._passes, self._prepare_listing, render)
+            return
+        with self._passes.timed(self.pipeline):
+            render()
+
+    def _attributes(self, target: HitTarget, shapes: PulledShapes, features: list[str]) -> None:
+        """Find all else of the pixels that show something."""
+        with self._passes.timed("attributes"):
+            stages = {"vertex": "screen/near.vert", "fragment": "halos/attributes.frag"}
+            program = self._programs.render(stages, features)
+            self._prepare(program)
+            for name, texture, unit in (("hits", target.hits, HITS_UNIT), ("depths", target.depths, DEPTHS_UNIT)):
+                texture.use(unit)
+                program[name] = unit
+            if "lines" in program and isinstance(self._drawn, HaloLines):
+                program["lines"] = self._drawn.n_lines
+            target.attributes.use()
+            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.depth_func = "<"
+            shapes.whole(program).render(moderngl.TRIANGLES, vertices=3)
+            self._ctx.depth_func = "<="
+
+    def _prepare(self, program: moderngl.Program | moderngl.ComputeShader) -> None:
+        for sampler, unit in UNITS.items():
+            self._gl.set_sampler(program, sampler, unit)
+
+    def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
+        self._prepare(program)
+        program["items"] = -(-self._n >> ITEM_SHIFT)
+
+    def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
+        """Say that depths of other things would gain nothing."""
+        return False
+
+    def _alive(self) -> tuple[Vertices, HaloBlocks, PulledShapes]:
+        if self._vertices is None or self._blocks is None or self._shapes is None:
+            raise EngineError("this renderer has been released; make a new one")
+        return self._vertices, self._blocks, self._shapes
+
+    def explain(self, *, counts: bool = True) -> dict[str, Any]:  # noqa: ARG002
+        """Say what the last redraw was made of, and wait for it to end.
+
+        Returns
+        -------
+        dict
+            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``points_total``, ``lines_total`` (0 of
+            points), ``primitives`` (triangles without culling), ``culling``.
+        """
+        sizes: dict[str, int] = {}
+        for holder in (self._vertices, self._blocks, self._shapes):
+            if holder is not None:
+                sizes |= {name: buffer.size for name, buffer in holder.buffers.items()}
+        if self._listing is not None:
+            sizes["culling"] = self._listing.nbytes
+            sizes["occlusion"] = self._listing.pyramid_nbytes
+        if self._target is not None:
+            sizes["gbuffer"] = self._target.nbytes
+        return {
+            "passes": self._passes.report(),
+            "features": list(self._features),
+            "buffers": [{"name": name, "bytes": size} for name, size in sizes.items()],
+            "points_total": self._drawn.n_points,
+            "lines_total": self._drawn.n_lines if isinstance(self._drawn, HaloLines) else 0,
+            "primitives": 0 if self._shapes is None else self._shapes.primitives,
+            "culling": None if self._listing is None else "two-phase",
+        }
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for holder in (self._vertices, self._blocks, self._shapes, self._listing, self._target):
+            if holder is not None:
+                holder.release()
+        self._vertices = self._blocks = self._shapes = self._listing = self._target = None
+        self._programs.release()
+        self._passes.release()
+        self._made = None

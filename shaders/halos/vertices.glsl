@@ -1,0 +1,29 @@
+// Vertices of lines or points with halos, as pvfiblets/engine/halos/vertices.py stores them.
+
+#include "frame/blocks.glsl"
+#include "halos/block.glsl"
+
+uniform usamplerBuffer place_texels;     // three integers of each vertex
+#if !FEATURE_HALO_POINTS
+uniform usamplerBuffer mask_texels;      // u of each vertex, times LAST; no other than a line's last one has LAST
+const uint LAST = 65535u;
+
+bool is_last(int vertex) { return texelFetch(mask_texels, vertex).x == LAST; }
+#endif
+
+vec3 local_place(int vertex) {
+    int at = 3 * vertex;
+    ivec3 place = ivec3(uvec3(texelFetch(place_texels, at).x, texelFetch(place_texels, at + 1).x,
+                              texelFetch(place_texels, at + 2).x));
+    return vec3(place - ivec3(reference.xyz)) * halo_widths.w;
+}
+
+vec4 window_of(vec3 p) { return vec4(p, 1.0) * halo_rows; }
+
+// Reaches of half a line and of half a strip at a place: x, y. A line that would be thinner than the least width is widened,
+// and its halos keep theirs.
+vec2 reaches(vec3 p, float w) {
+    float line = halo_widths.x * (1.0 - clamp(dot(halo_cue.xyz, p) + halo_cue.w, 0.0, halo_mask.w));
+    float wider = max(halo_widths.z * w - line, 0.0);
+    return vec2(line + wider, halo_widths.x + halo_widths.y + wider);
+}
