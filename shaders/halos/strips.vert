@@ -14,7 +14,7 @@
 // Algorithm
 // The paper widens a vertex along the mean direction of its two segments. Here its corners lie where the edges of the two meet
 // in the window, so that strips keep their width in bends. Where a line turns by more than 60 degrees in the window, runs at
-// the viewer or has no length, both strips end in half discs around the vertex instead: they are lengthened by half a width,
+// the viewer or stands still, both strips end in half discs around the vertex instead: they are lengthened by half a width,
 // and fragments know how far beyond the vertex they are.
 
 #version 430
@@ -77,18 +77,12 @@ void main() {
 
     bool seen = at.w > 0.0 && there.w > 0.0;
     float span = seen ? length(own) / (inversesqrt(at.w * there.w) * at.w * there.w) / (0.5 * (reach.y + reach_there.y)) : 1e6;
+    if (span == 0.0) return;           // its neighbours end in half discs, which are all there is to see
     float straight = dot(along, along_next);
     vec2 corner = vec2(-along.y, along.x);
     float past = 0.0;
-    if (!alone && straight >= 0.5) {
-        corner = (corner + vec2(-along_next.y, along_next.x)) / (1.0 + straight);
-    } else if (seen && (!alone || span == 0.0)) {
-        if (span == 0.0) {
-            along = vec2(1.0, 0.0);
-            corner = vec2(0.0, 1.0);
-        }
-        past = alone ? 0.0 : 1.0;
-    }
+    if (!alone && straight >= 0.5) corner = (corner + vec2(-along_next.y, along_next.x)) / (1.0 + straight);
+    else if (!alone && seen) past = 1.0;
     corner = side * corner - past * forward * along;
     at.xy += reach.y * corner;
     gl_Position = vec4(at.xy / halo_mask.yz, 2.0 * at.z - at.w, at.w);
