@@ -1,4 +1,4 @@
-"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes, or lines and points with halos. No PyVista.
+"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes or what has halos. No PyVista here.
 
 >>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
 >>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP

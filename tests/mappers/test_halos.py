@@ -1,0 +1,458 @@
+"""Lines and points with halos among VTK's meshes, cuts, passes and pickers, against closed forms."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
+from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector
+
+from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions, windows
+from pvfiblets.mappers.halos import Strips, halo_renderer
+
+PIXELS = 5.0  # a mm, in the view `flat`
+LOOK = Look(2.0, 8.0, 4.0, n_tapered=0, min_width=0.0, smooth=False)
+GREEN = (0, 255, 0)
+WHITE = (255, 255, 255)
+BLACK = (0, 0, 0)
+BACK = (64, 64, 64)
+
+
+def lines_of(*lines, **values):
+    points = [np.asarray(line, float) for line in lines]
+    offsets = np.cumsum([0] + [len(line) for line in points])
+    return HaloLines(np.concatenate(points), offsets, {k: np.asarray(v) for k, v in values.items()})
+
+
+def bar(z=0.0, depth=0.0, **values):
+    """A line of two segments along x, from -15 to 15."""
+    return lines_of([(-15, depth, z), (0, depth, z), (15, depth, z)], **values)
+
+
+def made(drawn, look=LOOK, **options):
+    options.setdefault("colouring", Colouring("solid", color=(0, 1, 0)))
+    mapper, actor = HaloMapper(drawn, look, **options), vtkActor()
+    mapper.attach(actor)
+    actor.GetProperty().SetLighting(False)
+    return mapper, actor
+
+
+def flat(plotter, height=40.0):
+    """From -y, parallel: 200 pixels are `height` mm; depths are y."""
+    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = height / 2
+    plotter.camera.clipping_range = 20, 200
+    plotter.set_background([part / 255 for part in BACK])
+    return plotter
+
+
+def shown(make_plotter, *actors, **options):
+    plotter = make_plotter(**options)
+    for actor in actors:
+        plotter.add_actor(actor, reset_camera=False)
+    return flat(plotter)
+
+
+def column_at(image, x):
+    """A column of a picture of the view `flat`, and the z of its pixels."""
+    height, width = image.shape[:2]
+    column = image[:, round(width / 2 + PIXELS * x)]
+    return column, (height / 2 - 0.5 - np.arange(height)) / PIXELS
+
+
+def same(column, colour):
+    return (column == np.array(colour, np.uint8)).all(axis=-1)
+
+
+def test_a_line_has_its_colour_its_halo_another_and_the_rest_is_left_alone(make_plotter, tools):
+    mapper, actor = made(bar())
+    image = tools.picture(shown(make_plotter, actor), mapper)
+    column, z = column_at(image, 7.0)
+    across = np.abs(z)
+    assert same(column[across < 1.0], GREEN).all()
+    assert same(column[(across > 1.0) & (across < 4.0)], WHITE).all()
+    assert same(column[across > 4.0], BACK).all()
+    column, z = column_at(image, 16.0)  # ends are square
+    assert same(column, BACK).all()
+
+
+def test_points_are_discs_in_discs(make_plotter, tools):
+    mapper, actor = made(HaloPoints(np.array([(0.0, 0.0, 0.0), (10.0, 0.0, 0.0)])))
+    image = tools.picture(shown(make_plotter, actor), mapper)
+    rows, columns = np.mgrid[:200, :240]
+    for x in (0.0, 10.0):
+        r = np.hypot((columns + 0.5 - 120) / PIXELS - x, (99.5 - rows) / PIXELS)
+        assert same(image[r < 0.98], GREEN).all()
+        assert same(image[(r > 1.02) & (r < 3.98)], WHITE).all()
+    assert same(image[(np.hypot(columns - 119.5, rows - 99.5) > 4.1 * PIXELS) & (columns < 140)], BACK).all()
+
+
+@pytest.mark.parametrize("behind", [0.0, 0.5, 1.5, 2.5, 3.5, 6.0])
+def test_halos_have_a_depth_among_meshes(make_plotter, tools, behind):
+    """A wall shows through where the halo has gone back further than it: r dmax > behind."""
+    mapper, actor = made(bar())
+    plotter = shown(make_plotter, actor)
+    wall = pv.Plane(center=(0, behind + 1e-3, 0), direction=(0, 1, 0), i_size=60, j_size=60)
+    plotter.add_mesh(wall, color="red", lighting=False, reset_camera=False)
+    column, z = column_at(tools.picture(flat(plotter), mapper), 7.0)
+    r = np.abs(z) / 4.0
+    halo = (np.abs(z) > 1.0) & (r < 1.0) & (4.0 * r < behind + 1e-3)
+    assert same(column[np.abs(z) < 1.0], GREEN).all()
+    assert same(column[halo], WHITE).all()
+    assert same(column[~halo & (np.abs(z) > 1.0)], (255, 0, 0)).all()
+
+
+def test_what_is_in_front_hides_lines_and_halos(make_plotter, tools):
+    mapper, actor = made(bar())
+    plotter = shown(make_plotter, actor)
+    box = pv.Box((-8, 8, -5, -4, -3, 3))
+    plotter.add_mesh(box, color="red", lighting=False, reset_camera=False)
+    image = tools.picture(flat(plotter), mapper)
+    column, z = column_at(image, 0.0)
+    assert same(column[np.abs(z) < 3.0], (255, 0, 0)).all()
+    assert same(column[(np.abs(z) > 3.0) & (np.abs(z) < 4.0)], WHITE).all()
+
+
+@pytest.mark.parametrize("apart", [0.5, 2.0, 3.0, 9.0])
+def test_two_actors_cut_gaps_into_each_other_as_two_lines_of_one_do(make_plotter, tools, apart):
+    upright = [(3, apart, -15), (3, apart, 15)]
+    one, lone = made(lines_of([(-15, 0, 0), (15, 0, 0)], upright))
+    together = tools.picture(shown(make_plotter, lone), one)
+    (first, a), (second, b) = made(lines_of([(-15, 0, 0), (15, 0, 0)])), made(lines_of(upright))
+    apart_ = tools.picture(shown(make_plotter, a, b), first, second)
+    assert (together != apart_).any(-1).mean() < 1e-3
+    column, z = column_at(together, 3.0)
+    gap = same(column, WHITE).sum() / PIXELS / 2  # on either side: appendix A
+    assert gap == pytest.approx(np.clip((8 * min(apart / 4, 1) - 2) / 2, 0, 3), abs=1.5 / PIXELS)
+
+
+def test_bounds_hold_the_strips_and_the_camera_takes_them(make_plotter, tools):
+    mapper, actor = made(bar(), replace(LOOK, strip_width=12.0))
+    assert actor.GetBounds() == pytest.approx((-21, 21, -6, 6, -6, 6), abs=1e-6)
+    mapper.look = replace(LOOK, strip_width=20.0)
+    assert actor.GetBounds() == pytest.approx((-25, 25, -10, 10, -10, 10), abs=1e-6)
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    plotter.view_xz()
+    image = tools.covered(tools.picture(plotter, mapper))
+    assert image.sum() > 1000
+    assert not image[[0, -1]].any()
+    assert not image[:, [0, -1]].any()
+
+
+def test_a_strip_shows_whose_line_is_beside_the_picture(make_plotter, tools):
+    mapper, actor = made(bar(z=21.0))
+    column, z = column_at(tools.picture(shown(make_plotter, actor), mapper), 7.0)
+    assert same(column[z > 17.0], WHITE).all()
+    assert same(column[z < 17.0], BACK).all()
+
+
+def test_another_look_draws_again_and_copies_nothing(make_plotter, tools):
+    engines = []
+
+    def factory(ctx, drawn, **options):
+        engines.append(halo_renderer(ctx, drawn, **options))
+        return engines[-1]
+
+    mapper, actor = made(bar(v=[0.0, 1.0, 2.0]), renderer_factory=factory)
+    plotter = shown(make_plotter, actor)
+
+    def widths():
+        column, _ = column_at(tools.picture(flat(plotter), mapper), 7.0)
+        return same(column, GREEN).sum(), same(column, WHITE).sum()
+
+    assert widths() == (10, 30)
+    mapper.look = replace(LOOK, line_width=4.0)
+    assert widths() == (20, 20)
+    mapper.look = replace(LOOK, filter_by="v", low=0.4)
+    assert widths() == (10, 30)
+    mapper.look = replace(LOOK, filter_by="v", low=1.6)  # x = 7 is 1.47
+    assert widths() == (0, 0)
+    mapper.look = replace(LOOK, strip_width=2.0)
+    assert widths() == (10, 0)
+    assert len(engines) == 1
+    mapper.set_drawn(bar(z=4.0), LOOK)
+    assert widths() == (10, 30)
+    mapper.options = HaloOptions(culling=None)
+    assert widths() == (10, 30)
+    assert len(engines) == 3
+
+
+def test_places_are_picked_and_halos_are_not(make_plotter, tools):
+    drawn = lines_of([(-15, 0, 0), (0, 0, 0), (15, 0, 0)], [(10, 6, 15), (10, 6, -15)])
+    mapper, actor = made(drawn)
+    plotter = shown(make_plotter, actor)
+    assert mapper.pick_at(120, 100) is None
+    tools.picture(plotter, mapper)
+    for column in (60, 119, 121, 180):
+        line, place = mapper.pick_at(column, 100, tolerance=0)
+        assert (line, place) == (0, pytest.approx(((column + 0.5 - 120) / PIXELS + 15) / 15, abs=1e-3))
+    assert mapper.pick_at(150, 110, tolerance=0) is None  # the halo
+    assert mapper.pick_at(170, 110, tolerance=0) is None  # the halo, before the other line
+    assert mapper.pick_at(150, 106, tolerance=2)[0] == 0
+    line, place = mapper.pick_at(170, 150)
+    assert (line, place) == (1, pytest.approx(((15 - (150.5 - 100) / PIXELS) / 30), abs=1e-3))
+    assert mapper.pick_at(170, 150, tolerance=-1) is None
+    assert mapper.pick_at(-50, 500) is None
+
+
+def test_points_are_picked_by_number(make_plotter, tools):
+    mapper, actor = made(HaloPoints(np.array([(-10.0, 0, 0), (0.0, 0, 0), (10.0, 0, 0)])))
+    tools.picture(shown(make_plotter, actor), mapper)
+    assert [mapper.pick_at(70 + 50 * i, 100) for i in range(3)] == [0, 1, 2]
+    assert mapper.pick_at(130, 100, tolerance=0) is None
+    assert mapper.pick_at(130, 100, tolerance=6) == 1
+    assert mapper.pick_at(95, 100) is None
+
+
+def test_clipping_planes_of_the_mapper_cut_the_axis(make_plotter, tools):
+    mapper, actor = made(bar())
+    plotter = shown(make_plotter, actor)
+    whole = tools.picture(plotter, mapper)
+    plane = vtkPlane()
+    plane.SetNormal(1, 0, 0)
+    plane.SetOrigin(5, 0, 0)
+    mapper.AddClippingPlane(plane)
+    half = tools.picture(plotter, mapper)
+    assert (half[:, 146:] == whole[:, 146:]).all()
+    assert same(half[:, :145], BACK).all()
+    mapper.RemoveAllClippingPlanes()
+    assert (tools.picture(plotter, mapper) == whole).all()
+
+
+def pixel(image, x, z):
+    column, places = column_at(image, x)
+    return tuple(column[np.argmin(np.abs(places - z))].tolist())
+
+
+def test_every_way_to_colour_leaves_halos_alone(make_plotter, tools):
+    mapper, actor = made(bar(v=[0.0, 1.0, np.nan], c=np.array([(1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1)], "f4")))
+    plotter = shown(make_plotter, actor)
+
+    def colours(colouring, x=7.0):
+        mapper.colouring = colouring
+        image = tools.picture(plotter, mapper)
+        assert pixel(image, x, 2.0) == WHITE
+        return pixel(image, x, 0.1)
+
+    table = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
+    assert colours(Colouring("orientation")) == (255, 0, 0)
+    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == (0, 255, 255)
+    assert colours(Colouring("streamline_rgb", values=np.array([[7, 8, 9]], np.uint8))) == (7, 8, 9)
+    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=table, clim=(0, 1))) == (0, 0, 255)
+    numbers = Colouring("point_value", source="v", lut=table, clim=(0, 1), nan_color=(0.2, 0.4, 0.6))
+    assert [colours(numbers, x) for x in (-10.0, -5.0, 7.0)] == [(255, 0, 0), (0, 0, 255), (51, 102, 153)]
+    mixed = np.array(colours(Colouring("point_rgb", source="c")), int)
+    assert np.abs(mixed - [0, 255 * (1 - 7.1 / 15), 255 * 7.1 / 15]).max() <= 3
+    with pytest.raises(ValueError, match="2 values for 1"):
+        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
+
+
+def test_smooth_lines_turn_into_their_halo_over_a_pixel(make_plotter, tools):
+    """A line 10.5 pixels wide covers half of half a pixel more on both sides."""
+    look = replace(LOOK, line_width=2.1, smooth=True)
+    mapper, actor = made(bar(), look, colouring=Colouring("solid", color=(0, 0, 0)))
+    plotter = shown(make_plotter, actor)
+    column, z = column_at(tools.picture(plotter, mapper), 7.0)
+    ink = np.clip(0.5 - (np.abs(z) * PIXELS - 5.25), 0, 1)
+    inside = np.abs(z) < 4.0
+    assert np.abs(column[inside, 0] / 255.0 - (1 - ink[inside])).max() < 0.01
+    assert ((ink > 0.1) & (ink < 0.9)).any()
+
+
+def test_halos_of_the_background_take_part_in_its_gradient(make_plotter, tools):
+    mapper, actor = made(bar(z=9.0), halo_color=None)
+    plotter = shown(make_plotter, actor)
+    plotter.set_background("red", top="blue")
+    image = tools.picture(plotter, mapper).astype(int)
+    column, z = column_at(image, 7.0)
+    beside, _ = column_at(image, 20.0)
+    assert np.abs(column - beside)[np.abs(z - 9.0) > 1.0].max() <= 1
+    assert pixel(image, 7.0, 9.0) == GREEN
+    mapper.halo_color = (1.0, 1.0, 0.0)
+    assert pixel(tools.picture(plotter, mapper), 7.0, 11.0) == (255, 255, 0)
+    assert mapper.halo_color == (1.0, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("color", [(1.0, 2.0, 0.0), (1.0, 0.0)])
+def test_colours_that_are_none_are_refused(color):
+    with pytest.raises(ValueError, match="color of halos is "):
+        Strips(color)
+
+
+def test_unknown_options_are_refused_at_once():
+    assert HaloOptions("none") == HaloOptions(None)
+    assert HaloOptions(None).changed() == {"culling": None}
+    assert HaloOptions().changed() == {}
+    with pytest.raises(ValueError, match="culling is 'coverage'"):
+        HaloOptions("coverage")
+
+
+def test_light_falls_on_lines_and_not_on_halos(make_plotter, tools):
+    mapper, actor = made(bar())
+    actor.GetProperty().SetLighting(True)
+    actor.GetProperty().SetAmbient(0.0)
+    plotter = shown(make_plotter, actor)
+    plotter.remove_all_lights()
+    lamp = pv.Light(position=(0, -100, 100), focal_point=(0, 0, 0), light_type="scene light")
+    lamp.positional = False
+    plotter.add_light(lamp)
+    column, z = column_at(tools.picture(plotter, mapper), 7.0)
+    lit = column[np.abs(z) < 1.0]
+    assert np.abs(lit[:, 1] - 255 * np.sqrt(0.5)).max() <= 2
+    assert same(column[(np.abs(z) > 1.0) & (np.abs(z) < 4.0)], WHITE).all()
+
+
+def test_translucent_actors_blend_lines_and_halos_alike(make_plotter, tools):
+    mapper, actor = made(bar())
+    actor.GetProperty().SetOpacity(0.5)
+    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 159, 32]).max() <= 2
+    assert np.abs(np.array(pixel(image, 7.0, 2.0)) - [159] * 3).max() <= 2
+
+
+def test_colours_that_let_through_keep_opaque_halos(make_plotter, tools):
+    values = np.array([[0, 255, 0, 128]], np.uint8)
+    mapper, actor = made(bar(), colouring=Colouring("streamline_rgb", values=values))
+    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    assert actor.GetForceTranslucent()
+    assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 160, 32]).max() <= 2
+    assert pixel(image, 7.0, 2.0) == WHITE
+
+
+def test_actors_that_are_stretched_have_strips_as_wide(make_plotter, tools):
+    """Scaled by 2 all around: lengths are of the data, and the picture is that of half the distance."""
+    mapper, actor = made(bar())
+    actor.SetScale(2.0)
+    plotter = shown(make_plotter, actor)
+    column, z = column_at(tools.picture(plotter, mapper), 7.0)
+    assert same(column[np.abs(z) < 2.0], GREEN).all()
+    assert same(column[(np.abs(z) > 2.0) & (np.abs(z) < 8.0)], WHITE).all()
+    assert same(column[np.abs(z) > 8.0], BACK).all()
+
+
+def test_each_subplot_has_its_own_camera(make_plotter, tools):
+    mapper, actor = made(bar())
+    plotter = make_plotter(shape=(1, 2), border=False)
+    for side in (0, 1):
+        plotter.subplot(0, side)
+        plotter.add_actor(actor, reset_camera=False)
+        flat(plotter, height=40.0 * (1 + side))
+    image = tools.picture(plotter, mapper)
+    for column, scale in ((60, 1), (180, 2)):
+        z = scale * (99.5 - np.arange(200)) / PIXELS
+        assert same(image[np.abs(z) < 1.0, column], GREEN).all()
+        assert same(image[(np.abs(z) > 1.0) & (np.abs(z) < 4.0), column], WHITE).all()
+        assert same(image[np.abs(z) > 4.0, column], BACK).all()
+    assert mapper.pick_at(60, 100, renderer=plotter.renderers[0])[0] == 0
+
+
+@pytest.mark.parametrize("supersampled", [False, True])
+def test_the_least_width_is_in_pixels_of_the_window(make_plotter, tools, supersampled):
+    """Enlarged three times, or drawn from many samples, a thin line stays as wide a part of the picture."""
+    look = replace(LOOK, line_width=0.1, strip_width=4.0, min_width=3.0)
+    mapper, actor = made(bar(z=0.1), look)
+    plotter = shown(make_plotter, actor)
+    if supersampled:
+        plotter.enable_anti_aliasing("ssaa")
+        column, _ = column_at(tools.picture(plotter, mapper), 7.0)
+        green = column[:, 1].astype(float) - column[:, 0]
+        assert green.sum() / 255 == pytest.approx(3.0, abs=0.35)
+        return
+    column, z = column_at(tools.picture(plotter, mapper), 7.0)
+    assert same(column, GREEN).sum() == 3
+    large = plotter.screenshot(None, scale=3)
+    mapper.raise_pending()
+    column, _ = column_at(large, 21.0)
+    assert same(column, GREEN).sum() == 9
+    assert abs(same(column, WHITE).sum() - 3 * PIXELS * (4.0 - 0.1)) <= 1  # halos grow no wider with it
+    column, z = column_at(tools.picture(plotter, mapper), 7.0)
+    assert same(column, GREEN).sum() == 3
+
+
+def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
+    random = np.random.default_rng(3)
+    curves = [np.cumsum(random.normal(size=(40, 3)), axis=0) * 2.0 for _ in range(12)]
+    mapper, actor = made(lines_of(*curves), Look(0.5, 3.0, 3.0), halo_color=None)
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    plotter.set_background("red", top="blue")
+    tools.picture(plotter, mapper)
+    large = plotter.screenshot(None, scale=4).astype(int)
+    mapper.raise_pending()
+    whole = make_plotter(window_size=(960, 800))
+    mapper, actor = made(lines_of(*curves), Look(0.5, 3.0, 3.0, min_width=4.0), halo_color=None)
+    whole.add_actor(actor)
+    whole.camera = plotter.camera.copy()
+    whole.set_background("red", top="blue")
+    wanted = tools.picture(whole, mapper).astype(int)
+    assert tools.covered(large, (0, 0, 0)).all()
+    assert (np.abs(large - wanted).max(-1) > 8).mean() < 2e-4
+
+
+@pytest.mark.parametrize(("row", "wanted"), [(100, 1), (110, 1), (150, 0)], ids=["line", "halo", "beside"])
+def test_vtk_selects_the_actor(make_plotter, tools, row, wanted):
+    mapper, actor = made(bar())
+    plotter = shown(make_plotter, actor)
+    tools.picture(plotter, mapper)
+    selector = vtkHardwareSelector()
+    selector.SetRenderer(plotter.renderer)
+    selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
+    selector.SetArea(118, row - 2, 122, row + 2)
+    assert selector.Select().GetNumberOfNodes() == wanted
+    mapper.raise_pending()
+
+
+def test_nothing_to_draw_draws_nothing(make_plotter, tools):
+    empty = HaloLines(np.zeros((0, 3)), [0])
+    for drawn in (empty, HaloLines(np.zeros((2, 3)), [0, 1, 2]), HaloPoints(np.zeros((0, 3)))):
+        mapper, actor = made(drawn)
+        image = tools.picture(shown(make_plotter, actor), mapper)
+        assert same(image, BACK).all()
+        mapper.set_drawn(bar() if isinstance(drawn, HaloLines) else HaloPoints(np.zeros((1, 3))))
+        assert actor.GetBounds()[1] == pytest.approx(19 if isinstance(drawn, HaloLines) else 4)
+
+
+def test_memory_is_given_back_and_the_mapper_freed(make_plotter, tools):
+    mapper, actor = made(bar())
+    plotter = shown(make_plotter, actor)
+    tools.picture(plotter, mapper)
+    context = windows.contexts_with(mapper)[0]
+    mapper.release()
+    mapper.release()
+    assert not windows.contexts_with(mapper)
+    assert tools.picture(plotter, mapper).any()
+    context.window.MakeCurrent()
+    plotter.remove_actor(actor)
+    plotter.render()
+    assert not windows.contexts_with(mapper)
+    gone = weakref.ref(mapper)
+    del mapper, actor
+    gc.collect()
+    assert gone() is None
+
+
+def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
+    def broken(ctx, drawn, **options):
+        raise OSError("no memory")
+
+    mapper, actor = made(bar(), renderer_factory=broken)
+    plotter = shown(make_plotter, actor)
+    plotter.show(auto_close=False)
+    with pytest.raises(OSError, match="no memory"):
+        mapper.raise_pending()
+
+
+def test_numbers_that_are_not_there_are_refused_when_drawn(make_plotter):
+    mapper, actor = made(bar(), replace(LOOK, filter_by="height"))
+    plotter = shown(make_plotter, actor)
+    plotter.show(auto_close=False)
+    with pytest.raises(Exception, match="no values 'height'"):
+        mapper.raise_pending()
