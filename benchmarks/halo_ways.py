@@ -1,0 +1,298 @@
+"""The ways of drawing lines and points that the benchmark of halos compares, and how each is timed.
+
+Every way draws the same data from the same cameras, black on white, without anti-aliasing, light or filter. What
+differs is said with each way in :data:`ABOUT`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from orbit import DEGREES_PER_FRAME, context
+from tube_reference import ELEVATION, VERTICAL_ANGLE, Camera
+
+from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos.spacing import default_widths
+
+ABOUT = {
+    "vtk": "VTK's plain lines, one pixel wide, or its plain points, as large as ours are in the middle of the "
+    "picture: no halos",
+    "plotter": "`plotter.add_halo_lines`, `plotter.add_halo_points`: lines and points with halos in a PyVista scene",
+    "engine": "the same on a bare context, without VTK: a G-buffer",
+    "engine-unculled": "the same without culling, as the paper has it",
+}
+STEREO = ("vtk", "plotter")
+"""Ways that draw anaglyphs."""
+
+WIDTH_CUE = 0.4
+"""The plotter's own."""
+
+PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")
+"""Buffers that grow with the picture, not with the data."""
+
+
+class UnmeasuredError(Exception):
+    """A way is not there."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the paper's table 1: which data, whether as an anaglyph, the paper's figure and its frames a second."""
+
+    data: str
+    anaglyph: bool
+    figure: str
+    fps: float | None
+
+
+ROWS = {
+    "shape-small": Row("shape-small", False, "15(a)", 190.0),
+    "fibres-subset": Row("fibres-subset", False, "1", 123.0),
+    "fibres-subset-anaglyph": Row("fibres-subset", True, "8(b)", 65.0),
+    "office": Row("office", False, "11", 290.0),
+    "office-anaglyph": Row("office", True, "8(a)", 163.0),
+    "shape-large": Row("shape-large", False, "15(b)", 65.0),
+    "fibres": Row("fibres", False, "10(a)", 24.0),
+    "water": Row("water", False, "12", 43.0),
+    "terrain": Row("terrain", False, "14", 12.0),
+    "water-dense": Row("water-dense", False, "13", 11.0),
+}
+"""Of the paper, in its order."""
+
+
+def row_of(name: str) -> Row:
+    """Return a row by name: one of the paper's, or ``lines-N`` and ``points-N``, N small ones, with ``-anaglyph``."""
+    if name in ROWS:
+        return ROWS[name]
+    return Row(name.removesuffix("-anaglyph"), name.endswith("-anaglyph"), "", None)
+
+
+def make_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
+    """Return data by the name in a row."""
+    kind, _, count = name.partition("-")
+    if kind in ("lines", "points") and count.isdigit():
+        return helices(int(count)) if kind == "lines" else HaloPoints(helices(int(count), 10).points)
+    from pvfiblets.synthetic.halos import halo_set
+
+    return halo_set(name, seed)
+
+
+def helices(count: int, vertices: int = 40) -> HaloLines:
+    """Return helices about one axis."""
+    t = np.linspace(0.0, 4.0 * np.pi, vertices)
+    shift = 2.0 * np.pi * np.arange(count)[:, None] / count
+    points = np.stack(np.broadcast_arrays(np.cos(t + shift), np.sin(t + shift), 0.3 * t), axis=2)
+    return HaloLines(points.reshape(-1, 3), vertices * np.arange(count + 1))
+
+
+def look_of(drawn: HaloLines | HaloPoints, **more: Any) -> Look:
+    """Return the look that the plotter gives data by default."""
+    line, strip, displacement = default_widths(drawn)
+    if isinstance(drawn, HaloPoints):
+        more["n_tapered"] = 0
+    return Look(line, strip, displacement, **{"width_cue": WIDTH_CUE, **more})
+
+
+def orbit(drawn: HaloLines | HaloPoints, places: int, frames: int, size: tuple[int, int]) -> list[list[Camera]]:
+    """Return cameras that have the data fill the window, all from one distance.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        What is looked at.
+    places : int
+        All around it, about the vertical axis.
+    frames : int
+        At each place, a small turn apart, as in an animation; one before these is there to warm up.
+    size : tuple of int
+        Of the window, pixels.
+
+    Returns
+    -------
+    list of list of Camera
+        ``frames + 1`` cameras for each place.
+    """
+    centre = np.array(drawn.bounds).reshape(3, 2).mean(axis=1)
+    points = drawn.points[:: max(1, drawn.n_points // 50_000)]
+    extreme = np.concatenate([drawn.points.argmin(axis=0), drawn.points.argmax(axis=0)])
+    points = np.concatenate([points, drawn.points[extreme]]).astype(np.float64) - centre
+    narrow = math.tan(math.radians(VERTICAL_ANGLE / 2)) * np.array([size[0] / size[1], 1.0])
+    up = math.radians(ELEVATION)
+    rotations = []
+    for place in range(places):
+        for frame in range(-1, frames):
+            turn = 0.3 + 2.0 * math.pi * place / places + math.radians(DEGREES_PER_FRAME * frame)
+            back = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
+            right = np.array([-math.sin(turn), math.cos(turn), 0.0])
+            rotations.append(np.stack([right, np.cross(back, right), back]))
+    seen = [points @ rotation.T for rotation in rotations]
+    radius = float(np.linalg.norm(points, axis=1).max())
+    # A point is in the picture where the eye is at least so far from the centre.
+    distance = 1.01 * max(float((p[:, 2] + (abs(p[:, :2]) / narrow).max(axis=1)).max()) for p in seen)
+    nearest = distance - max(float(p[:, 2].max()) for p in seen)
+    near, far = max(nearest - 0.05 * radius, 1e-3 * radius), distance + 1.05 * radius
+    cameras = [Camera(tuple(size), centre + distance * rotation[2], centre, near, far) for rotation in rotations]
+    return [cameras[i : i + frames + 1] for i in range(0, len(cameras), frames + 1)]
+
+
+def run(way: str, row: Row, drawn: HaloLines | HaloPoints, options: Any) -> dict[str, Any]:
+    """Return times and sizes of one way.
+
+    Raises
+    ------
+    UnmeasuredError
+        If the way is not there.
+    """
+    kinds = {"vtk": _VTK, "plotter": _Plotter, "engine": _Engine, "engine-unculled": _Engine}
+    cameras = orbit(drawn, options.places, options.frames, tuple(options.size))
+    way_drawn = kinds[way](way, row, drawn, options, cameras[0][0])
+    try:
+        times = timed(way_drawn.draw, cameras, options.seconds)
+        facts = way_drawn.facts()
+        way_drawn.draw(cameras[0][1])
+        dark = way_drawn.darkness()
+    finally:
+        way_drawn.close()
+    low, median, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
+    return {"ms": median, "ms_spread": [low, high], "frames": len(times), "darkness": dark, **facts}
+
+
+def timed(draw: Any, cameras: list[list[Camera]], seconds: float) -> list[float]:
+    """Return the seconds of each frame but the first at each place; one at each place where all would take too long."""
+    times: list[float] = []
+    for camera in cameras[0]:  # programs are compiled, and what is made when first needed is made
+        draw(camera)
+    for place in cameras:
+        draw(place[0])
+        began = time.perf_counter()
+        for camera in place[1:]:
+            start = time.perf_counter()
+            draw(camera)
+            times.append(time.perf_counter() - start)
+            if time.perf_counter() - began > seconds / len(cameras):
+                break
+    return times
+
+
+def polydata(drawn: HaloLines | HaloPoints) -> Any:
+    """Return the same as a PyVista mesh."""
+    import pyvista as pv
+
+    if isinstance(drawn, HaloPoints):
+        return pv.PolyData(drawn.points)
+    cells = np.insert(np.arange(drawn.n_points), drawn.offsets[:-1], np.diff(drawn.offsets))
+    return pv.PolyData(drawn.points, lines=cells)
+
+
+class _Window:
+    """What ways in a PyVista window share."""
+
+    def __init__(self, row: Row, options: Any) -> None:
+        import pyvista as pv
+
+        self.plotter = pv.Plotter(off_screen=True, window_size=list(options.size))
+        self.plotter.disable_anti_aliasing()
+        self.plotter.set_background("white")
+        self.anaglyph = row.anaglyph
+
+    def show(self) -> None:
+        self.plotter.show(auto_close=False)
+        if self.anaglyph:
+            self.plotter.enable_stereo_render()
+
+    def draw(self, camera: Camera) -> None:
+        camera.aim(self.plotter)
+        self.plotter.render()
+        self.plotter.render_window.WaitForCompletion()
+        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
+
+    def darkness(self) -> float:
+        """Return the mean of the picture, 0 white, 1 black."""
+        return 1.0 - float(np.asarray(self.plotter.screenshot(None))[..., :3].mean()) / 255.0
+
+    def close(self) -> None:
+        self.plotter.close()
+
+
+class _VTK(_Window):
+    """VTK's lines and points."""
+
+    def __init__(self, _: str, row: Row, drawn: Any, options: Any, camera: Camera) -> None:
+        super().__init__(row, options)
+        common = {"color": "black", "lighting": False, "show_scalar_bar": False}
+        if isinstance(drawn, HaloLines):
+            self.plotter.add_mesh(polydata(drawn), line_width=1, **common)
+            # Poly-lines are drawn as pairs of indices, four bytes each; points are three float32.
+            self.bytes, self.size = 12 * drawn.n_points + 8 * drawn.n_segments, 1.0
+        else:
+            distance = float(np.linalg.norm(camera.eye - camera.centre))
+            self.size = max(1.0, round(look_of(drawn).line_width * camera.pixels / distance))
+            self.plotter.add_mesh(polydata(drawn), style="points", point_size=self.size, **common)
+            self.bytes = (12 + 4) * drawn.n_points
+        self.show()
+
+    def facts(self) -> dict[str, Any]:
+        return {"gpu_bytes": self.bytes, "pixels_wide": self.size}
+
+
+class _Plotter(_Window):
+    """Halos by this program in a PyVista scene."""
+
+    def __init__(self, _: str, row: Row, drawn: Any, options: Any, __: Camera) -> None:
+        super().__init__(row, options)
+        add = getattr(self.plotter, "add_halo_lines" if isinstance(drawn, HaloLines) else "add_halo_points", None)
+        if add is None:
+            self.plotter.close()
+            raise UnmeasuredError("there is no plotter.add_halo_lines here")
+        self.actor = add(polydata(drawn))
+        self.show()
+
+    def facts(self) -> dict[str, Any]:
+        return _told(self.actor.explain())
+
+
+class _Engine:
+    """Halos by this program without VTK."""
+
+    def __init__(self, way: str, row: Row, drawn: Any, _: Any, __: Camera) -> None:
+        from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+
+        if row.anaglyph:
+            raise UnmeasuredError("stereo is VTK's")
+        self.ctx = context()
+        self.style = HaloStyle(look=look_of(drawn))
+        self.renderer = HaloRenderer(self.ctx, drawn, culling=None if way == "engine-unculled" else "two-phase")
+
+    def draw(self, camera: Camera) -> None:
+        from pvfiblets.engine import View
+
+        self.gbuffer = self.renderer.render(View(camera.size, camera.model_view_projection), self.style)
+        self.ctx.finish()
+
+    def facts(self) -> dict[str, Any]:
+        return _told(self.renderer.explain())
+
+    def darkness(self) -> float:
+        """Return the mean of the picture that this G-buffer means, 0 white, 1 black."""
+        return float(darkness_of(self.gbuffer).mean())
+
+    def close(self) -> None:
+        self.renderer.release()
+        self.ctx.release()
+
+
+def darkness_of(gbuffer: Any) -> np.ndarray:
+    """Return a G-buffer as black lines with white halos: (height, width) float32, 1 where it is black."""
+    width, height = gbuffer.size
+    keys = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width)
+    ink = np.frombuffer(gbuffer.across.read(), np.float16).reshape(height, width)
+    return np.where(keys != 0xFFFFFFFF, ink, np.float16(0.0)).astype(np.float32)
+
+
+def _told(report: dict[str, Any]) -> dict[str, Any]:
+    sizes = [buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE]
+    return {"gpu_bytes": sum(sizes), "passes": report["passes"], "culling": report.get("culling")}
