@@ -1,0 +1,199 @@
+"""Transfer functions: what colour, how opaque a value is (Lesar 2015, III-E), exactly and for steps of any length.
+
+Light along a ray obeys dI/ds = g - kappa I (equation 6): extinction kappa per mm, emission g. Seen from the eye, with s
+running away from it, the colour of a ray is (equations 7 and 8)
+
+    I = int_0^S g(s) exp(-int_0^s kappa(u) du) ds,    g = kappa c,
+
+c being the table's colour, and its opacity is 1 - exp(-int_0^S kappa ds). As g = kappa c, light never leaves the range
+of the colours. The table says how opaque `unit` mm of a value are, alpha, so kappa = -ln(1 - alpha) / unit: how opaque
+something is does not depend on how finely rays are sampled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .volume import RaycastVolume
+
+__all__ = ["LARGEST_DEPTH", "Transfer"]
+
+LARGEST_DEPTH = 24.0 * np.log(2.0)
+"""Largest optical depth of one unit, 16.6: there alpha is 1 - 2^-24, which float32 hardly tells from 1. Full opacity
+would take an infinite one."""
+
+PREINTEGRATED = 256
+"""Least number of values along each side of a pre-integrated table."""
+
+LARGEST_PREINTEGRATED = 1024
+"""Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Transfer:
+    """A transfer function: a table of colours and opacities over an interval of values.
+
+    Parameters
+    ----------
+    table : array_like
+        ``(k, 4)`` RGBA from 0 to 1, k >= 2, kept as float32. Between its entries, which lie evenly over ``clim``, all
+        four are linear; outside the first and last go on.
+    clim : tuple of float
+        ``(low, high)``: values of the first and last entry.
+    unit : float, default: 1
+        mm of which the table gives the opacity. :meth:`over` takes the volume's mean voxel spacing.
+
+    Raises
+    ------
+    ValueError
+        If the table has another shape or numbers outside 0..1, ``clim`` is not finite and increasing, or the unit is
+        not finite and above 0.
+    """
+
+    table: npt.NDArray[np.float32]
+    clim: tuple[float, float]
+    unit: float = 1.0
+
+    def __post_init__(self) -> None:
+        table = np.array(self.table, np.float64)
+        if table.ndim != 2 or table.shape[1] != 4 or len(table) < 2:
+            raise ValueError(f"the transfer function's table has the shape {table.shape}; expected (k, 4) RGBA, k >= 2")
+        fine = (table >= 0.0) & (table <= 1.0)  # not of NaN
+        if not fine.all():
+            row, column = np.argwhere(~fine)[0]
+            raise ValueError(
+                f"the transfer function's {'RGBA'[column]} of entry {row} is {table[row, column]:g}; expected 0 to 1"
+            )
+        low, high = (float(end) for end in self.clim)
+        if not (np.isfinite(low) and np.isfinite(high) and low < high and np.isfinite(high - low)):
+            raise ValueError(f"clim={(low, high)}; expected two finite numbers, the lower one first")
+        unit = float(self.unit)
+        if not 0.0 < unit < np.inf:
+            raise ValueError(f"the unit of opacity is {unit:g} mm; expected a finite length above 0")
+        single = table.astype(np.float32)
+        single.flags.writeable = False
+        object.__setattr__(self, "table", single)
+        object.__setattr__(self, "clim", (low, high))
+        object.__setattr__(self, "unit", unit)
+
+    @classmethod
+    def over(
+        cls, volume: RaycastVolume, table: Any, clim: tuple[float, float] | None = None, unit: float | None = None
+    ) -> Transfer:
+        """A transfer function for a volume.
+
+        Parameters
+        ----------
+        volume : RaycastVolume
+        table, clim, unit
+            As of the class. By default ``clim`` is the range of the volume's values, of a constant volume from its
+            value to 1 above, so that it has the first entry; the unit is the mean voxel spacing.
+        """
+        if clim is None:
+            low, high = volume.value_range
+            clim = (low, high) if low < high else (low, max(low + 1.0, float(np.nextafter(low, np.inf))))
+        return cls(table, clim, float(volume.spacing.mean()) if unit is None else unit)
+
+    def lookup(self, values: npt.ArrayLike) -> Array:
+        """Return ``(..., 4)`` float64 RGBA of values."""
+        where = self._places(values)
+        table = self.table.astype(np.float64)
+        below = np.minimum(where.astype(np.int64), len(table) - 2)
+        share = (where - below)[..., None]
+        return (1.0 - share) * table[below] + share * table[below + 1]
+
+    def colour(self, values: npt.ArrayLike) -> Array:
+        """Return ``(..., 3)`` float64 RGB of values, the c of g = kappa c."""
+        return self.lookup(values)[..., :3]
+
+    def extinction(self, values: npt.ArrayLike) -> Array:
+        """Return the extinction kappa of values, 1/mm."""
+        return _depth(self.lookup(values)[..., 3]) / self.unit
+
+    def emission(self, values: npt.ArrayLike) -> Array:
+        """Return ``(..., 3)`` emission g = kappa c of values, 1/mm."""
+        rgba = self.lookup(values)
+        return rgba[..., :3] * (_depth(rgba[..., 3]) / self.unit)[..., None]
+
+    def visible_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Return whether anything between two values, themselves included, has an opacity above 0.
+
+        For arrays of bounds, as :func:`pvfiblets.raycast.octree.flags` asks; what it costs does not depend on how much
+        of the table lies between.
+        """
+        first, last = self._places(low), self._places(high)
+        # Opacity is linear between entries: it is 0 all through if it is at both ends and at the entries between.
+        n = self._opaque_before
+        between = n[np.floor(last).astype(np.int64) + 1] > n[np.ceil(first).astype(np.int64)]
+        seen: npt.NDArray[np.bool_] = between | self._opaque_at(first) | self._opaque_at(last)
+        return seen
+
+    @cached_property
+    def _opaque_before(self) -> npt.NDArray[np.int64]:
+        """``(k + 1,)``: how many entries before each have opacity."""
+        return np.concatenate([[0], np.cumsum(self.table[:, 3] > 0.0)])
+
+    def _opaque_at(self, where: Array) -> npt.NDArray[np.bool_]:
+        opaque = self.table[:, 3] > 0.0
+        below, above = np.floor(where).astype(np.int64), np.ceil(where).astype(np.int64)
+        either: npt.NDArray[np.bool_] = opaque[below] | opaque[above]  # of one, if the value is an entry's own
+        return either
+
+    def _places(self, values: npt.ArrayLike) -> Array:
+        """Where values lie in the table, 0 to k - 1."""
+        low, high = self.clim
+        share = (np.asarray(values, np.float64) - low) / (high - low)
+        return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)
+
+    def preintegrated(self, step: float) -> npt.NDArray[np.float32]:
+        """Colour and opacity of a step along which the value changes linearly, for all pairs of values.
+
+        Parameters
+        ----------
+        step : float
+            mm.
+
+        Returns
+        -------
+        ndarray
+            ``(n, n, 4)`` float32: for the value at the step's front, first, and back, second, each evenly over
+            ``clim``, the RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of
+            the table is among the values.
+
+        Raises
+        ------
+        ValueError
+            If the step is not finite and above 0, or the table has more than 1024 entries.
+
+        Notes
+        -----
+        The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive
+        (1 - alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
+        int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
+        """
+        from .preintegration import preintegrate
+
+        if not 0.0 < step < np.inf:
+            raise ValueError(f"the step is {step!r} mm; expected a finite length above 0")
+        k = len(self.table)
+        if k > LARGEST_PREINTEGRATED:
+            raise ValueError(
+                f"the transfer function has {k} entries; tables of up to {LARGEST_PREINTEGRATED} can be "
+                "pre-integrated: give a shorter one"
+            )
+        n = (k - 1) * -(-(PREINTEGRATED - 1) // (k - 1)) + 1
+        rgba = self.lookup(np.linspace(*self.clim, n))
+        return preintegrate(rgba, step / self.unit)
+
+
+def _depth(alpha: Array) -> Array:
+    """Optical depth of one unit of an opacity."""
+    with np.errstate(divide="ignore"):
+        return np.minimum(-np.log1p(-alpha), LARGEST_DEPTH)
