@@ -73,6 +73,18 @@ FEATURES: dict[str, str] = {
     "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",
+    "RAYCAST_SURFACE": "surfaces in a volume",
+    "RAYCAST_LIGHT": "light through a volume",
+    "RAYCAST_LOCAL": "the first peak in a volume, not the greatest",
+    "RAYCAST_NEAREST": "the field of the nearest voxel",
+    "RAYCAST_TRICUBIC": "the field of cubics between voxels",
+    "RAYCAST_UNREFINED": "surfaces at the sample behind them",
+    "RAYCAST_NEWTON": "surfaces by Newton's steps",
+    "RAYCAST_PREINTEGRATED": "light of steps integrated beforehand",
+    "RAYCAST_RIEMANN": "light by Riemann's sum",
+    "RAYCAST_SIMPSON": "light by Simpson's rule",
+    "RAYCAST_RK4": "light by Runge and Kutta's method of order four",
+    "RAYCAST_JITTER": "rays that start at places of their own",
     "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
 }
 """What a program can be made to do, by the name of its switch."""
@@ -93,6 +105,7 @@ BLOCKS = {
     "Sampling": 6,
     "Tubes": 7,
     "Splines": 8,
+    "Raycast": 10,
     "Halos": 9,
 }
 """Bindings of the uniform blocks, as the sources state them."""

@@ -1,0 +1,121 @@
+"""`Casting`: how rays are cast through a volume, as one value that a redraw is decided on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .volume import FILTERS
+
+if TYPE_CHECKING:
+    from .transfer import Transfer
+
+__all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "REFINEMENTS", "Casting"]
+
+MODES = ("isosurface", "composite", "mip", "local-mip")
+"""What a ray shows: a surface, all that it passes through, the greatest value, or the first peak above a threshold."""
+
+REFINEMENTS = ("none", "regula-falsi", "newton")
+"""How the place of a crossing is refined (paper: equations 3 and 4)."""
+
+INTEGRATORS = ("preintegrated", "exponential", "riemann", "simpson", "rk4")
+"""How the rendering equation is integrated over a step."""
+
+MAX_VALUES = 8
+"""Isosurfaces of one volume."""
+
+
+@dataclass(frozen=True)
+class Casting:
+    """How rays are cast.
+
+    Parameters
+    ----------
+    mode : str
+        Of `MODES`.
+    values : tuple of float
+        Where surfaces are, 1 to `MAX_VALUES` of them, for ``'isosurface'``; each ray shows the first that it meets.
+    transfer : Transfer, optional
+        Colours and opacities by value, for ``'composite'``.
+    threshold : float
+        The least value of a peak, for ``'local-mip'``.
+    low, high : float
+        Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
+    step : float
+        Of a ray, in mean voxel spacings, above 0.
+    jitter : bool
+        Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
+    filter : str
+        Of :data:`pvfiblets.raycast.volume.FILTERS`.
+    refine : str
+        Of `REFINEMENTS`.
+    iterations : int
+        Steps of the refinement, 1 to 64.
+    integrator : str
+        Of `INTEGRATORS`.
+    octree : bool
+        Whether nodes in which there is nothing to see are skipped. It changes no pixel.
+    homogeneous : float
+        Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
+    stop : float
+        Opacity at which a ray ends, above 0 and at most 1.
+    box : tuple of float, optional
+        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: only what lies in it is there.
+
+    Raises
+    ------
+    ValueError
+        If a choice is none or a number is out of its range; the message names it.
+
+    Notes
+    -----
+    Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.
+    """
+
+    mode: str = "isosurface"
+    values: tuple[float, ...] = ()
+    transfer: Transfer | None = None
+    threshold: float = -math.inf
+    low: float = -math.inf
+    high: float = math.inf
+    step: float = 0.5
+    jitter: bool = False
+    filter: str = "trilinear"
+    refine: str = "regula-falsi"
+    iterations: int = 5
+    integrator: str = "preintegrated"
+    octree: bool = True
+    homogeneous: float = 0.0
+    stop: float = 0.999
+    box: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in (
+            ("mode", MODES), ("filter", FILTERS), ("refine", REFINEMENTS), ("integrator", INTEGRATORS)
+        ):  # fmt: skip
+            if getattr(self, name) not in known:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {known}")
+        object.__setattr__(self, "values", tuple(float(value) for value in self.values))
+        if self.mode == "isosurface":
+            if not 1 <= len(self.values) <= MAX_VALUES or not all(math.isfinite(value) for value in self.values):
+                raise ValueError(f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers")
+        if self.mode == "composite" and self.transfer is None:
+            raise ValueError("mode 'composite' needs transfer: colours and opacities by value")
+        if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:
+            raise ValueError(f"the thresholds are {self.low} and {self.high}; give the lower one first")
+        self._check("step", 1e-3 <= self.step <= 1e3, "a number of voxels from 0.001 to 1000")
+        self._check("stop", 0.0 < self.stop <= 1.0, "an opacity above 0, at most 1")
+        self._check("homogeneous", 0.0 <= self.homogeneous < math.inf, "a difference of values, 0 or more")
+        self._check("iterations", 1 <= self.iterations <= 64, "a whole number from 1 to 64")
+        if math.isnan(self.threshold):
+            raise ValueError("threshold is nan; give a number")
+        if self.box is not None:
+            box = tuple(float(side) for side in self.box)
+            if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
+                raise ValueError(f"box is {self.box}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
+            object.__setattr__(self, "box", box)
+
+    def _check(self, name: str, right: bool, expected: str) -> None:
+        if not right:
+            raise ValueError(f"{name} is {getattr(self, name)}; give {expected}")

@@ -1,0 +1,73 @@
+// What each pixel shows of a volume: the textures of pvfiblets/engine/gbuffer.py.
+// Paper: Lesar 2015, "Real-time ray casting of volumetric data", section III.
+//
+// One ray per pixel, through what planes, the box and opaque things in front leave of the volume. Steps are as long everywhere,
+// from where the ray enters: what the octree skips changes no sample.
+
+#version 430
+
+#include "raycast/block.glsl"
+#include "raycast/field.glsl"
+#include "raycast/ray.glsl"
+#include "raycast/nodes.glsl"
+#include "codec/layout.glsl"
+#include "attributes/tangent.glsl"
+#if FEATURE_RAYCAST_SURFACE
+#include "raycast/surface.glsl"
+#elif FEATURE_RAYCAST_LIGHT
+#include "raycast/light.glsl"
+#else
+#include "raycast/peak.glsl"
+#endif
+#if FEATURE_OUTSIDE
+uniform usampler2D outside;       // keys of what is opaque
+#endif
+
+layout(location = 0) out uint shown_depth;
+layout(location = 1) out uint shown_owner;
+layout(location = 2) out uvec2 shown_ids;
+layout(location = 3) out vec2 shown_position;
+#if FEATURE_RAYCAST_SURFACE
+layout(location = 4) out uint shown_normal;
+#endif
+#if FEATURE_RAYCAST_LIGHT
+layout(location = 4) out vec4 shown_colour;
+#endif
+
+// A number in 0..1 for each pixel that looks like noise.
+float noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
+
+void main() {
+    Ray ray = ray_of(gl_FragCoord.xy);
+#if FEATURE_OUTSIDE
+    uint key = texelFetch(outside, ivec2(gl_FragCoord.xy), 0).x;
+    if (key != 0xFFFFFFFFu) ray.last = min(ray.last, where_far(ray, float(0xFFFFFFFFu - key) / 4294967296.0));
+#endif
+    if (!(ray.last > ray.first)) discard;
+    float step = ray_low.w, start = ray.first;
+#if FEATURE_RAYCAST_JITTER
+    start += step * noise(floor(gl_FragCoord.xy));
+    if (start >= ray.last) discard;
+#endif
+    float hit, value = 0.0;
+#if FEATURE_RAYCAST_SURFACE
+    if (!find_surface(ray, step, start, hit, value)) discard;
+    vec3 g = gradient_at(at(ray, hit));
+    vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
+    float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
+    vec3 normal = size > 0.0 ? g / size : -way;
+    shown_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);
+#elif FEATURE_RAYCAST_LIGHT
+    vec4 light;
+    if (!gather(ray, step, start, hit, light)) discard;
+    shown_colour = vec4(light.rgb / light.a, light.a);
+#else
+    if (!find_peak(ray, step, start, hit, value)) discard;
+#endif
+    float far = farness(ray, hit);
+    shown_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
+    ivec3 voxel = clamp(ivec3(floor(at(ray, hit) + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1);
+    shown_owner = uint(voxel.x) + uint(ray_size.x) * (uint(voxel.y) + uint(ray_size.y) * uint(voxel.z));
+    shown_ids = uvec2(0u, 0u);
+    shown_position = vec2(hit, value);
+}

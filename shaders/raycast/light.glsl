@@ -1,0 +1,95 @@
+// Light through a medium that emits and absorbs.
+// Paper: Lesar 2015, section III.E, equations (6) to (8).
+//
+// Symbols
+//   kappa        extinction per mm; c colour; g = kappa c emission
+//   T            what is left of the light from behind
+//   dI/ds = T kappa c,  dT/ds = -kappa T
+//
+// colours holds (c, kappa) by value; segments (premultiplied colour, opacity) of a whole step between two values, between which the
+// value is linear: integrated exactly beforehand.
+
+uniform sampler2D colours;
+#if FEATURE_RAYCAST_PREINTEGRATED
+uniform sampler2D segments;
+#endif
+
+float place_of(float value) { return clamp((value - ray_table.x) / max(ray_table.y - ray_table.x, 1e-30), 0.0, 1.0); }
+
+vec4 medium_at(float value) {
+    if (!(value >= ray_values.z && value <= ray_values.w)) return vec4(0.0);
+    float size = float(textureSize(colours, 0).x);
+    return textureLod(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5), 0.0);
+}
+
+// Premultiplied colour and opacity of a stretch of some mm.
+vec4 stretch(Ray ray, float t, float mm, float step, inout float before) {
+#if FEATURE_RAYCAST_PREINTEGRATED
+    float after = value_at(at(ray, t + mm)), size = float(textureSize(segments, 0).x);
+    vec2 place = (vec2(place_of(before), place_of(after)) * (size - 1.0) + 0.5) / size;
+    vec4 whole = textureLod(segments, place, 0.0);
+    float middle = 0.5 * (before + after);
+    before = after;
+    if (!(middle >= ray_values.z && middle <= ray_values.w)) return vec4(0.0);
+    if (mm == step || whole.a <= 0.0) return whole;
+    float a = 1.0 - pow(1.0 - min(whole.a, 0.9999999), mm / step);
+    return whole * (a / whole.a);
+#elif FEATURE_RAYCAST_RIEMANN
+    vec4 m = medium_at(value_at(at(ray, t + 0.5 * mm)));
+    float a = min(m.a * mm, 1.0);
+    return vec4(m.rgb * a, a);
+#elif FEATURE_RAYCAST_SIMPSON
+    vec4 m0 = medium_at(before), m1 = medium_at(value_at(at(ray, t + 0.5 * mm)));
+    float after = value_at(at(ray, t + mm));
+    vec4 m2 = medium_at(after);
+    before = after;
+    float kappa = (m0.a + 4.0 * m1.a + m2.a) / 6.0, a = 1.0 - exp(-kappa * mm);
+    vec3 emission = (m0.rgb * m0.a + 4.0 * m1.rgb * m1.a + m2.rgb * m2.a) / 6.0;
+    return vec4(kappa > 0.0 ? emission / kappa * a : vec3(0.0), a);
+#elif FEATURE_RAYCAST_RK4
+    vec4 m0 = medium_at(before), m1 = medium_at(value_at(at(ray, t + 0.5 * mm)));
+    float after = value_at(at(ray, t + mm));
+    vec4 m2 = medium_at(after);
+    before = after;
+    float k1 = m0.a, t2 = 1.0 - 0.5 * mm * k1, k2 = m1.a * t2, t3 = 1.0 - 0.5 * mm * k2, k3 = m1.a * t3;
+    float t4 = 1.0 - mm * k3, k4 = m2.a * t4;
+    float a = mm / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    vec3 c = mm / 6.0 * (m0.rgb * k1 + m1.rgb * (2.0 * k2 + 2.0 * k3) + m2.rgb * k4);
+    return clamp(vec4(c, a), 0.0, 1.0);
+#else
+    vec4 m = medium_at(value_at(at(ray, t + 0.5 * mm)));
+    float a = 1.0 - exp(-m.a * mm);
+    return vec4(m.rgb * a, a);
+#endif
+}
+
+// Colour (premultiplied) and opacity, and where the first of it is.
+bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
+    float t = start;
+#if FEATURE_RAYCAST_PREINTEGRATED || FEATURE_RAYCAST_SIMPSON || FEATURE_RAYCAST_RK4
+    float before = value_at(at(ray, t));
+#else
+    float before = 0.0;
+#endif
+    light = vec4(0.0);
+    hit = -1.0;
+    while (t < ray.last && light.a < ray_high.w) {
+        float number, end = t + to_end_of_node(ray, t, 0.5, number);
+        if (number <= 0.5 && end - t >= step) {
+            t += floor((end - t) / step) * step;
+            if (t >= ray.last) break;
+#if FEATURE_RAYCAST_PREINTEGRATED || FEATURE_RAYCAST_SIMPSON || FEATURE_RAYCAST_RK4
+            before = value_at(at(ray, t));
+#endif
+        }
+        do {
+            float mm = min(step, ray.last - t);
+            vec4 part = stretch(ray, t, mm, step, before);
+            if (part.a > 0.0 && hit < 0.0) hit = t;
+            light += (1.0 - light.a) * part;
+            t += step;
+        } while (t < end && t < ray.last && light.a < ray_high.w);
+    }
+    if (light.a >= ray_high.w) light /= light.a;      // what is behind would not be seen
+    return light.a > 0.0;
+}
