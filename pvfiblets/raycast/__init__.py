@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from .octree import Octree, build_octree
+from .smoothing import smoothed
+from .sources import as_raycast_volume
 from .transfer import Transfer
 from .volume import FILTERS, RaycastVolume
 
-__all__ = ["FILTERS", "Octree", "RaycastVolume", "Transfer", "build_octree"]
+__all__ = ["FILTERS", "Octree", "RaycastVolume", "Transfer", "as_raycast_volume", "build_octree", "smoothed"]

@@ -1,0 +1,344 @@
+"""What rays can be cast through: volumes gathered from every kind of source into one form, in RAS+ mm."""
+
+from __future__ import annotations
+
+import os
+import zlib
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .smoothing import smoothed
+from .volume import RaycastVolume
+
+__all__ = ["SUFFIXES", "as_raycast_volume"]
+
+NIBABEL = (".nii", ".nii.gz", ".mgh", ".mgz")
+SUFFIXES = (*NIBABEL, ".nrrd", ".nhdr", ".mhd", ".mha", ".vti")
+"""Of files that say what they hold."""
+
+_EXPECTED = (
+    "a pyvista.ImageData, an (nx, ny, nz) array, an (array, affine) tuple, an image of nibabel, a RaycastVolume or the "
+    f"path of one of {', '.join(SUFFIXES)}"
+)
+UNIT_LENGTH = 1e-3  # by which a direction may differ from length 1: headers keep few digits
+
+Array = npt.NDArray[np.float64]
+Found = tuple[npt.NDArray[Any], Array, str]
+"""Numbers, their affine, and a name."""
+
+
+def as_raycast_volume(
+    source: Any,
+    *,
+    scalars: Any = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+    shape: Any = None,
+    dtype: Any = None,
+    smooth: Any = None,
+    smooth_unit: Literal["voxels", "mm"] = "voxels",
+) -> RaycastVolume:
+    """Take a volume from any source.
+
+    Parameters
+    ----------
+    source : object
+        - :class:`pyvista.ImageData` or another ``vtkImageData``: origin, spacing and direction matrix place it. Cell
+          data become the mean of the cells around each point, as in ``Plotter.add_volume``.
+        - ``(nx, ny, nz)`` numbers, masked arrays (masked voxels are missing) and memory maps; or ``(array, affine)``.
+        - An image of nibabel.
+        - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.nrrd``, ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD
+          files that say so, and of MetaImage files always, coordinates are LPS+ and are turned to RAS+. Any other, such
+          as ``.raw``: bare numbers, the first axis running fastest; they need ``shape`` and ``dtype``.
+        - A :class:`.RaycastVolume`, or anything else with ``values`` and ``affine``.
+    scalars : str or array_like, optional
+        Of images of VTK: the name of an array, or numbers, one for each point or cell. Default: the active ones.
+    spacing : float or array_like, optional
+        mm between voxels along each axis.
+    origin : array_like, optional
+        ``(3,)`` mm: the centre of voxel (0, 0, 0).
+    direction : array_like, optional
+        ``(3, 3)`` or 9 numbers, row by row: its columns are the directions of the axes, of length 1.
+    affine : array_like, optional
+        ``(4, 4)`` voxel indices to mm, in place of the three above. All four take the place of what the source says.
+    shape : tuple of int, optional
+        Voxels along each axis, of bare numbers in a file.
+    dtype : dtype_like, optional
+        Their type, such as ``'uint8'`` or ``'>i2'``.
+    smooth : float or array_like, optional
+        Standard deviation of a Gaussian to smooth with, one or along each axis.
+    smooth_unit : {'voxels', 'mm'}, default: 'voxels'
+        Of ``smooth``.
+
+    Returns
+    -------
+    RaycastVolume
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    TypeError
+        If the source is of another kind.
+    ValueError
+        If a file is damaged, there are more than one number per voxel or other than three axes, arguments contradict
+        each other, or as of :class:`.RaycastVolume` and :func:`.smoothed`. The message names value and remedy.
+    """
+    path = os.fspath(source).lower() if isinstance(source, (str, os.PathLike)) else None
+    is_raw = path is not None and not path.endswith(SUFFIXES)
+    if (shape is not None or dtype is not None) and not is_raw:
+        raise ValueError("shape and dtype are of files of bare numbers, such as .raw; leave them out")
+    is_vtk = hasattr(source, "IsA") or (path is not None and path.endswith(".vti"))
+    if scalars is not None and not is_vtk:
+        raise ValueError(f"scalars={scalars!r} chooses among the arrays of a VTK image; leave it out")
+    given = (spacing, origin, direction, affine)
+    if isinstance(source, RaycastVolume):
+        volume = source
+        if any(part is not None for part in given):
+            values = source.values
+            if source.missing is not None:
+                values = np.where(source.missing, np.float32(np.nan), values)
+            volume = RaycastVolume(values, _placed(source.affine, *given), name=source.name)
+    else:
+        if is_raw:
+            found = _of_raw(Path(source), shape, dtype)
+        elif path is not None:
+            found = _of_file(Path(source), scalars)
+        else:
+            found = _of_object(source, scalars)
+        values, own, name = found
+        volume = RaycastVolume(values, _placed(own, *given), name=name)
+    return volume if smooth is None else smoothed(volume, smooth, smooth_unit)
+
+
+def _of_object(source: Any, scalars: Any) -> Found:
+    """The volume of something in memory."""
+    if hasattr(source, "IsA"):
+        return _of_vtk(source, scalars)
+    if hasattr(source, "dataobj") and hasattr(source, "affine"):
+        return _of_nibabel(source, "the image", "values")
+    if hasattr(source, "values") and hasattr(source, "affine"):
+        return np.asarray(source.values), source.affine, str(getattr(source, "name", "values"))
+    if isinstance(source, tuple) and len(source) == 2 and np.ndim(source[1]) == 2:
+        return _of_array(source[0]), np.asarray(source[1]), "values"
+    if isinstance(source, np.ndarray) or hasattr(source, "__array__") or isinstance(source, (list, tuple)):
+        return _of_array(source), np.eye(4), "values"
+    raise TypeError(f"rays cannot be cast through a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _of_array(given: Any) -> npt.NDArray[Any]:
+    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
+        given = np.ma.filled(given.astype(np.result_type(given.dtype, np.float32)), np.nan)
+    try:
+        values = np.asarray(given)
+    except ValueError:
+        raise ValueError("the volume's rows are of unlike lengths; give an (nx, ny, nz) array") from None
+    return _three_axes(values, "the volume")
+
+
+def _three_axes(values: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
+    """An array without axes of one behind the third."""
+    _check_axes(values.shape, what)
+    return values.reshape(values.shape[:3]) if values.ndim > 3 else values
+
+
+def _check_axes(shape: tuple[int, ...], what: str) -> None:
+    if len(shape) < 3 or any(n != 1 for n in shape[3:]):
+        colours = ", as RGB colours have" if len(shape) == 4 and shape[3] in (3, 4) else ""
+        volumes = ": give one of its volumes, such as image[..., 0]" if len(shape) > 3 else ""
+        raise ValueError(
+            f"{what} has the shape {tuple(shape)}{colours}; three axes (nx, ny, nz) with one number per voxel are "
+            f"needed{volumes}"
+        )
+
+
+def _of_nibabel(image: Any, what: str, name: str) -> Found:
+    """An image of nibabel's, in memory only as far as it must be."""
+    if image.affine is None:
+        raise ValueError(f"{what} has no affine; give affine=..., or (array, affine)")
+    _check_axes(image.shape, what)  # before anything is read
+    data = image.dataobj
+    kind = getattr(data, "dtype", np.dtype(np.float32))
+    if kind.names is not None:
+        raise ValueError(
+            f"{what} holds colours, the fields {', '.join(kind.names)} of each voxel; one number each is needed: "
+            "take one of them, or their mean"
+        )
+    scaled = getattr(data, "slope", 1.0) not in (1.0, None) or getattr(data, "inter", 0.0) not in (0.0, None)
+    if scaled and hasattr(data, "get_scaled") and kind.kind != "c":
+        values = data.get_scaled(dtype=np.float32)  # half of what the default, float64, takes
+    else:
+        values = np.asarray(data)
+    return _three_axes(values, what), image.affine, name
+
+
+def _of_file(path: Path, scalars: Any) -> Found:
+    lower = path.name.lower()
+    name = path.name[: -len(next((s for s in SUFFIXES if lower.endswith(s)), "")) or None]
+    if lower.endswith(NIBABEL):
+        import nibabel as nib
+        from nibabel.filebasedimages import ImageFileError
+        from nibabel.spatialimages import HeaderDataError
+
+        from pvfiblets.errors import FormatError
+
+        try:
+            return _of_nibabel(nib.load(path), path.name, name)
+        except FileNotFoundError:
+            raise
+        except (ImageFileError, HeaderDataError, EOFError, OSError, zlib.error) as error:
+            raise FormatError(path, None, f"what nibabel cannot read ({error})", "a whole NIfTI or MGH image") from None
+    if lower.endswith((".nrrd", ".nhdr")):
+        from .nrrd import read_nrrd
+
+        return *read_nrrd(path), name
+    if lower.endswith((".mhd", ".mha")):
+        from .metaimage import read_metaimage
+
+        return *read_metaimage(path), name
+    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+    from .vtk_files import read
+
+    return _of_vtk(read(vtkXMLImageDataReader(), path), scalars)
+
+
+def _of_raw(path: Path, shape: Any, dtype: Any) -> Found:
+    """A memory map of a file of bare numbers."""
+    if shape is None or dtype is None:
+        path.stat()  # first of all, whether it is there
+        raise ValueError(
+            f"{path.name} has none of the suffixes {', '.join(SUFFIXES)}; of bare numbers say shape=(nx, ny, nz) and "
+            "dtype, such as 'uint8'"
+        )
+    sides = np.asarray(shape)
+    if sides.shape != (3,) or sides.dtype.kind not in "iu" or (sides < 1).any():
+        raise ValueError(f"shape={shape!r}; expected (nx, ny, nz), three whole numbers above 0")
+    try:
+        kind = np.dtype(dtype)
+    except TypeError:
+        raise ValueError(f"dtype={dtype!r}; expected a type of numbers, such as 'uint8', '>i2' or 'float32'") from None
+    needed, size = int(np.prod(sides.astype(object))) * kind.itemsize, path.stat().st_size
+    if size != needed:
+        raise ValueError(
+            f"{path} has {size} bytes; {' x '.join(map(str, sides))} voxels of {kind} take {needed}: check shape and "
+            "dtype, or give numpy.memmap(path, dtype, 'r', offset, shape, 'F') for numbers behind a header"
+        )
+    return np.memmap(path, kind, "r", 0, tuple(sides.tolist()), "F"), np.eye(4), path.stem
+
+
+def _of_vtk(image: Any, scalars: Any) -> Found:
+    """An image's scalars where they lie."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if not image.IsA("vtkImageData"):
+        raise TypeError(
+            f"rays cannot be cast through a {type(image).__name__}; sample it on a grid first: "
+            "pyvista.ImageData(...).sample(mesh)"
+        )
+    dims = image.GetDimensions()
+    n_points, n_cells = image.GetNumberOfPoints(), image.GetNumberOfCells()
+    if scalars is None or isinstance(scalars, str):
+        array, of_cells = _vtk_array(image, scalars)
+        name = array.GetName() or "values"
+        if array.GetNumberOfComponents() != 1:
+            n = array.GetNumberOfComponents()
+            colours = ", RGB colours perhaps" if n in (3, 4) else ""
+            raise ValueError(
+                f"the image's array {name!r} has {n} numbers per voxel{colours}; one is needed: take a column, or a "
+                "norm, first"
+            )
+        values = vtk_to_numpy(array)
+    else:
+        values, name = np.asarray(scalars), "values"
+        if values.shape not in ((n_points,), (n_cells,)):
+            raise ValueError(
+                f"scalars have the shape {values.shape}; expected one number for each of the image's {n_points} points "
+                f"or {n_cells} cells"
+            )
+        of_cells = len(values) != n_points
+    if of_cells:
+        values = _at_points(values.reshape([max(n - 1, 1) for n in dims], order="F"), dims)
+    else:
+        values = values.reshape(dims, order="F")
+    matrix = image.GetIndexToPhysicalMatrix()
+    place = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+    place[:3, 3] += place[:3, :3] @ np.array(image.GetExtent()[0::2], np.float64)
+    return values, place, name
+
+
+def _vtk_array(image: Any, name: str | None) -> tuple[Any, bool]:
+    """An array of a VTK image, and whether it is of its cells."""
+    data = (image.GetPointData(), image.GetCellData())
+    if name is None:
+        found = [attributes.GetScalars() for attributes in data]
+        if hasattr(image, "active_scalars_info"):  # PyVista says which of the two is meant
+            association, active = image.active_scalars_info
+            if active is not None:
+                found = [each.GetArray(active) for each in data]
+                if getattr(association, "name", "POINT") == "CELL":
+                    found[0] = None
+        # Filters leave arrays that nobody made active; one is as good as chosen.
+        for i, attributes in enumerate(data):
+            if found == [None, None] and attributes.GetNumberOfArrays() == 1:
+                found[i] = attributes.GetArray(0)
+    else:
+        found = [attributes.GetArray(name) for attributes in data]
+    if found == [None, None]:
+        names = [each.GetArrayName(i) for each in data for i in range(each.GetNumberOfArrays())]
+        lacking = "no active scalars" if name is None else f"no array {name!r} of numbers"
+        raise ValueError(f"the image has {lacking} among its arrays {names}; choose one by scalars=...")
+    return (found[0], False) if found[0] is not None else (found[1], True)
+
+
+def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArray[np.float32]:
+    """The mean of the cells around each point."""
+    values = cells.astype(np.float32)
+    for axis in range(3):
+        if dims[axis] > 1:
+            first, last = values.take([0], axis), values.take([-1], axis)
+            values = (np.concatenate([first, values], axis) + np.concatenate([values, last], axis)) / 2
+    return values
+
+
+def _placed(own: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Array:
+    """A source's affine with what was given in place of its parts."""
+    if affine is not None:
+        if not (spacing is None and origin is None and direction is None):
+            raise ValueError("affine says spacing, origin and direction too; give either it or those")
+        return np.asarray(affine, np.float64)
+    if spacing is None and origin is None and direction is None:
+        return np.asarray(own, np.float64)
+    place = np.array(own, np.float64)
+    lengths = np.linalg.norm(place[:3, :3], axis=0)
+    axes = np.divide(place[:3, :3], lengths, out=np.eye(3), where=lengths > 0.0)
+    if spacing is not None:
+        lengths = np.asarray(spacing, np.float64)
+        if lengths.shape not in ((), (3,)) or not np.isfinite(lengths).all() or not (lengths > 0.0).all():
+            raise ValueError(f"spacing={spacing!r}; expected one or three finite lengths above 0, mm")
+    if direction is not None:
+        axes = np.asarray(direction, np.float64)
+        axes = axes.reshape(3, 3) if axes.shape == (9,) else axes
+        if axes.shape != (3, 3) or not np.isfinite(axes).all():
+            raise ValueError(f"direction={direction!r}; expected a finite (3, 3) matrix or 9 numbers, row by row")
+        sizes = np.linalg.norm(axes, axis=0)
+        if (abs(sizes - 1.0) > UNIT_LENGTH).any():
+            raise ValueError(
+                f"the columns of direction have the lengths {sizes.tolist()}; expected 1: lengths belong into spacing"
+            )
+    if origin is not None:
+        place[:3, 3] = _point(origin)
+    place[:3, :3] = axes * lengths
+    return place
+
+
+def _point(origin: Any) -> Array:
+    point = np.asarray(origin, np.float64)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise ValueError(f"origin={origin!r}; expected three finite coordinates, mm")
+    return point
