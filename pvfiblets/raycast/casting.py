@@ -97,9 +97,9 @@ class Casting:
             if getattr(self, name) not in known:
                 raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {known}")
         object.__setattr__(self, "values", tuple(float(value) for value in self.values))
-        if self.mode == "isosurface":
-            if not 1 <= len(self.values) <= MAX_VALUES or not all(math.isfinite(value) for value in self.values):
-                raise ValueError(f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers")
+        right = 1 <= len(self.values) <= MAX_VALUES and all(map(math.isfinite, self.values))
+        if self.mode == "isosurface" and not right:
+            raise ValueError(f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers")
         if self.mode == "composite" and self.transfer is None:
             raise ValueError("mode 'composite' needs transfer: colours and opacities by value")
         if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:

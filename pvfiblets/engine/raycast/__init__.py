@@ -1,7 +1,7 @@
 """Volumes, ray cast into a G-buffer (Lesar 2015), on a moderngl context. No VTK, no PyVista.
 
->>> renderer = RaycastRenderer(ctx, volume)                                                       # doctest: +SKIP
->>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), RaycastStyle(casting=casting))  # doctest: +SKIP
+>>> renderer = RaycastRenderer(ctx, volume)                                     # doctest: +SKIP
+>>> gbuffer = renderer.render(View(size, matrix), RaycastStyle(casting=casting))   # doctest: +SKIP
 
 One pass over the picture: every pixel's ray runs through the volume's octree and samples what is left
 (``shaders/raycast/cast.frag``).

@@ -114,10 +114,10 @@ class RayBlock:
 
 
 def _rays(clip: Array, picture: tuple[int, int], size: Array) -> tuple[Array, Array]:
-    """Return start and direction of the rays, each (3, 3): of the picture's middle, and by pixel to the right and upwards.
+    """Return start and direction of rays in voxels, each (3, 3): in the picture's middle, and by pixel right and up.
 
-    In voxels. Starts lie where the volume begins to be near, so that float32 has its digits there. A matrix that shows no
-    depth gets rays of no length, which meet nothing.
+    Starts lie where the volume begins to be near, so that float32 has its digits there. A matrix that shows no depth
+    gets rays of no length, which meet nothing.
     """
     x, y, z, w = clip
     half = np.array(picture) / 2.0

@@ -314,7 +314,7 @@ class RaycastRenderer:
 
 
 def _numbers(octree: Octree, casting: Casting) -> list[npt.NDArray[np.float32]]:
-    """Return a number for each node of each level, leaves first: 0 where there is nothing to see, of peaks the greatest value."""
+    """Return a number for each node, leaves first: 0 where there is nothing to see, of peaks the greatest value."""
     within = casting.low, casting.high
     if not casting.octree:
         return [np.full(level.least.shape, np.inf, np.float32) for level in octree.levels]
