@@ -46,8 +46,8 @@ class VolumeTexture:
         limit = int(ctx.info["GL_MAX_3D_TEXTURE_SIZE"])
         if max(volume.shape) > limit:
             raise EngineError(
-                f"a volume of {' x '.join(map(str, volume.shape))} voxels has more than {limit} along an axis, the most "
-                "of this OpenGL's textures; take every second voxel, or a part of it"
+                f"a volume of {' x '.join(map(str, volume.shape))} voxels has more than {limit} along an axis, the "
+                "most of this OpenGL's textures; take every second voxel, or a part of it"
             )
         kind, self.scale, self.shift = _FORMATS[volume.values.dtype.type]
         voxels = volume.values
