@@ -119,7 +119,7 @@ class HaloLinesComponent(Printing, Keeping[HaloLineActor]):
         tapering : bool or (int, float), default: True
             How ends of lines narrow: ``(n, t)``, over ``n`` vertices, which go as far as ``t`` along the
             mask, up to 0.5; it is at its widest from 0.2 on. True means (2, 0.2), False square ends.
-        width_cue : float, default: 0.4
+        width_cue : float, default: 0.5
             By which share the farthest lines are thinner than the nearest, beside perspective.
         scalars : str or array, optional
             What colours the lines, not their halos: the name of data of ``source``;

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Threshold: TypeAlias = float | Sequence[float | None] | None
 
-WIDTH_CUE = 0.4
+WIDTH_CUE = 0.5
 """Share by which the farthest lines are thinner, by default."""
 
 TAPERED = (2, 0.2)

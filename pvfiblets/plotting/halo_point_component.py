@@ -108,7 +108,7 @@ class HaloPointsComponent(Printing, Keeping[HaloPointActor]):
             ``halo_size`` and the extent of the data.
         displacement : {"linear", "square", "square root"}, table or function, default: "linear"
             How far back a halo lies from its middle to its edge, as for lines.
-        width_cue : float, default: 0.4
+        width_cue : float, default: 0.5
             By which share the farthest points are smaller than the nearest, beside perspective.
         scalars : str or array, optional
             What colours the points, not their halos: the name of point data of ``source``, or an

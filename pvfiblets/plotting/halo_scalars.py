@@ -10,17 +10,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.halos.build import as_halo_lines, as_halo_points
+from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.plotting.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
 BUILT_IN = (ORIENTATION, ARC_LENGTH, LENGTH)
 """Of lines. Points have nothing but what they were given."""
-
-FILTER = "filter"
-"""What numbers are called that filter and came without a name."""
-
-_SCALARS = "scalars"  # what as_halo_lines calls an array without a name
 
 Drawn: TypeAlias = HaloLines | HaloPoints
 
@@ -67,7 +62,10 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: 
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
     source = _read_lines(source)
     stored, filters = (None if _computed(source, what) else what for what in (scalars, filter_by))
-    lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
+    try:
+        lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
+    except ValueError as error:
+        raise _unknown(source, (stored, filters), error) from None
     held = _named(Held(lines, stored, _filter_name(filters), line_values))
     if stored is not scalars:
         held = coloured(held, scalars)
@@ -97,11 +95,14 @@ def as_points(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by:
         import pyvista as pv
 
         source = pv.read(source)
-    points = as_halo_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+    try:
+        points = as_halo_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+    except ValueError as error:
+        raise _unknown(source, (scalars, filter_by), error) from None
     return _named(Held(points, scalars, _filter_name(filter_by)))
 
 
-def coloured(held: Held, scalars: Any, *, rgb: bool = True) -> Held:
+def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
     """Have something else colour what is held; numbers at points are stored with it.
 
     Parameters
@@ -110,8 +111,8 @@ def coloured(held: Held, scalars: Any, *, rgb: bool = True) -> Held:
         Stays as it is.
     scalars : str or array, optional
         A name, or a row of numbers or a colour for each point, or for each line.
-    rgb : bool, default: True
-        Whether floats of three or four columns are colours.
+    rgb : bool, optional
+        Whether floats of three or four columns are colours; by default they are.
 
     Returns
     -------
@@ -127,15 +128,11 @@ def coloured(held: Held, scalars: Any, *, rgb: bool = True) -> Held:
         if isinstance(scalars, str) and scalars == ARC_LENGTH and isinstance(drawn, HaloLines):
             drawn = _with_arc_length(drawn)
         return replace(held, drawn=drawn, scalars=scalars)
-    given = np.asarray(scalars)
-    rows = _rows(given, held, "scalars")
-    if rows != drawn.n_points:
-        return replace(held, scalars=given)
-    if given.ndim == 2 and given.shape[1] == 1:
-        given = given[:, 0]
-    if given.ndim == 2:
-        given = _rgba(given, rgb)
-    return replace(held, drawn=_with(drawn, UNNAMED, given), scalars=UNNAMED)
+    rgb = _columns(scalars) > 1 if rgb is None else rgb
+    if isinstance(drawn, HaloPoints):
+        return _named(replace(held, drawn=as_halo_points(drawn, scalars=scalars, rgb=rgb), scalars=scalars))
+    lines, line_values = as_halo_lines(drawn, scalars=scalars, rgb=rgb)
+    return _named(replace(held, drawn=lines, scalars=scalars, line_values={**held.line_values, **line_values}))
 
 
 def filtered(held: Held, filter_by: Any) -> Held:
@@ -163,20 +160,19 @@ def filtered(held: Held, filter_by: Any) -> Held:
     if filter_by is None:
         return replace(held, filter_by=None)
     if not isinstance(filter_by, str):
-        numbers = np.asarray(filter_by)
-        _rows(numbers, held, "filter_by")
-        return replace(held, drawn=_with(drawn, FILTER, _spread(drawn, numbers.reshape(-1))), filter_by=FILTER)
+        if isinstance(drawn, HaloPoints):
+            return replace(held, drawn=as_halo_points(drawn, filter_by=filter_by), filter_by=FILTER)
+        return replace(held, drawn=as_halo_lines(drawn, filter_by=filter_by).lines, filter_by=FILTER)
     if filter_by in drawn.values:
         if drawn.values[filter_by].ndim > 1:
             raise ValueError(f"filter_by is {filter_by!r}, which are colours; name numbers, or give an array of them")
         return replace(held, filter_by=filter_by)
-    if filter_by in held.line_values:
-        numbers = np.asarray(held.line_values[filter_by])
-        return replace(held, drawn=_with(drawn, filter_by, _spread(drawn, numbers)), filter_by=filter_by)
+    if isinstance(drawn, HaloLines) and filter_by in held.line_values:
+        return replace(held, drawn=_with(drawn, filter_by, held.line_values[filter_by]), filter_by=filter_by)
     if isinstance(drawn, HaloLines) and filter_by == ARC_LENGTH:
         return replace(held, drawn=_with_arc_length(drawn), filter_by=filter_by)
     if isinstance(drawn, HaloLines) and filter_by == LENGTH:
-        return replace(held, drawn=_with(drawn, LENGTH, _spread(drawn, line_lengths(drawn))), filter_by=filter_by)
+        return replace(held, drawn=_with(drawn, LENGTH, line_lengths(drawn)), filter_by=filter_by)
     raise KeyError(_missing("filter_by", filter_by, held))
 
 
@@ -248,42 +244,22 @@ def _with_arc_length(lines: HaloLines) -> HaloLines:
     return lines if ARC_LENGTH in lines.values else replace(lines, values={**lines.values, ARC_LENGTH: _along(lines)})
 
 
-def _with(drawn: Drawn, name: str, values: np.ndarray) -> Drawn:
-    return replace(drawn, values={**drawn.values, name: values})
+def _with(lines: HaloLines, name: str, numbers: np.ndarray) -> HaloLines:
+    """Lines with one more number for each of their points, the same all along a line."""
+    if numbers.ndim > 1:
+        raise ValueError(f"filter_by is {name!r}, which are colours; name numbers, or give an array of them")
+    return replace(lines, values={**lines.values, name: np.repeat(numbers, np.diff(lines.offsets))})
 
 
-def _spread(drawn: Drawn, numbers: np.ndarray) -> np.ndarray:
-    """Bring numbers of lines to their points."""
-    if len(numbers) == drawn.n_points or isinstance(drawn, HaloPoints):
-        return numbers
-    return np.repeat(numbers, np.diff(drawn.offsets))
-
-
-def _rows(given: np.ndarray, held: Held, what: str) -> int:
-    """Return how many rows an array has, if they are as many as points or lines."""
-    drawn = held.drawn
-    lines = [drawn.n_lines] if isinstance(drawn, HaloLines) else []
-    columns = given.ndim == 1 or (given.ndim == 2 and (what == "scalars" or given.shape[1] == 1))
-    if not columns or len(given) not in (drawn.n_points, *lines) or given.dtype.kind not in "buif":
-        wanted = f"{drawn.n_points} points" + (f" or {lines[0]} lines" if lines else "")
-        raise ValueError(
-            f"{what} have the shape {given.shape} and type {given.dtype}; expected a row of numbers for each of "
-            f"{wanted}"
-        )
-    return len(given)
-
-
-def _rgba(colours: np.ndarray, rgb: bool) -> np.ndarray:
-    if colours.shape[1] not in (3, 4) or not (rgb or colours.dtype == np.uint8):
-        raise ValueError(
-            f"scalars have the shape {colours.shape} and type {colours.dtype}; expected (n_points,) numbers, or "
-            "(n_points, 3 or 4) colours of uint8; give rgb=True for colours from 0 to 1"
-        )
-    found = np.ones((len(colours), 4), np.float32)
-    found[:, : colours.shape[1]] = colours / (255.0 if colours.dtype == np.uint8 else 1.0)
-    if len(found) and not (found.min() >= 0.0 and found.max() <= 1.0):
-        raise ValueError(f"colours lie between {colours.min():g} and {colours.max():g}; floats must lie in 0..1")
-    return found
+def _columns(scalars: Any) -> int:
+    """Numbers in a row of an array, or of the first of several arrays."""
+    if isinstance(scalars, (list, tuple)) and len(scalars) and np.ndim(scalars[0]) == 2:
+        return np.shape(scalars[0])[1]
+    try:
+        shape = np.shape(scalars)
+    except ValueError:  # arrays of unlike lengths, each with a number in each row
+        return 1
+    return shape[1] if len(shape) == 2 else 1
 
 
 def _at_points(name: str, values: np.ndarray) -> Scalars:
@@ -302,10 +278,10 @@ def _named(held: Held) -> Held:
     if held.scalars is None or isinstance(held.scalars, str):
         return held
     line_values = dict(held.line_values)
-    if _SCALARS in line_values:
-        return replace(held, scalars=line_values.pop(_SCALARS), line_values=line_values)
+    if SCALARS in line_values:
+        return replace(held, scalars=line_values.pop(SCALARS), line_values=line_values)
     values = dict(held.drawn.values)
-    values[UNNAMED] = values.pop(_SCALARS)
+    values[UNNAMED] = values.pop(SCALARS)
     return replace(held, drawn=replace(held.drawn, values=values), scalars=UNNAMED)
 
 
@@ -325,11 +301,21 @@ def _read_lines(source: Any) -> Any:
 
 def _computed(source: Any, what: Any) -> bool:
     """Whether that is a name of numbers that are computed of lines; data of that name goes before them."""
-    if not isinstance(what, str) or what not in BUILT_IN:
-        return False
+    return isinstance(what, str) and what in BUILT_IN and not _has(source, what)
+
+
+def _has(source: Any, name: str) -> bool:
+    """Whether a source has numbers of that name."""
     if hasattr(source, "GetPointData"):
-        return all(data.GetArray(what) is None for data in (source.GetPointData(), source.GetCellData()))
-    return not any(what in getattr(source, where, ()) for where in ("per_point", "per_streamline"))
+        return any(data.GetArray(name) is not None for data in (source.GetPointData(), source.GetCellData()))
+    return any(name in getattr(source, where, ()) for where in ("per_point", "per_streamline"))
+
+
+def _unknown(source: Any, names: tuple[Any, Any], error: ValueError) -> Exception:
+    """Return the error of a name that is not there as PyVista has it; any other as it is."""
+    if any(isinstance(name, str) and not _has(source, name) for name in names):
+        return KeyError(str(error))
+    return error
 
 
 def _missing(what: str, name: str, held: Held) -> str:

@@ -66,8 +66,8 @@ def test_every_width_is_live(stage):
     actor.strip_width = 4.0
     assert widths(stage, 7) == near(4, 0)
     actor.strip_width, actor.line_width = 10.0, 0.1
-    actor.min_width = 5.0
-    assert widths(stage, 7) == near(1, 9.9)
+    actor.min_width = 6.0
+    assert widths(stage, 7) == near(1.2, 9.9)
     actor.line_width, actor.min_width = 2.0, 0.0
     other = stage.add_halo_lines([[(7, 3, -15), (7, 3, 15)]], **{**LOOKS, "strip_width": 2.0}, color="red")
     for displacement, hidden in ((10.0, 3.0), (6.0, 5.0), (0.0, 10.0)):
