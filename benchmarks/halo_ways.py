@@ -158,7 +158,14 @@ def run(way: str, row: Row, drawn: HaloLines | HaloPoints, options: Any) -> dict
     finally:
         way_drawn.close()
     low, median, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
-    return {"ms": median, "ms_spread": [low, high], "frames": len(times), "darkness": dark, **facts}
+    strip = look_of(drawn).strip_width * scale_of(cameras[0][0])
+    return {"ms": median, "ms_spread": [low, high], "frames": len(times), "darkness": dark, "strip_pixels": strip,
+            **facts}  # fmt: skip
+
+
+def scale_of(camera: Camera) -> float:
+    """Return how many pixels 1 mm takes in the middle of the data."""
+    return camera.pixels / float(np.linalg.norm(camera.eye - camera.centre))
 
 
 def timed(draw: Any, cameras: list[list[Camera]], seconds: float) -> list[float]:
@@ -229,8 +236,7 @@ class _VTK(_Window):
             # Poly-lines are drawn as pairs of indices, four bytes each; points are three float32.
             self.bytes, self.size = 12 * drawn.n_points + 8 * drawn.n_segments, 1.0
         else:
-            distance = float(np.linalg.norm(camera.eye - camera.centre))
-            self.size = max(1.0, round(look_of(drawn).line_width * camera.pixels / distance))
+            self.size = max(1.0, round(look_of(drawn).line_width * scale_of(camera)))
             self.plotter.add_mesh(polydata(drawn), style="points", point_size=self.size, **common)
             self.bytes = (12 + 4) * drawn.n_points
         self.show()

@@ -139,12 +139,12 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         "",
         "*ms*: median of the frames, 10th to 90th percentile in brackets; *× VTK*: that over VTK's plain lines or "
         "points of the same data; *bytes*: of the data on the GPU, those a vertex after; *paper*: its frames a second "
-        "in 2009, on a GeForce 8800 GTX.",
+        "in 2009, on a GeForce 8800 GTX; *strip*: pixels that a line takes with its halos in the middle of the data.",
         "",
         *(f"- *{way}*: {text}." for way, text in ABOUT.items()),
         "",
-        "| row | lines | vertices | way | ms | × VTK | frames a second | paper | bytes | a vertex |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "| row | lines | vertices | strip | way | ms | × VTK | frames a second | paper | bytes | a vertex |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
         *(line(row) for row in results),
         *goals(results),
     ]
@@ -158,7 +158,8 @@ def line(row: dict[str, Any]) -> str:
     if facts is not None:
         n_lines = "points" if facts["lines"] is None else f"{facts['lines']:,}"
         counts = f"| {n_lines} | {facts['vertices']:,} "
-    head = f"| {row['row']} {counts}| {row['way']} | "
+    strip = f"{row['strip_pixels']:.1f}" if "strip_pixels" in row else ""
+    head = f"| {row['row']} {counts}| {strip} | {row['way']} | "
     if "unmeasured" in row:
         return head + f"unmeasured: {row['unmeasured']} | | | | | |"
     low, high = row["ms_spread"]

@@ -70,6 +70,8 @@ FEATURES: dict[str, str] = {
     "SPLINE_COLOURS": "colours along spline tubes",
     "HALO_POINTS": "points with halos, not lines",
     "HALO_LISTED": "halos that are not hidden",
+    "HALO_TAPER": "lines with halos whose ends narrow",
+    "HALO_CUE": "lines with halos that are narrower far away",
     "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",

@@ -64,6 +64,9 @@ class Picture:
         line into halo that would change what shows. Inf away from all of them.
     gap : numpy.ndarray
         float64 window depth between what shows and what is next behind it. Inf where nothing else is.
+    slack : numpy.ndarray
+        float64 window depth: by how much `depth` may be another where a strip is mitred, and it is open which place on
+        the axis a pixel beside it is at. `margin` and `gap` allow for that.
     """
 
     kind: Ints
@@ -73,6 +76,7 @@ class Picture:
     ink: Array
     margin: Array
     gap: Array
+    slack: Array
 
 
 def picture(
@@ -312,13 +316,10 @@ class _Along:
         value = _between(self.numbers, t)
         return np.minimum(value - self.look.low, self.look.high - value)
 
-    def passes(self, t: Array, change: Array) -> Array:
-        """Pixels from where numbers cease to pass; negative where they do not. `change` is that of t per pixel."""
-        if self.numbers is None:
-            return np.full(len(t), np.inf)
-        room, per_pixel = self._room(t), change * abs(self.numbers[1] - self.numbers[0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(per_pixel > 0.0, room / per_pixel, np.where(room >= 0.0, np.inf, -np.inf))
+    def passes(self, t: Array, change: Array) -> Iterator[Array]:
+        """Yield pixels from where numbers cease to pass, negative beyond; `change` is that of t per pixel."""
+        if self.numbers is not None:
+            yield _in_pixels(self._room(t), change * abs(self.numbers[1] - self.numbers[0]))
 
 
 def _strips(
@@ -334,25 +335,39 @@ def _strips(
     directions = {int(i): _direction(camera, clip[i : i + 2], heights[i : i + 2, :2]) for i in _firsts(lines.offsets)}
     for i, own in directions.items():
         both = slice(i, i + 2)
-        start, end = _kept(heights[i], heights[i + 1])
+        kept = _kept(heights[i], heights[i + 1])
         # What has no direction, the ends of its neighbours show.
-        if start > end or not own.any() or (numbers is not None and np.isnan(numbers[both]).any()):
+        if kept[0] > kept[1] or not own.any() or (numbers is not None and np.isnan(numbers[both]).any()):
             continue
+        # Only what has no place on the screen is cut off before.
+        start, end = (0.0, 1.0) if (clip[both, 3] > 0.0).all() else _kept(heights[i, :2], heights[i + 1, :2])
         before = _end(directions.get(i - 1), own, whole=start == 0.0)
         after = _end(directions.get(i + 1), own, whole=end == 1.0)
         ends = np.stack([_between(clip[both], t) for t in (start, end)])
         pixel, part, change, away, inside = _strip(camera, ends, own, before, after)
         places, change = start + (end - start) * part, (end - start) * change
         along = _Along(look, u[both], None if numbers is None else numbers[both], steep[both])
-        masks, passes = along.mask(places), along.passes(places, change)
-        open_end = (passes >= 0.0).any(axis=0) != (passes >= 0.0).all(axis=0)
-        # Beyond the ends nothing depends on the mask.
-        inside = np.where(inside < 0.0, inside, np.minimum(inside, np.where(open_end, OPEN, passes[0])))
+        masks = along.mask(places)
+        for passes in (*along.passes(places, change), *_pixels_past(kept, places, change)):
+            unknown = (passes >= 0.0).any(axis=0) != (passes >= 0.0).all(axis=0)
+            # Beyond the ends nothing else matters.
+            inside = np.where(inside < 0.0, inside, np.minimum(inside, np.where(unknown, OPEN, passes[0])))
         axes, t, step = _between(clip[both], places), places[0], 0.02 * change
         slope = (along.mask(np.minimum(t + step, 1.0)) - along.mask(np.maximum(t - step, 0.0))) / 0.04
         owner = np.full(len(t), i)
         wide, deep = np.ptp(masks, axis=0), np.ptp(camera.depth(axes), axis=0)
         yield _Fragments(pixel, owner, t, axes[0], away, masks[0], slope, inside, wide, deep)
+
+
+def _pixels_past(kept: tuple[float, float], t: Array, change: Array) -> Iterator[Array]:
+    """Yield pixels from where a segment is cut, at each end that is; `change` is that of t per pixel."""
+    for room in ([t - kept[0]] if kept[0] > 0.0 else []) + ([kept[1] - t] if kept[1] < 1.0 else []):
+        yield _in_pixels(room, change)
+
+
+def _in_pixels(room: Array, per_pixel: Array) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(per_pixel > 0.0, room / per_pixel, np.where(room >= 0.0, np.inf, -np.inf))
 
 
 def _between(ends: Array, t: Array | float) -> Array:
@@ -426,7 +441,7 @@ def _nearest(fragments: list[_Fragments], camera: _Camera, look: Look) -> Pictur
     shape = camera.size[::-1]
     n = shape[0] * shape[1]
     kind, owner, t = np.zeros(n, np.int64), np.full(n, -1), np.zeros(n)
-    depth, ink, margin, gap = np.ones(n), np.zeros(n), np.full(n, np.inf), np.full(n, np.inf)
+    depth, ink, margin, gap, slack = np.ones(n), np.zeros(n), np.full(n, np.inf), np.full(n, np.inf), np.zeros(n)
     if fragments:
         every = _Fragments(
             *(np.concatenate([getattr(f, field.name) for f in fragments]) for field in fields(_Fragments))
@@ -448,9 +463,10 @@ def _nearest(fragments: list[_Fragments], camera: _Camera, look: Look) -> Pictur
         ink[where] = np.clip(0.5 + inked[shown], 0.0, 1.0) if look.smooth else inked[shown] >= 0.0
         np.minimum.at(gap, every.pixel[others], (at - every.deep)[others])
         gap[where] -= (at + every.deep)[shown]
+        slack[where] = every.deep[shown]
         # Of what lies behind the pixel's depth even as line, no edge matters.
         matters = (kind[every.pixel] == NOTHING) | (at_axis - every.deep <= depth[every.pixel])
         edge = np.abs(inked) / np.hypot(1.0, line * every.slope) - line * every.wide
         near = np.minimum(np.abs(inside) - half * every.wide, np.where(inside > -1.0, edge, np.inf))
         np.minimum.at(margin, every.pixel[matters], np.maximum(near, 0.0)[matters])
-    return Picture(*(a.reshape(shape) for a in (kind, owner, t, depth, ink, margin, gap)))
+    return Picture(*(a.reshape(shape) for a in (kind, owner, t, depth, ink, margin, gap, slack)))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pyvista as pv
 
-from pvfiblets.mappers import FibletMapper, SplineMapper
+from pvfiblets.mappers import FibletMapper, HaloMapper, SplineMapper
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.coloured import Coloured
@@ -50,4 +50,16 @@ class PlottedSplines(Plotted, SplineMapper):
     ----------
     tubes : SplineTubes
         What to draw.
+    """
+
+
+class PlottedHalos(Plotted, HaloMapper):
+    """A mapper of lines or points with halos, with scalar bars.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        What to draw.
+    look : Look
+        How.
     """

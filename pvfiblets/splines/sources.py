@@ -1,4 +1,4 @@
-"""What tubes can be made from: lines and their data, gathered from every kind of source into one form."""
+"""What tubes and lines with halos are made from: lines and their data, from every kind of source in one form."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
 
-from .tubes import Doubles, Ints
+from .tubes import Ints
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -29,7 +29,7 @@ class Lines:
     Parameters
     ----------
     points : ndarray
-        ``(n_points, 3)`` float64, mm.
+        ``(n_points, 3)`` float64, mm; or float32, where that was given and :func:`gather` was told to keep it.
     ids : ndarray
         ``(n_ids,)`` int64: the points of all lines, one line after the other.
     offsets : ndarray
@@ -44,7 +44,7 @@ class Lines:
         Tubes, those without segments included.
     """
 
-    points: Doubles
+    points: npt.NDArray[Any]
     ids: Ints
     offsets: Ints
     n_tubes: int
@@ -87,27 +87,55 @@ class Lines:
         return given, tubes if self.tube_of is None else self.tube_of
 
 
-def gather(source: Any) -> Lines:
-    """Take the lines out of any source that :func:`pvfiblets.splines.build.as_spline_tubes` takes."""
+def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Lines:
+    """Take the lines out of a source.
+
+    Parameters
+    ----------
+    source : PolyData, Streamlines, FibletSet, array_like or tuple
+        As :func:`pvfiblets.splines.build.as_spline_tubes` takes it.
+    noun : str, default: 'tubes'
+        What is made of the lines, for messages.
+    keep_single : bool, default: False
+        Whether points of float32 stay so; else all become float64.
+
+    Returns
+    -------
+    Lines
+
+    Raises
+    ------
+    TypeError
+        If there are no lines in such a source.
+    ValueError
+        If there are no lines in a PolyData, an array has the wrong shape, or segments refer to points that are not
+        there.
+    """
     if isinstance(source, Streamlines):
-        return _from_streamlines(source)
+        return _from_streamlines(source, keep_single)
     if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
-        return _from_streamlines(cast("FibletSet", source).decompress())
+        return _from_streamlines(cast("FibletSet", source).decompress(), keep_single)
     if hasattr(source, "IsA"):
-        return _from_vtk(source)
+        return _from_vtk(source, noun, keep_single)
     if isinstance(source, np.ndarray) and source.dtype != object:
         if source.ndim == 3:
-            return _from_arrays(list(source))
+            return _from_arrays(list(source), keep_single)
         if source.size and (source.ndim != 2 or source.shape[1] != 3):
             raise ValueError(f"points have the shape {source.shape}, expected (n, 3): x, y, z in mm of a line's nodes")
-        return _from_arrays([source])
+        return _from_arrays([source], keep_single)
     if isinstance(source, tuple) and len(source) == 2 and _are_segments(source[1]):
-        return _from_segments(np.asarray(source[0], np.float64), np.asarray(source[1], np.int64))
+        return _from_segments(_floats(source[0], keep_single), np.asarray(source[1], np.int64))
     if isinstance(source, (Sequence, np.ndarray)) and not isinstance(source, (str, bytes)):
         if len(source) and np.ndim(source[0]) == 1 and np.size(source[0]):
-            return gather(np.asarray(source, np.float64))
-        return _from_arrays(list(source))
-    raise TypeError(f"tubes cannot be made from a {type(source).__name__}; give {_EXPECTED}")
+            return gather(np.asarray(source, np.float64), noun)
+        return _from_arrays(list(source), keep_single)
+    raise TypeError(f"{noun} cannot be made from a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _floats(array: Any, keep_single: bool) -> npt.NDArray[Any]:
+    """The array in its own memory or another's, as float64 or, if that is kept, as the float32 it is."""
+    given = np.asarray(array)
+    return given if keep_single and given.dtype == np.float32 else given.astype(np.float64, copy=False)
 
 
 def _are_segments(what: Any) -> bool:
@@ -118,31 +146,32 @@ def _are_segments(what: Any) -> bool:
     return array.dtype.kind in "iu" and array.ndim == 2 and array.shape[1] == 2
 
 
-def _from_streamlines(lines: Streamlines) -> Lines:
-    points = lines.points.astype(np.float64)
+def _from_streamlines(lines: Streamlines, keep_single: bool) -> Lines:
+    points = _floats(lines.points, keep_single)
     return Lines(
         points, np.arange(len(points)), lines.offsets, len(lines), dict(lines.per_point), dict(lines.per_streamline)
     )
 
 
-def _from_arrays(arrays: list[Any]) -> Lines:
-    lines = [np.asarray(array, np.float64) for array in arrays]
+def _from_arrays(arrays: list[Any], keep_single: bool) -> Lines:
+    lines = [_floats(array, keep_single) for array in arrays]
     for i, line in enumerate(lines):
         if line.size and (line.ndim != 2 or line.shape[1] != 3):
             raise ValueError(f"line {i} has the shape {line.shape}, expected (n, 3): x, y, z in mm of its nodes")
     lines = [line.reshape(-1, 3) for line in lines]
-    points = np.concatenate([np.zeros((0, 3)), *lines])
+    filled = [line for line in lines if len(line)]  # an empty list is one of float64, whatever the others are
+    points = np.concatenate(filled) if filled else np.zeros((0, 3))
     offsets = offsets_from_counts([len(line) for line in lines])
     return Lines(points, np.arange(len(points)), offsets, len(lines))
 
 
-def _from_vtk(mesh: Any) -> Lines:
+def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     if not mesh.IsA("vtkPolyData"):
         whole = "combine()." if mesh.IsA("vtkCompositeDataSet") else ""
         raise TypeError(
-            f"tubes cannot be made from a {type(mesh).__name__}; give its {whole}extract_surface() or "
+            f"{noun} cannot be made from a {type(mesh).__name__}; give its {whole}extract_surface() or "
             f"{whole}extract_all_edges()"
         )
     cells = mesh.GetLines()
@@ -159,7 +188,7 @@ def _from_vtk(mesh: Any) -> Lines:
         arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
         return {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a is not None and a.GetName()}
 
-    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(np.float64)
+    points = np.array(_floats(vtk_to_numpy(mesh.GetPoints().GetData()), keep_single))
     ids = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
     offsets = vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)
     point_data = {k: v for k, v in data(mesh.GetPointData()).items() if len(v) == n_points}
@@ -173,7 +202,7 @@ def _from_vtk(mesh: Any) -> Lines:
     return Lines(points, ids, offsets, n, point_data, line_data)
 
 
-def _from_segments(points: Doubles, segments: Ints) -> Lines:
+def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
     """Chain segments that follow each other to lines."""
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"points have the shape {points.shape}, expected (n, 3): x, y, z in mm")

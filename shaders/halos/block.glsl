@@ -11,7 +11,7 @@ layout(std140, binding = 9) uniform Halos {
     vec4 halo_depth;       // x: d_max; 1 - depth falls by y per mm, and by z / (W (W + w mm)) per mm
     vec4 halo_cue;         // place p is narrower by the share xyz . p + w
     vec4 halo_filter;      // x, y: thresholds; z: mm of their taper; w: 1 where lines have smooth edges
-    vec4 halo_mask;        // x: 1 where ends taper; yz: half the picture's size in pixels; w: the largest share of halo_cue
+    vec4 halo_mask;        // yz: half the picture's size in pixels; w: the largest share of halo_cue
     ivec4 halo_counts;     // x: items; y: which f; z: entries of its table
     mat4 halo_rows;        // rows: from local mm to (X, Y, U, W)
     vec4 halo_table[{{ displacement_words }}];

@@ -49,7 +49,7 @@ bool may_show(int first) {
         }
         any_seen = true;
         vec2 middle = at.xy / at.w;
-        float reach = CORNER * reaches(here, at.w).y / at.w;
+        float reach = CORNER * reaches(cue_at(here), at.w).y / at.w;
         low = min(low, middle - reach);
         high = max(high, middle + reach);
         nearest = max(nearest, at.z / at.w);

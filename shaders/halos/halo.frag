@@ -2,8 +2,9 @@
 // Paper: Everts et al. 2009, sections 3.3 (equations 2 and 3), 3.4 (tapering, smooth edges) and 3.6 (filtering).
 //
 // Symbols
-//   r            distance from the axis over half the strip's width, 2 s / w_strip in the paper: |v|, and around vertices where
-//                lines bend sharply, and of points, the distance from that place
+//   foot         the nearest place of the axis in the window; of a point, the point
+//   s, t         where on the axis that is: linear in the window, and on the segment itself
+//   r            distance from the foot over half the strip's width: 2 |v - 0.5| in the paper
 //   m            half width that the mask leaves, 0..1: sqrt(x (2 - x)), an ellipse, x = min(u, 1 - u) / 0.2 at most 1
 //   f            displacement function
 //
@@ -18,7 +19,8 @@
 
 #include "frame/blocks.glsl"
 #include "halos/block.glsl"
-#define HANDED in
+#include "halos/widths.glsl"
+#define HANDED flat in
 #include "halos/handed.glsl"
 
 layout(location = 0) out uvec2 shown;
@@ -38,28 +40,41 @@ float mask(float x) {
 }
 
 void main() {
-    float across = handed_strip.x, along = handed_strip.y;
-#if FEATURE_HALO_POINTS
-    float r = length(vec2(across, along));
-    float t = 0.0;
-#else
-    float past = max(max(-along, along - handed_length), 0.0);
-    float r = length(vec2(across, past));
-    float t = handed_length > 0.0 ? clamp(along / handed_length, 0.0, 1.0) : 0.0;
+    vec2 from_start = gl_FragCoord.xy - halo_mask.yz - handed_ends.xy;
+    float over_w = handed_depths.x, far = handed_depths.z, t = 0.0;
+#if !FEATURE_HALO_POINTS
+    vec2 axis = handed_ends.zw - handed_ends.xy;
+    float s = clamp(dot(from_start, axis) / max(dot(axis, axis), 1e-30), 0.0, 1.0);
+    from_start -= s * axis;
+    over_w += s * (handed_depths.y - over_w);
+    far += s * (handed_depths.w - far);
+    t = s * handed_depths.y / over_w;
 #endif
-    float half_strip = inversesqrt(max(dot(vec2(dFdx(across), dFdy(across)), vec2(dFdx(across), dFdy(across))), 1e-30));
-    float m = halo_mask.x > 0.0 ? mask(5.0 * min(handed_strip.z, 1.0 - handed_strip.z)) : 1.0;
+    float w = 1.0 / over_w, m = 1.0, cue = 0.0;
+#if FEATURE_HALO_CUE
+    cue = handed_cue.x + t * (handed_cue.y - handed_cue.x);
+#endif
+    vec2 reach = reaches(cue, w);
+    float r = length(from_start) * w / reach.y, share = reach.x / reach.y;
+#if FEATURE_HALO_TAPER
+    float u = handed_mask.x + t * (handed_mask.y - handed_mask.x);
+    m = mask(5.0 * min(u, 1.0 - u));
+#endif
 #if FEATURE_HALO_FILTER
-    float a = handed_filter.x, inside = min(a - halo_filter.x, halo_filter.y - a);
-    if (!(inside >= 0.0)) discard;       // NaN as well
-    if (halo_filter.z > 0.0) m = min(m, mask(inside / max(handed_filter.y * halo_filter.z, 1e-30)));
+    vec2 number = handed_filter.xz + t * (handed_filter.yw - handed_filter.xz);
+    float inside = min(number.x - halo_filter.x, halo_filter.y - number.x);
+    if (!(number.x >= halo_filter.x && number.x <= halo_filter.y)) discard;       // NaN as well
+    if (halo_filter.z > 0.0) m = min(m, mask(inside / max(number.y * halo_filter.z, 1e-30)));
 #endif
     if (!(r <= m)) discard;
-    float edge = handed_strip.w * m;
+    float edge = share * m;
     bool line = r <= edge;
-    float w = 1.0 / gl_FragCoord.w, d = line ? 0.0 : halo_depth.x * displacement(r);
+    float d = line ? 0.0 : halo_depth.x * displacement(r);
     float back = d * (halo_depth.y + halo_depth.z / (w * (w + halo_depth.w * d)));
-    gl_FragDepth = max(gl_FragCoord.z - back, 1e-9);       // a halo beyond the far plane is there
-    float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * half_strip, 0.0, 1.0) : float(line);
+    gl_FragDepth = max(far - back, 1e-9);       // a halo beyond the far plane is there
+    float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
+#if !FEATURE_HALO_POINTS
+    t = handed_part.x + t * (handed_part.y - handed_part.x);
+#endif
     shown = uvec2(handed_item, uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));
 }

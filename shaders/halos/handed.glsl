@@ -1,9 +1,18 @@
-// What the vertex stage hands to the fragments of a strip or a disc; HANDED is "out" or "in".
+// What the vertex stage hands to the fragments of a strip or a disc, the same for all of them; HANDED is "flat out" or "flat in".
+// Everything else is found at the foot of each pixel on the axis: interpolated over triangles it would bend where they meet.
 
-HANDED vec4 handed_strip;          // x: across, -1..1; y: along, in half strips from the start; z: u of the mask; w: share of
-                                   // the strip that is line
-flat HANDED uint handed_item;      // segment or point
-flat HANDED float handed_length;   // of the segment, in half strips
+HANDED uint handed_item;         // segment or point
+HANDED vec4 handed_ends;         // pixels from the picture's middle: of the axis' start, of its end
+HANDED vec4 handed_depths;       // 1 / W of both; 1 - depth of both
+#if !FEATURE_HALO_POINTS
+HANDED vec2 handed_part;         // where on the segment both are, 0..1: planes and the picture's edges may have cut it
+#endif
+#if FEATURE_HALO_TAPER
+HANDED vec2 handed_mask;         // u of the mask of both
+#endif
+#if FEATURE_HALO_CUE
+HANDED vec2 handed_cue;          // share by which depth cueing makes the line narrower at both
+#endif
 #if FEATURE_HALO_FILTER
-HANDED vec2 handed_filter;         // the number that filters, and how much it changes per mm
+HANDED vec4 handed_filter;       // the number that filters at both, and how much it changes per mm at both
 #endif

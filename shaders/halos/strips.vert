@@ -4,25 +4,25 @@
 // Symbols
 //   D, V         direction of the line and of the view; the strip widens along V x D. In the window that is the direction across
 //                (X_D W - X W_D, Y_D W - Y W_D), which is the same all along a segment, behind the eye as well
-//   n            unit vector across a segment in the window, to its left
+//   along        unit vector along a segment in the window
 //
-//                 n      a corner's bits: 1 for the segment's end, 2 for its right side
-//            0 ---^--- 1
-//        a  ------|------> b
+//            0 ------- 1       a corner's bits: 1 for the segment's end, 2 for its right side
+//        a  -----------> b
 //            2 ------- 3
 //
 // Algorithm
-// The paper widens a vertex along the mean direction of its two segments. Here its corners lie where the edges of the two meet
-// in the window, so that strips keep their width in bends. Where a line turns by more than 60 degrees in the window, runs at
-// the viewer or stands still, both strips end in half discs around the vertex instead: they are lengthened by half a width,
-// and fragments know how far beyond the vertex they are.
+// The paper widens a vertex along the mean direction of its two segments, so that strips become thinner in bends. Here a strip
+// is all that is within half its width of the line in the window. Corners of neighbours meet where their edges do; where a line
+// turns by more than 60 degrees in the window, or runs at the viewer, both are lengthened by half a width instead. Lines end
+// square. What lies before the near plane, beyond the far one, far beside the picture or beyond planes of the caller's is cut
+// off the segment first: all that is handed on is finite, and exact to a fraction of a pixel.
 
 #version 430
 
 #include "halos/vertices.glsl"
 #include "halos/item.glsl"
 #include "frame/clip_planes.glsl"
-#define HANDED out
+#define HANDED flat out
 #include "halos/handed.glsl"
 
 #if FEATURE_HALO_FILTER
@@ -33,70 +33,109 @@ vec2 slope(float from, float to, vec3 way) {
     float s = abs(to - from) / length(way);
     return s < 3e38 ? vec2(s, 1.0) : vec2(0.0);
 }
+
+// The number at a vertex and its mean change per mm over the segments that meet there; one has a number other at its end.
+vec2 filter_at(int vertex, vec3 here, float other, vec3 there, int next) {
+    float a = texelFetch(filter_texels, vertex).x;
+    vec2 slopes = slope(a, other, there - here);
+    if (next != vertex) slopes += slope(a, texelFetch(filter_texels, next).x, local_place(next) - here);
+    return vec2(a, slopes.x / max(slopes.y, 1.0));
+}
 #endif
-#if FEATURE_CLIP_PLANES
-out gl_PerVertex {
-    vec4 gl_Position;
-    float gl_ClipDistance[{{ max_clip_planes }}];
-};
-#endif
+
+const float BESIDE = 3.0;      // half pictures from the middle, beyond which an axis is cut off
 
 vec2 unit(vec2 v) {
     float size = max(abs(v.x), abs(v.y));
     return size > 0.0 ? normalize(v / size) : vec2(0.0);
 }
 
-// Across the window by the way from a place whose window is p: the direction times W, times the length on the screen.
+// Along the window by the way from a place whose window is p: the direction, times W W times the length on the screen.
 vec2 turn(vec4 p, vec3 way) {
     vec4 d = vec4(way, 0.0) * halo_rows;
     return d.xy * p.w - p.xy * d.w;
 }
 
+// Narrows part to where a height that is a at 0 and b at 1 is not negative.
+void narrow(float a, float b, inout vec2 part) {
+    float t = a / (a - b);
+    if (a < 0.0) part.x = b < 0.0 ? 2.0 : max(part.x, t);
+    else if (b < 0.0) part.y = min(part.y, t);
+}
+
+float between(float a, float b, float t) { return a + t * (b - a); }      // exact where both are the same
+
 void main() {
     int segment = item_of_vertex();
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    handed_strip = vec4(0.0);
     handed_item = 0u;
-    handed_length = 0.0;
-#if FEATURE_HALO_FILTER
-    handed_filter = vec2(0.0);
+    handed_ends = handed_depths = vec4(0.0);
+    handed_part = vec2(0.0);
+#if FEATURE_HALO_TAPER
+    handed_mask = vec2(0.0);
 #endif
-#if FEATURE_CLIP_PLANES
-    for (int plane = 0; plane < {{ max_clip_planes }}; ++plane) gl_ClipDistance[plane] = 0.0;
+#if FEATURE_HALO_CUE
+    handed_cue = vec2(0.0);
+#endif
+#if FEATURE_HALO_FILTER
+    handed_filter = vec4(0.0);
 #endif
     if (segment >= halo_counts.x || is_last(segment)) return;
-    int end = gl_VertexID & 1, vertex = segment + end;
-    float side = (gl_VertexID & 2) == 0 ? 1.0 : -1.0;
-    bool alone = end == 0 ? segment == 0 || is_last(segment - 1) : is_last(vertex);       // no segment beyond this vertex
-    int beyond = alone ? vertex : segment + 3 * end - 1;
-    vec3 here = local_place(vertex), other = local_place(segment + 1 - end), next = local_place(beyond);
-    vec4 at = window_of(here), there = window_of(other);
-    vec2 reach = reaches(here, at.w), reach_there = reaches(other, there.w);
-    float forward = end == 0 ? 1.0 : -1.0;
-    vec2 own = turn(at, forward * (other - here)), along = unit(own), along_next = unit(turn(at, forward * (here - next)));
+    vec3 start = local_place(segment), way = local_place(segment + 1) - start;
+    vec4 a = window_of(start), b = window_of(start + way);
+    vec2 cue = vec2(cue_at(start), cue_at(start + way));
+    vec2 part = vec2(0.0, 1.0), margin = BESIDE * halo_mask.yz;
+    float reach = 2.0 * max(reaches(cue.x, a.w).y, reaches(cue.y, b.w).y);
+    narrow(a.w - a.z, b.w - b.z, part);
+    narrow(a.z, b.z, part);
+    narrow(margin.x * a.w + reach + a.x, margin.x * b.w + reach + b.x, part);
+    narrow(margin.x * a.w + reach - a.x, margin.x * b.w + reach - b.x, part);
+    narrow(margin.y * a.w + reach + a.y, margin.y * b.w + reach + b.y, part);
+    narrow(margin.y * a.w + reach - a.y, margin.y * b.w + reach - b.y, part);
+#if FEATURE_CLIP_PLANES
+    for (int plane = 0; plane < clip_count(); ++plane) {
+        narrow(clip_height_of(plane, start), clip_height_of(plane, start + way), part);
+    }
+#endif
+    vec2 own = turn(a, way), along = unit(own);
+    if (part.x > part.y || along == vec2(0.0)) return;      // segments without length are drawn by their neighbours' ends
+    vec4 first = a + part.x * (b - a), last = a + part.y * (b - a);
+    if (min(first.w, last.w) <= 0.0) return;
+    vec4 ends = vec4(first.xy / first.w, last.xy / last.w);
 
-    bool seen = at.w > 0.0 && there.w > 0.0;
-    float span = seen ? length(own) / (inversesqrt(at.w * there.w) * at.w * there.w) / (0.5 * (reach.y + reach_there.y)) : 1e6;
-    if (span == 0.0) return;           // its neighbours end in half discs, which are all there is to see
-    float straight = dot(along, along_next);
+    int end = gl_VertexID & 1, vertex = segment + end;
+    float side = (gl_VertexID & 2) == 0 ? 1.0 : -1.0, forward = end == 0 ? 1.0 : -1.0;
+    bool before = segment > 0 && !is_last(segment - 1), after = !is_last(segment + 1);      // segments that go on
+    bool joined = end == 0 ? before && part.x == 0.0 : after && part.y == 1.0;
     vec2 corner = vec2(-along.y, along.x);
     float past = 0.0;
-    if (!alone && straight >= 0.5) corner = (corner + vec2(-along_next.y, along_next.x)) / (1.0 + straight);
-    else if (!alone && seen) past = 1.0;
-    corner = side * corner - past * forward * along;
-    at.xy += reach.y * corner;
-    gl_Position = vec4(at.xy / halo_mask.yz, 2.0 * at.z - at.w, at.w);
-    float place = float(texelFetch(mask_texels, vertex).x) / float(LAST);
-    handed_strip = vec4(side, end == 0 ? -past : span + past, place, reach.x / reach.y);
+    if (joined) {
+        vec3 here = end == 0 ? start : start + way;
+        vec2 along_next = unit(turn(end == 0 ? a : b, forward * (here - local_place(segment + 3 * end - 1))));
+        float straight = dot(along, along_next);
+        if (straight >= 0.5) corner = (corner + vec2(-along_next.y, along_next.x)) / (1.0 + straight);
+        else past = 1.0;
+    }
+    float t = end == 0 ? part.x : part.y, w = end == 0 ? first.w : last.w;
+    float width = reaches(between(cue.x, cue.y, t), w).y / w;
+    vec2 pixel = (end == 0 ? ends.xy : ends.zw) + width * (side * corner - past * forward * along);
+    gl_Position = vec4(pixel / halo_mask.yz, 0.0, 1.0);
+
     handed_item = uint(segment);
-    handed_length = span;
-#if FEATURE_HALO_FILTER
-    float a = texelFetch(filter_texels, vertex).x;
-    vec2 slopes = slope(a, texelFetch(filter_texels, segment + 1 - end).x, other - here);
-    if (!alone) slopes += slope(a, texelFetch(filter_texels, beyond).x, next - here);
-    handed_filter = vec2(a, slopes.x / max(slopes.y, 1.0));
+    handed_ends = ends;
+    handed_depths = vec4(1.0 / first.w, 1.0 / last.w, first.z / first.w, last.z / last.w);
+    handed_part = part;
+#if FEATURE_HALO_CUE
+    handed_cue = cue.x + part * (cue.y - cue.x);
 #endif
-#if FEATURE_CLIP_PLANES
-    for (int plane = 0; plane < clip_count(); ++plane) gl_ClipDistance[plane] = clip_height_of(plane, here);
+#if FEATURE_HALO_TAPER
+    vec2 u = vec2(float(texelFetch(mask_texels, segment).x), float(texelFetch(mask_texels, segment + 1).x)) / float(LAST);
+    handed_mask = u.x + part * (u.y - u.x);
+#endif
+#if FEATURE_HALO_FILTER
+    float number = texelFetch(filter_texels, segment).x, number_after = texelFetch(filter_texels, segment + 1).x;
+    vec2 f0 = filter_at(segment, start, number_after, start + way, before ? segment - 1 : segment);
+    vec2 f1 = filter_at(segment + 1, start + way, number, start, after ? segment + 2 : segment + 1);
+    handed_filter = vec4(f0.x + part * (f1.x - f0.x), f0.y + part * (f1.y - f0.y));
 #endif
 }

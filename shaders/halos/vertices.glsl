@@ -20,10 +20,13 @@ vec3 local_place(int vertex) {
 
 vec4 window_of(vec3 p) { return vec4(p, 1.0) * halo_rows; }
 
-// Reaches of half a line and of half a strip at a place: x, y. A line that would be thinner than the least width is widened,
-// and its halos keep theirs.
-vec2 reaches(vec3 p, float w) {
-    float line = halo_widths.x * (1.0 - clamp(dot(halo_cue.xyz, p) + halo_cue.w, 0.0, halo_mask.w));
-    float wider = max(halo_widths.z * w - line, 0.0);
-    return vec2(line + wider, halo_widths.x + halo_widths.y + wider);
+// Share by which depth cueing makes a line narrower at a place.
+float cue_at(vec3 p) {
+#if FEATURE_HALO_CUE
+    return clamp(dot(halo_cue.xyz, p) + halo_cue.w, 0.0, halo_mask.w);
+#else
+    return 0.0;
+#endif
 }
+
+#include "halos/widths.glsl"

@@ -22,6 +22,7 @@ CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4}
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}
 _TABLE = len(DISPLACEMENTS)
+_LARGEST = float(np.finfo(np.float32).max)
 _LAYOUT: list[Any] = [
     ("widths", "<f4", 4),
     ("depth", "<f4", 4),
@@ -91,8 +92,8 @@ class HaloBlocks:
         else:
             block["depth"] = look.max_displacement, float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0), 0.0, 0.0
         block["cue"] = self._cue(to_data, axis, w, scale_of_w, perspective, look.width_cue)
-        block["filter"] = max(look.low, -3e38), min(look.high, 3e38), look.filter_taper, float(look.smooth)
-        block["mask"] = float(look.n_tapered > 0), *half_size, 0.0
+        block["filter"] = max(look.low, -_LARGEST), min(look.high, _LARGEST), look.filter_taper, float(look.smooth)
+        block["mask"] = 0.0, *half_size, look.width_cue
         table = look.displacement
         named = isinstance(table, str)
         block["counts"] = n_items, _KINDS[table] if isinstance(table, str) else _TABLE, 0 if named else len(table), 0

@@ -31,7 +31,6 @@ CULLING = ("two-phase", None)
 HITS_UNIT, DEPTHS_UNIT = 10, 11
 ITEM_SHIFT = 3
 """Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
-_CLIP_DISTANCE = 0x3000
 
 
 class HaloRenderer:
@@ -90,6 +89,7 @@ class HaloRenderer:
         self._target: HitTarget | None = None
         self._made: tuple[View, Style] | None = None
         self._features: list[str] = []
+        self._listed = False
         self._generation = 0
         try:
             self._vertices = Vertices(ctx, self._gl, drawn)
@@ -103,7 +103,7 @@ class HaloRenderer:
                     self._programs,
                     -(-self._n >> ITEM_SHIFT),
                     cull="halos/cull.comp",
-                    features=self._kind,
+                    features=[*self._kind, "HALO_CUE"],
                     shift=ITEM_SHIFT,
                 )
         except BaseException:
@@ -155,7 +155,13 @@ class HaloRenderer:
         with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
             target = self._target_of(view.size, coloured=reads == "HALO_COLOURS")
             planes = blocks.write(view, look, self._n)
-            features = [*self._kind, *(["HALO_FILTER"] if filtered else []), *(["CLIP_PLANES"] if planes else [])]
+            wanted = {
+                "HALO_TAPER": look.n_tapered > 0 and not self._kind,
+                "HALO_CUE": look.width_cue > 0.0,
+                "HALO_FILTER": filtered,
+                "CLIP_PLANES": planes > 0,
+            }
+            features = [*self._kind, *(name for name, on in wanted.items() if on)]
             self._features = sorted({*features, *([reads] if reads else [])})
             self._passes.begin()
             self._ctx.scissor = None
@@ -163,7 +169,8 @@ class HaloRenderer:
             # Equal depths are drawn in the order of the data, which listing does not keep; halos that lie as deep as
             # their lines would then flicker.
             listing = self._listing if look.max_displacement > 0.0 else None
-            self._draw(target, shapes, listing, features, planes)
+            self._listed = listing is not None
+            self._draw(target, shapes, listing, features)
             self._attributes(target, shapes, [*self._kind, *([reads] if reads else [])])
         self._generation += 1
         target.buffer.generation = self._generation
@@ -178,9 +185,7 @@ class HaloRenderer:
             self._target = HitTarget(self._ctx, self._gl, size, coloured, "ink")
         return self._target
 
-    def _draw(
-        self, target: HitTarget, shapes: PulledShapes, listing: Listing | None, features: list[str], planes: int
-    ) -> None:
+    def _draw(self, target: HitTarget, shapes: PulledShapes, listing: Listing | None, features: list[str]) -> None:
         """Draw what the depth buffer keeps."""
         if listing is not None:
             with self._passes.timed("last picture"):
@@ -200,18 +205,12 @@ class HaloRenderer:
             self._ctx.depth_func = ">"  # depth is the other way round: see shaders/halos/halo.frag
             self._ctx.wireframe = False
             self._ctx.provoking_vertex = moderngl.LAST_VERTEX_CONVENTION
-            for plane in range(planes):
-                self._ctx.enable_direct(_CLIP_DISTANCE + plane)
-            try:
-                if listing is None or commands is None:
-                    shapes.draw(program)
-                else:
-                    listing.bind(program)
-                    shapes.draw_listed(program, commands)
-            finally:
-                for plane in range(planes):
-                    self._ctx.disable_direct(_CLIP_DISTANCE + plane)
-                self._ctx.depth_func = "<="
+            if listing is None or commands is None:
+                shapes.draw(program)
+            else:
+                listing.bind(program)
+                shapes.draw_listed(program, commands)
+            self._ctx.depth_func = "<="
 
         if listing is not None:
             listing.draw(target, self._passes, self._prepare_listing, render)
@@ -260,7 +259,8 @@ class HaloRenderer:
         -------
         dict
             ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``points_total``, ``lines_total`` (0 of
-            points), ``primitives`` (triangles without culling), ``culling``.
+            points), ``primitives`` (triangles without culling), ``culling`` (as the last
+            picture was drawn).
         """
         sizes: dict[str, int] = {}
         for holder in (self._vertices, self._blocks, self._shapes):
@@ -278,7 +278,7 @@ class HaloRenderer:
             "points_total": self._drawn.n_points,
             "lines_total": self._drawn.n_lines if isinstance(self._drawn, HaloLines) else 0,
             "primitives": 0 if self._shapes is None else self._shapes.primitives,
-            "culling": None if self._listing is None else "two-phase",
+            "culling": "two-phase" if self._listed else None,
         }
 
     def release(self) -> None:

@@ -1,0 +1,375 @@
+"""Lines and points with halos from whatever data there is, with the values that were asked for and no others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.splines.sources import Lines, gather
+from pvfiblets.streamlines import Streamlines
+
+from .things import HaloLines, HaloPoints
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+__all__ = ["FILTER", "SCALARS", "LinesAndValues", "as_halo_lines", "as_halo_points"]
+
+SCALARS, FILTER = "scalars", "filter"
+"""What arrays that come without a name are called."""
+
+Array = npt.NDArray[Any]
+
+
+class LinesAndValues(NamedTuple):
+    """Lines with halos, and what is known of whole lines.
+
+    Attributes
+    ----------
+    lines : HaloLines
+        Lines in the order of their source; ``lines.values`` holds what was asked for at their points.
+    line_values : mapping of str to ndarray
+        ``(n_lines,)`` numbers or ``(n_lines, 4)`` float32 RGBA in 0..1: `scalars` that have a row for each line.
+    """
+
+    lines: HaloLines
+    line_values: Mapping[str, Array]
+
+
+def as_halo_lines(
+    source: Any,
+    *,
+    scalars: str | npt.ArrayLike | None = None,
+    rgb: bool = False,
+    filter_by: str | npt.ArrayLike | None = None,
+) -> LinesAndValues:
+    """Make lines with halos of line data.
+
+    Parameters
+    ----------
+    source : PolyData, Streamlines, FibletSet, array_like, tuple or HaloLines
+        A PolyData (VTK or PyVista) with lines, of which other cells are left out; a tractogram; one ``(n, 3)`` array in
+        mm for one line, or a list of such arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and
+        ``(n_segments, 2)`` point indices. Segments, and line cells when all have two points, become one line where one
+        follows the other; where more than two meet, only those that follow each other in the list. HaloLines keep
+        the values that they have.
+    scalars : str or array_like, optional
+        What to keep for colours: the name of point or line data of the source; or an array, or one for each line, of
+        numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row for each point
+        or for each line.
+    rgb : bool, default: False
+        Take float `scalars` of three or four columns as colours. Those of uint8 always are.
+    filter_by : str or array_like, optional
+        What to filter by: a name, or numbers for each point or line.
+
+    Returns
+    -------
+    LinesAndValues
+        ``(lines, line_values)``: lines with at most these two values at their points, each under its name, or as
+        ``"scalars"`` and ``"filter"``. Scalars of whole lines are in ``line_values`` instead, once for each line.
+        Numbers to filter by are always at points. Points of float32 stay float32, all others become float64.
+
+    Raises
+    ------
+    TypeError
+        If there are no lines in such a source.
+    ValueError
+        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a coordinate is not
+        finite, or a colour is not in 0..1. The message names array, row and value. Numbers may be NaN.
+
+    Notes
+    -----
+    A point that several lines use becomes a point of each. Where cells of two points were joined to lines, their data
+    is that of segments: a point has the mean of the two that meet there.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from pvfiblets.halos.build import as_halo_lines
+    >>> t = np.linspace(0, 6, 30)
+    >>> lines, _ = as_halo_lines(np.stack([10 * np.cos(t), 10 * np.sin(t), t], axis=1), scalars=t)
+    >>> lines.n_lines, lines.n_segments, sorted(lines.values)
+    (1, 29, ['scalars'])
+    """
+    if isinstance(source, HaloLines):
+        ids = np.arange(source.n_points)
+        made = _Lines(Lines(source.points, ids, source.offsets, source.n_lines, source.values), source.values)
+    else:
+        made = _Lines(gather(source, "lines with halos", keep_single=True), {})
+    return made.build(scalars, rgb, filter_by)
+
+
+def as_halo_points(
+    source: Any,
+    *,
+    scalars: str | npt.ArrayLike | None = None,
+    rgb: bool = False,
+    filter_by: str | npt.ArrayLike | None = None,
+) -> HaloPoints:
+    """Make points with halos of a point cloud.
+
+    Parameters
+    ----------
+    source : DataSet, Streamlines, FibletSet, array_like or HaloPoints
+        Anything of VTK's or PyVista's that has points, all of which are taken, whatever the cells; a tractogram; an
+        ``(n, 3)`` array in mm. HaloPoints keep the values that they have.
+    scalars : str or array_like, optional
+        What to keep for colours: the name of point data of the source, or of a tractogram's data per streamline; or
+        an array of numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row
+        for each point.
+    rgb : bool, default: False
+        Take float `scalars` of three or four columns as colours. Those of uint8 always are.
+    filter_by : str or array_like, optional
+        What to filter by: a name, or a number for each point.
+
+    Returns
+    -------
+    HaloPoints
+        With at most these two values, each under its name, or as ``"scalars"`` and ``"filter"``. Points of float32
+        stay float32, all others become float64.
+
+    Raises
+    ------
+    TypeError
+        If such a source has no points.
+    ValueError
+        If an array has the wrong shape, a name is unknown, a coordinate is not finite, or a colour is not in 0..1. The
+        message names array, row and value. Numbers may be NaN.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from pvfiblets.halos.build import as_halo_points
+    >>> as_halo_points(np.eye(3, dtype=np.float32), scalars=[1, 2, 3]).n_points
+    3
+    """
+    points, rows, elsewhere = _points_of(source)
+    kept = dict(source.values) if isinstance(source, HaloPoints) else {}
+    values: dict[str, Array] = {}
+    if scalars is not None:
+        name, array, per_line = rows.find(scalars, "scalars", SCALARS, elsewhere)
+        values[name] = _values(rows.at_points(array, per_line), name, rgb)
+    if filter_by is not None:
+        name, array, per_line = rows.find(filter_by, "filter_by", FILTER, elsewhere)
+        _put(values, name, rows.at_points(_numbers(array, name), per_line))
+    return HaloPoints(points, {**kept, **values})
+
+
+# ---------------------------------------------------------------------- rows of arrays
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Data of points and of whole lines, and how many rows each has."""
+
+    n_points: int
+    point_data: Mapping[str, Array]
+    n_lines: int | None = None
+    line_data: Mapping[str, Array] = field(default_factory=dict)
+    counts: Array | None = None
+
+    def find(self, given: Any, what: str, unnamed: str, elsewhere: str = "") -> tuple[str, Array, bool]:
+        """Return the name of what was given, the array, and whether it has a row for each line, not each point."""
+        if isinstance(given, str):
+            if given in self.point_data:
+                return given, _flat(self.point_data[given], f"{what} {given!r}"), False
+            if given in self.line_data:
+                return given, _flat(self.line_data[given], f"{what} {given!r}"), True
+            known = [
+                f"{title} {', '.join(map(repr, data))}"
+                for title, data in (("point data", self.point_data), ("line data", self.line_data))
+                if data
+            ]
+            raise ValueError(
+                f"{what} is {given!r}, which the source does not have; it has {' and '.join(known) or 'no data'}"
+                + elsewhere
+            )
+        array = _flat(_joined(given, (self.n_points, self.n_lines)), what)
+        if array.ndim and len(array) == self.n_points:
+            return unnamed, array, False
+        if array.ndim and len(array) == self.n_lines:
+            return unnamed, array, True
+        known_rows = f"{self.n_points} points" + ("" if self.n_lines is None else f" or of {self.n_lines} lines")
+        raise ValueError(f"{what} has the shape {array.shape}, expected a row for each of {known_rows}")
+
+    def at_points(self, array: Array, per_line: bool) -> Array:
+        """Repeat rows of lines for their points."""
+        return np.repeat(array, self.counts, axis=0) if per_line and self.counts is not None else array
+
+
+class _Lines:
+    """Lines in the making."""
+
+    def __init__(self, source: Lines, kept: Mapping[str, Array]) -> None:
+        self.source, self.kept = source, kept
+        self.rows = _Rows(len(source.points), source.point_data, source.n_tubes, source.line_data)
+        n = len(source.ids)
+        # Most sources list their points line by line: then nothing need be copied.
+        self.in_order = n == len(source.points) and bool((source.ids == np.arange(n)).all())
+        # Cells of two points that follow each other are one line, and what is known of cells is known of segments.
+        self.joined = source.tube_of is not None and len(source.counts) != source.n_tubes
+
+    def build(self, scalars: Any, rgb: bool, filter_by: Any) -> LinesAndValues:
+        values: dict[str, Array] = {}
+        line_values: dict[str, Array] = {}
+        if scalars is not None:
+            name, array, per_line = self.rows.find(scalars, "scalars", SCALARS)
+            array = _values(array, name, rgb)
+            if per_line and not self.joined:
+                line_values[name] = array
+            else:
+                values[name] = self._at_points(array, per_line)
+        if filter_by is not None:
+            name, array, per_line = self.rows.find(filter_by, "filter_by", FILTER)
+            if name in line_values and (isinstance(scalars, str) != isinstance(filter_by, str)):
+                raise ValueError(_clash(name))
+            _put(values, name, self._at_points(_numbers(array, name), per_line))
+        points = self._in_order(self.source.points)
+        self._check(points)
+        return LinesAndValues(HaloLines(points, self.source.offsets, {**self.kept, **values}), line_values)
+
+    def _in_order(self, array: Array) -> Array:
+        return array if self.in_order else array[self.source.ids]
+
+    def _at_points(self, array: Array, per_line: bool) -> Array:
+        """Rows for the points of all lines, one line after the other."""
+        if not per_line:
+            return self._in_order(array)
+        if not self.joined:
+            return np.repeat(array, self.source.counts, axis=0)
+        segments, cells = self.source.segments()
+        flat = array.reshape(len(array), -1)
+        rows = np.zeros((len(self.source.ids), flat.shape[1]))
+        uses = np.maximum(np.bincount(segments.ravel(), minlength=len(rows)), 1)
+        for column in range(flat.shape[1]):
+            for end in segments.T:
+                rows[:, column] += np.bincount(end, flat[cells, column], len(rows))
+        rows /= uses[:, None]
+        return rows.reshape(-1, *array.shape[1:]).astype(array.dtype if array.dtype.kind == "f" else np.float64)
+
+    def _check(self, points: Array) -> None:
+        finite = np.isfinite(points).all(axis=1)
+        if not finite.all():
+            row = int(np.argmin(finite))
+            where = f"{self.source.ids[row]} (line {self.source.line_of(row)})"
+            raise ValueError(
+                f"point {where} is {points[row].tolist()}; coordinates must be finite: leave it out, or split the line"
+            )
+
+
+def _points_of(source: Any) -> tuple[Array, _Rows, str]:
+    """Points, what is known of them, and what to say of data that is there but not at points."""
+    if isinstance(source, HaloPoints):
+        return source.points, _Rows(source.n_points, source.values), ""
+    if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
+        source = cast("FibletSet", source).decompress()
+    if isinstance(source, Streamlines):
+        rows = _Rows(source.n_points, source.per_point, len(source), source.per_streamline, source.counts)
+        return source.points, rows, ""
+    if hasattr(source, "IsA"):
+        return _points_of_vtk(source)
+    try:
+        points = np.asarray(source)
+    except ValueError:  # arrays of unlike lengths
+        points = np.zeros(0, object)
+    if points.dtype.kind not in "fiub":
+        raise TypeError(
+            f"points with halos cannot be made from a {type(source).__name__}; give a data set with points, "
+            "Streamlines, a FibletSet or an (n, 3) array (np.concatenate(...) of a list of such)"
+        )
+    if points.size == 0 and points.ndim < 2:
+        points = points.reshape(0, 3)
+    return points, _Rows(len(points) if points.ndim else 0, {}), ""
+
+
+def _points_of_vtk(mesh: Any) -> tuple[Array, _Rows, str]:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if not mesh.IsA("vtkDataSet"):
+        whole = "; give its combine()" if mesh.IsA("vtkCompositeDataSet") else "; give a data set with points"
+        raise TypeError(f"points with halos cannot be made from a {type(mesh).__name__}{whole}")
+    held = mesh.GetPoints()
+    # A copy: VTK may move its own memory at any time.
+    points = np.zeros((0, 3), np.float32) if held is None else np.array(vtk_to_numpy(held.GetData()))
+    attributes = mesh.GetPointData()
+    arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]  # None for text
+    data = {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a is not None and a.GetName()}
+    cells = mesh.GetCellData()
+    names = [cells.GetArrayName(i) for i in range(cells.GetNumberOfArrays())]
+    listed = ", ".join(map(repr, names))
+    elsewhere = f"; cell data {listed} becomes point data by cell_data_to_point_data()" if names else ""
+    return points, _Rows(len(points), data), elsewhere
+
+
+# ---------------------------------------------------------------------- arrays
+
+
+def _flat(array: Array, what: str) -> Array:
+    """The array with its one column as numbers, as tractograms store them."""
+    if array.dtype.kind not in "fiub":
+        raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
+    return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
+
+
+def _joined(given: Any, counts: tuple[int, int | None]) -> Array:
+    """An array of what was given; a list of arrays, one for each line, becomes one."""
+    arrays = isinstance(given, Sequence) and not isinstance(given, bytes) and any(np.ndim(part) for part in given)
+    if not arrays:
+        return np.asarray(given)
+    sizes = {np.shape(part) for part in given}
+    # A list with a row of three or four numbers for each point or line, rather than the arrays of lines.
+    if len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given):
+        return np.asarray(given)
+    return np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
+
+
+def _values(array: Array, name: str, rgb: bool) -> Array:
+    """Numbers as they are, colours as float32 RGBA in 0..1."""
+    if array.ndim == 1:
+        if rgb:
+            raise ValueError(
+                f"rgb=True asks for colours, but {name!r} has one number in each row; drop rgb, or give 3 or 4 columns"
+            )
+        return array
+    if array.ndim != 2 or array.shape[1] not in (3, 4) or not (rgb or array.dtype == np.uint8):
+        raise ValueError(
+            f"{name!r} has the shape {array.shape} and type {array.dtype}, expected one number in each row, or 3 or 4 "
+            "columns of colour as uint8; give rgb=True for colours of 0..1, or the norm of vectors"
+        )
+    colours = np.ones((len(array), 4), np.float32)
+    colours[:, : array.shape[1]] = array
+    if array.dtype == np.uint8:
+        colours[:, : array.shape[1]] /= 255.0
+    outside = ~((colours >= 0.0) & (colours <= 1.0)).all(axis=1)
+    if outside.any():
+        row = int(np.argmax(outside))
+        raise ValueError(
+            f"colour {row} of {name!r} is {array[row].tolist()}, expected 0 to 1; divide by the largest value, or give "
+            "uint8 of 0 to 255"
+        )
+    return colours
+
+
+def _numbers(array: Array, name: str) -> Array:
+    if array.ndim != 1:
+        raise ValueError(
+            f"filter_by {name!r} has the shape {array.shape}, expected one number in each row; give one column, or the "
+            "norm of vectors"
+        )
+    return array
+
+
+def _put(values: dict[str, Array], name: str, array: Array) -> None:
+    """Store values to filter by, unless something else has their name."""
+    held = values.get(name)
+    if held is not None and (held.shape != array.shape or not np.array_equal(held, array, equal_nan=True)):
+        raise ValueError(_clash(name))
+    values[name] = array
+
+
+def _clash(name: str) -> str:
+    return f"scalars and filter_by are different arrays, but both are called {name!r}; give both by name, or rename one"

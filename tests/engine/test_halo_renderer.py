@@ -1,0 +1,379 @@
+"""`HaloRenderer`: when it redraws, what it culls, keeps, gives back, says and refuses, and 10^7 vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets.engine import EngineError, Style, View
+from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.halos import HaloLines, HaloPoints
+from pvfiblets.halos.reference import LINE
+
+from .halos import EYES, PLAIN, SIZE, assert_same, draw_halos, look, read_halos, scattered, wandering
+
+STYLE = HaloStyle(look=look())
+
+
+@pytest.fixture(scope="module", params=["lines", "points"])
+def drawn(request):
+    return wandering() if request.param == "lines" else scattered()
+
+
+@pytest.fixture(scope="module")
+def view(camera):
+    return View(SIZE, camera(SIZE, **EYES["perspective"]))
+
+
+@pytest.fixture
+def renderer(gl, drawn):
+    made = HaloRenderer(gl, drawn)
+    yield made
+    made.release()
+
+
+def buffers(renderer):
+    return {buffer["name"]: buffer["bytes"] for buffer in renderer.explain()["buffers"]}
+
+
+def styled(values=None, **more):
+    return HaloStyle(look=look(**more), values=values)
+
+
+# ------------------------------------------------------------------------------------------------------- when it draws
+
+
+def test_redraws_only_when_something_changed(renderer, camera, view):
+    first = renderer.render(view, STYLE)
+    assert first.generation == 1
+    assert renderer.render(View(SIZE, camera(SIZE, **EYES["perspective"])), styled()) is first
+    assert first.generation == 1
+    changes = [
+        (view, styled(line_width=1.5)), (view, styled(displacement=(0.0, 1.0))), (view, styled("number")),
+        (View(SIZE, camera(SIZE, **EYES["parallel"])), styled("number")),
+        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]]), styled()), (view, STYLE),
+    ]  # fmt: skip
+    for n, (other, style) in enumerate(changes):
+        assert renderer.render(other, style).generation == 2 + n
+        assert renderer.render(other, style).generation == 2 + n
+
+
+def test_pictures_repeat_to_the_bit(renderer, drawn, view, camera):
+    """Whatever was drawn between, and in a renderer of its own."""
+    some = styled("number", filter_by="number", low=0.2)
+    first = read_halos(renderer.render(view, some))
+    assert first.shown.sum() > 300
+    renderer.render(View((33, 77), camera((33, 77), **EYES["parallel"]), [[1.0, 0, 0, 0]]), styled("colour"))
+    renderer.render(view, styled(n_tapered=5, t_tapered=0.4, width_cue=0.5))
+    again = read_halos(renderer.render(view, some))
+    assert_same(first, again)
+    assert_same(first, draw_halos(renderer._ctx, drawn, view, some.look, values="number"))
+
+
+def test_resizing(renderer, drawn, camera):
+    for size in ((100, 50), (33, 77), (1, 1), (100, 50)):
+        view = View(size, camera(size, **EYES["parallel"]))
+        buffer = renderer.render(view, STYLE)
+        assert buffer.size == size
+        assert buffer.depth.size == buffer.owner.size == buffer.across.size == size
+        assert_same(read_halos(buffer), draw_halos(renderer._ctx, drawn, view, STYLE.look))
+
+
+def test_states_left_on_change_nothing(gl, renderer, view):
+    first = read_halos(renderer.render(view, STYLE))
+    target = gl.simple_framebuffer((20, 20))
+    with renderer._gl.framebuffers_kept():
+        target.use()
+        gl.scissor = 3, 3, 4, 4
+        gl.enable_direct(0x0B44)  # culling
+        gl.enable_direct(0x0BE2)  # blending
+        gl.depth_func = "!="
+        gl.wireframe = True
+        gl.provoking_vertex = 0x8E4D  # the first
+        renderer._made = None
+        again = read_halos(renderer.render(view, STYLE))
+        gl.wireframe = False
+        gl.disable_direct(0x0B44)
+        gl.disable_direct(0x0BE2)
+        gl.scissor = None
+        gl.depth_func = "<="
+    target.release()
+    assert_same(first, again)
+
+
+def test_clip_distances_do_not_stay_on(gl, renderer, view):
+    before = read_halos(renderer.render(view, STYLE))
+    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0], [0, -1.0, 0, 5.0]]), STYLE)
+    assert_same(before, read_halos(renderer.render(view, STYLE)))
+
+
+def test_no_framebuffer_of_its_own_stays_bound(gl, drawn, view):
+    mine = gl.simple_framebuffer((8, 8))
+    library = HaloRenderer(gl, HaloPoints(np.zeros((0, 3))))._gl
+    with library.framebuffers_kept():
+        mine.use()
+        renderer = HaloRenderer(gl, drawn)
+        for style in (styled(), styled("colour"), styled()):
+            renderer.render(view, style)
+            assert library.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == mine.glo
+        renderer.release()
+        mine.clear(0.5)
+        assert mine.read(components=1)[0] == 128
+    mine.release()
+
+
+# ----------------------------------------------------------------------------------------------------------- culling
+
+
+@pytest.fixture
+def few_are_many(monkeypatch):
+    """Have culling begin where tests do not take long."""
+    monkeypatch.setattr("pvfiblets.engine.halos.renderer.LEAST_SEGMENTS", 500)
+
+
+def crowd(kind):
+    """So many that most are hidden."""
+    return wandering(90, 30, seed=6, wander=0.3, step=1.5) if kind == "lines" else scattered(4000, spread=9.0)
+
+
+@pytest.mark.usefixtures("few_are_many")
+@pytest.mark.parametrize("name", EYES)
+@pytest.mark.parametrize("kind", ["lines", "points"])
+def test_culling_changes_no_pixel(gl, camera, kind, name):
+    """Bit for bit, turn by turn and jump by jump, cut, filtered, and from within."""
+    drawn = crowd(kind)
+    culled, whole = HaloRenderer(gl, drawn), HaloRenderer(gl, drawn, culling=None)
+    plane = [[0.4, 1.0, 0.1, 2.0]]
+    usual, wide = styled("number"), styled("number", strip_width=9.0, max_displacement=0.8, **PLAIN)
+    filtered = styled("number", filter_by="number", low=0.5, filter_taper=2.0)
+    orbit = [(0.0, (), usual), (0.05, (), usual), (0.1, (), usual), (1.7, (), usual), (1.7, (), filtered),
+             (1.75, plane, usual), (4.0, (), wide), (4.1, (), wide), (4.1, plane, usual), (0.4, (), usual)]  # fmt: skip
+    for angle, planes, style in orbit:
+        eye = {**EYES[name], "eye": (62 * np.sin(angle), -62 * np.cos(angle), 14)}
+        view = View(SIZE, camera(SIZE, **eye), planes)
+        a, b = read_halos(culled.render(view, style)), read_halos(whole.render(view, style))
+        assert a.shown.sum() > 300
+        assert (a.kind == LINE).any()
+        assert_same(a, b)
+    inside = View((70, 90), camera((70, 90), eye=(0, -3, 0), near=0.1, far=50.0, angle=80.0))
+    for style in (usual, wide):
+        assert_same(read_halos(culled.render(inside, style)), read_halos(whole.render(inside, style)))
+    said = culled.explain()
+    assert said["culling"] == "two-phase"
+    assert {"culling", "occlusion"} <= set(buffers(culled))
+    assert not {"culling", "occlusion"} & set(buffers(whole))
+    assert [p["name"] for p in said["passes"]][:3] == ["last picture", "clear", "seen before"]
+    culled.release()
+    whole.release()
+
+
+@pytest.mark.usefixtures("few_are_many")
+def test_what_stands_before_all_is_found_at_once(gl, camera):
+    """After a jump to behind a wall of lines, all that the last picture showed is hidden."""
+    x = np.linspace(-20, 20, 300)
+    wall = [np.array([[a, 8.0, -20.0], [a, 8.0, 20.0]]) for a in x]
+    crowd = [places.reshape(2, 3) for places in wandering(300, 2, seed=2, step=2.0, spread=5.0).points.reshape(-1, 6)]
+    points = np.concatenate(wall + crowd)
+    drawn = HaloLines(points, np.arange(0, len(points) + 1, 2))
+    some = styled(line_width=0.4, strip_width=1.0, **PLAIN)
+    culled, whole = HaloRenderer(gl, drawn), HaloRenderer(gl, drawn, culling=None)
+    owners = []
+    for side in (-1, 1, -1, 1, 1):
+        view = View(SIZE, camera(SIZE, **{**EYES["parallel"], "eye": (3, 62 * side, 2), "height": 20.0}))
+        a, b = read_halos(culled.render(view, some)), read_halos(whole.render(view, some))
+        assert_same(a, b)
+        owners.append(np.unique(a.owner[a.kind == LINE]))
+    assert (owners[0] >= 600).any()
+    assert (owners[1] < 600).all()
+    culled.release()
+    whole.release()
+
+
+def test_few_are_not_culled(gl, drawn, view):
+    renderer = HaloRenderer(gl, drawn)
+    renderer.render(view, STYLE)
+    assert renderer.explain()["culling"] is None
+    renderer.release()
+
+
+# --------------------------------------------------------------------------------------- what it keeps, and gives back
+
+
+def test_a_vertex_takes_few_bytes(renderer, drawn, view):
+    n = drawn.n_points
+    lines = isinstance(drawn, HaloLines)
+    index = 4 * len(drawn.offsets) if lines else 0
+
+    def of_vertices():
+        held = buffers(renderer)
+        return sum(held.get(name, 0) for name in ("places", "masks", "filters", "values", "colours", "offsets"))
+
+    renderer.render(view, STYLE)
+    assert of_vertices() == (14 if lines else 12) * n + index
+    renderer.render(view, styled("number"))
+    assert of_vertices() == (18 if lines else 16) * n + index
+    renderer.render(view, styled("colour"))
+    assert of_vertices() == (18 if lines else 16) * n + index
+    renderer.render(view, styled("number", filter_by="number"))
+    assert of_vertices() <= (22 if lines else 20) * n + index
+    renderer.render(view, STYLE)
+    assert of_vertices() == (14 if lines else 12) * n + index
+
+
+def test_values_take_memory_only_while_they_show(renderer, drawn, view):
+    renderer.render(view, STYLE)
+    plain = buffers(renderer)
+    assert not {"values", "colours", "filters"} & set(plain)
+    assert renderer.render(view, STYLE).colours is None
+    renderer.render(view, styled("number"))
+    assert buffers(renderer) == plain | {"values": 4 * drawn.n_points}
+    shown = renderer.render(view, styled("colour", filter_by="number", low=0.1))
+    assert shown.colours is not None
+    held = buffers(renderer)
+    assert held["colours"] == held["filters"] == 4 * drawn.n_points
+    assert held["gbuffer"] == plain["gbuffer"] + 4 * SIZE[0] * SIZE[1]
+    renderer.render(view, STYLE)
+    assert buffers(renderer) == plain
+    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]]), STYLE)
+    assert set(buffers(renderer)) - set(plain) == {"clip_planes"}
+    renderer.render(view, STYLE)
+    assert buffers(renderer) == plain
+
+
+def test_explain(renderer, drawn, view):
+    assert renderer.explain()["features"] == []
+    renderer.render(view, STYLE)
+    said = renderer.explain()
+    lines = isinstance(drawn, HaloLines)
+    assert renderer.pipeline == ("strips" if lines else "discs")
+    assert [p["name"] for p in said["passes"]] == ["clear", renderer.pipeline, "attributes"]
+    assert all(0 <= p["ms"] < 1e5 for p in said["passes"])
+    assert said["points_total"] == drawn.n_points
+    assert said["lines_total"] == (drawn.n_lines if lines else 0)
+    assert 2 * (drawn.n_segments if lines else drawn.n_points) <= said["primitives"] <= 2 * drawn.n_points
+    assert said["features"] == ([] if lines else ["HALO_POINTS"])
+    # Planes and filters cost nothing where there are none, or where they touch nothing.
+    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]), STYLE)
+    assert renderer.explain()["features"] == said["features"]
+    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0.0]]), styled("number", filter_by="number"))
+    assert set(renderer.explain()["features"]) - set(said["features"]) == {"CLIP_PLANES", "HALO_FILTER", "HALO_VALUES"}
+    assert renderer.share == 1.0
+    assert not renderer.needs_outside(view, STYLE)
+
+
+def test_release_twice_and_use_after(gl, drawn, view):
+    renderer = HaloRenderer(gl, drawn)
+    renderer.render(view, styled("number", filter_by="number"))
+    renderer.release()
+    renderer.release()
+    with pytest.raises(EngineError, match="released"):
+        renderer.render(view, STYLE)
+    assert buffers(renderer) == {}
+
+
+def test_nothing_is_left_after_release(gl, drawn, view, monkeypatch):
+    """Every buffer, texture and framebuffer that was made is gone: their names are free for others."""
+    made = []
+    for name in ("buffer", "texture", "depth_texture", "framebuffer", "vertex_array", "program", "query"):
+        make = getattr(gl, name)
+
+        def recorded(*args, make=make, **kwargs):
+            made.append(make(*args, **kwargs))
+            return made[-1]
+
+        monkeypatch.setattr(gl, name, recorded, raising=False)
+    read = []
+    make_readable = OpenGL.texture_buffer
+
+    def readable(*args):
+        read.append(make_readable(*args))
+        return read[-1]
+
+    monkeypatch.setattr(OpenGL, "texture_buffer", readable)
+    renderer = HaloRenderer(gl, drawn)
+    renderer.render(view, styled("colour", filter_by="number"))
+    renderer.render(View((50, 40), view.model_view_projection, [[0, 1.0, 0, 0]]), styled("number"))
+    assert len(made) > 15
+    renderer.release()
+    left = [thing for thing in made if type(thing.mglo).__name__ != "InvalidObject"]
+    assert not left
+    assert read
+    assert not any(texture.glo for texture in read)
+
+
+# ------------------------------------------------------------------------------------------------------ what it refuses
+
+
+def test_bad_choices_name_what_there_is(gl, drawn):
+    with pytest.raises(ValueError, match=r"culling is 'guess'; choose one of \('two-phase', None\)"):
+        HaloRenderer(gl, drawn, culling="guess")
+
+
+def test_a_style_without_a_look(renderer, view):
+    with pytest.raises(TypeError, match="a HaloStyle"):
+        renderer.render(view, Style())
+
+
+def test_unknown_values_name_those_there_are(renderer, view):
+    renderer.render(view, STYLE)
+    for style in (styled("fa"), styled(filter_by="fa")):
+        with pytest.raises(EngineError, match=r"no values 'fa' .* there are \['colour', 'number'\]"):
+            renderer.render(view, style)
+    with pytest.raises(EngineError, match="'colour' are colours, and cannot filter; give numbers"):
+        renderer.render(view, styled(filter_by="colour"))
+    assert read_halos(renderer.render(view, STYLE)).shown.any()
+
+
+def test_a_picture_too_large(renderer, view):
+    first = renderer.render(view, STYLE).generation
+    with pytest.raises(EngineError, match="wider or higher than this OpenGL's largest texture"):
+        renderer.render(View((100_000, 4), view.model_view_projection), STYLE)
+    assert renderer.render(view, STYLE).generation > first
+
+
+def test_coordinates_too_large_for_float32(gl):
+    with pytest.raises(EngineError, match="float32"):
+        HaloRenderer(gl, HaloPoints(np.array([[0, 0, 0], [1e39, 0, 0]])))
+
+
+def test_thresholds_of_infinity_let_all_numbers_pass(gl, view):
+    """Those too large for float32 count as its largest."""
+    drawn = scattered()
+    numbers = np.where(np.arange(drawn.n_points) % 2, 1e300, -1e300)
+    some = HaloPoints(drawn.points, {"n": numbers, "m": np.sign(numbers) * 3.3e38})
+    everything = draw_halos(gl, some, view, look())
+    for name in some.values:
+        assert_same(everything, draw_halos(gl, some, view, look(filter_by=name)))
+        above = draw_halos(gl, some, view, look(filter_by=name, low=0.0))
+        assert set(np.unique(above.owner[above.kind == LINE]) % 2) == {1}
+
+
+# --------------------------------------------------------------------------------------------------- 10^7 vertices
+
+
+@pytest.mark.slow
+def test_ten_million_vertices(gl, camera):
+    """They are built and drawn, and take what few of them take each: with one number, no more than 20 bytes."""
+    n, each = 10_000_000, 1000
+    steps = np.random.default_rng(0).standard_normal((n, 3), np.float32)
+    points = np.cumsum(steps.reshape(-1, each, 3), axis=1, dtype=np.float32).reshape(-1, 3)
+    points[:, 0] += np.repeat(np.linspace(-100, 100, n // each, dtype=np.float32), each)
+    drawn = HaloLines(points, np.arange(0, n + 1, each), {"n": points[:, 2]})
+    size = (320, 240)
+    view = View(size, camera(size, eye=(0, -300, 60), near=50.0, far=800.0, angle=40.0))
+    renderer = HaloRenderer(gl, drawn)
+    style = HaloStyle(look=look(line_width=0.4, strip_width=2.0, max_displacement=4.0), values="n")
+    picture = read_halos(renderer.render(view, style))
+    assert (picture.kind == LINE).sum() > 10_000
+    line = picture.kind == LINE
+    assert (picture.line[line] == picture.owner[line] // each).all()
+    place = picture.place[line] - picture.owner[line] % each
+    assert place.min() > -1e-3
+    assert place.max() < 1.001
+    a, b = points[picture.owner[line], 2], points[picture.owner[line] + 1, 2]
+    assert np.abs(picture.value[line] - (a + place * (b - a))).max() < 1e-2
+    held = buffers(renderer)
+    held.pop("gbuffer")
+    assert sum(held.values()) <= 20 * n
+    renderer.release()
