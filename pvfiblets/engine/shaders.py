@@ -86,6 +86,7 @@ FEATURES: dict[str, str] = {
     "RAYCAST_RIEMANN": "light by Riemann's sum",
     "RAYCAST_SIMPSON": "light by Simpson's rule",
     "RAYCAST_RK4": "light by Runge and Kutta's method of order four",
+    "RAYCAST_HOMOGENEOUS": "light through nodes of hardly any change at once",
     "RAYCAST_JITTER": "rays that start at places of their own",
     "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
 }

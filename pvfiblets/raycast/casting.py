@@ -58,6 +58,12 @@ class Casting:
         Whether nodes in which there is nothing to see are skipped. It changes no pixel.
     homogeneous : float
         Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
+    sparse : int
+        A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where
+        what the first ones found differs (section III.D). Things thinner than that may be missed.
+    sparse_threshold : float
+        By how much it may differ: colours and opacities from 0 to 1, values over the range of colours, and the cosine
+        of an angle between normals by its distance from 1.
     stop : float
         Opacity at which a ray ends, above 0 and at most 1.
     box : tuple of float, optional
@@ -87,6 +93,8 @@ class Casting:
     integrator: str = "preintegrated"
     octree: bool = True
     homogeneous: float = 0.0
+    sparse: int = 1
+    sparse_threshold: float = 0.05
     stop: float = 0.999
     box: tuple[float, ...] | None = None
 
@@ -107,6 +115,8 @@ class Casting:
         self._check("step", 1e-3 <= self.step <= 1e3, "a number of voxels from 0.001 to 1000")
         self._check("stop", 0.0 < self.stop <= 1.0, "an opacity above 0, at most 1")
         self._check("homogeneous", 0.0 <= self.homogeneous < math.inf, "a difference of values, 0 or more")
+        self._check("sparse", self.sparse in (1, 2, 4), "1, 2 or 4 pixels")
+        self._check("sparse_threshold", 0.0 <= self.sparse_threshold <= 1.0, "a number from 0 to 1")
         self._check("iterations", 1 <= self.iterations <= 64, "a whole number from 1 to 64")
         if math.isnan(self.threshold):
             raise ValueError("threshold is nan; give a number")

@@ -2,7 +2,10 @@
 // Paper: Lesar 2015, "Real-time ray casting of volumetric data", section III.
 //
 // One ray per pixel, through what planes, the box and opaque things in front leave of the volume. Steps are as long everywhere,
-// from where the ray enters: what the octree skips changes no sample.
+// from where the ray enters: what the octree skips changes no sample. With ray_stride pixels between rays, each is that of a pixel
+// of the whole picture (sparse casting, section III.D, phase 1).
+//
+// Nothing is discarded: pixels without anything say so, and an early test of depth may leave pixels out (phase 2).
 
 #version 430
 
@@ -37,21 +40,33 @@ layout(location = 4) out vec4 shown_colour;
 // A number in 0..1 for each pixel that looks like noise.
 float noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
+uniform int ray_stride;
+uniform ivec2 last_pixel;
+
 void main() {
-    Ray ray = ray_of(gl_FragCoord.xy);
+    ivec2 pixel = min(ivec2(gl_FragCoord.xy) * ray_stride + ray_stride / 2, last_pixel);
+    Ray ray = ray_of(vec2(pixel) + 0.5);
+    shown_depth = shown_owner = 0xFFFFFFFFu;
+    shown_ids = uvec2(0u);
+    shown_position = vec2(0.0);
+#if FEATURE_RAYCAST_SURFACE
+    shown_normal = 0u;
+#elif FEATURE_RAYCAST_LIGHT
+    shown_colour = vec4(0.0);
+#endif
 #if FEATURE_OUTSIDE
-    uint key = texelFetch(outside, ivec2(gl_FragCoord.xy), 0).x;
+    uint key = texelFetch(outside, pixel, 0).x;
     if (key != 0xFFFFFFFFu) ray.last = min(ray.last, where_far(ray, float(0xFFFFFFFFu - key) / 4294967296.0));
 #endif
-    if (!(ray.last > ray.first)) discard;
+    if (!(ray.last > ray.first)) return;
     float step = ray_low.w, start = ray.first;
 #if FEATURE_RAYCAST_JITTER
-    start += step * noise(floor(gl_FragCoord.xy));
-    if (start >= ray.last) discard;
+    start += step * noise(vec2(pixel));
+    if (start >= ray.last) return;
 #endif
     float hit, value = 0.0;
 #if FEATURE_RAYCAST_SURFACE
-    if (!find_surface(ray, step, start, hit, value)) discard;
+    if (!find_surface(ray, step, start, hit, value)) return;
     vec3 g = gradient_at(at(ray, hit));
     vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
@@ -59,15 +74,14 @@ void main() {
     shown_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);
 #elif FEATURE_RAYCAST_LIGHT
     vec4 light;
-    if (!gather(ray, step, start, hit, light)) discard;
+    if (!gather(ray, step, start, hit, light)) return;
     shown_colour = vec4(light.rgb / light.a, light.a);
 #else
-    if (!find_peak(ray, step, start, hit, value)) discard;
+    if (!find_peak(ray, step, start, hit, value)) return;
 #endif
     float far = farness(ray, hit);
     shown_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
     ivec3 voxel = clamp(ivec3(floor(at(ray, hit) + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1);
     shown_owner = uint(voxel.x) + uint(ray_size.x) * (uint(voxel.y) + uint(ray_size.y) * uint(voxel.z));
-    shown_ids = uvec2(0u, 0u);
     shown_position = vec2(hit, value);
 }

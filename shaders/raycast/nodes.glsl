@@ -3,6 +3,10 @@
 // of a place is found from the root anew each time, the largest that need not be looked into.
 
 uniform samplerBuffer nodes;      // one number for each; a node is skipped if it is not above a threshold
+#if FEATURE_RAYCAST_HOMOGENEOUS
+uniform samplerBuffer means;      // of each: where its number is 2 it may be taken as that
+float mean_of_node;
+#endif
 
 // Mm from t to where that node ends, at least 0; number is the node's.
 float to_end_of_node(Ray ray, float t, float threshold, out float number) {
@@ -13,7 +17,12 @@ float to_end_of_node(Ray ray, float t, float threshold, out float number) {
     for (;;) {
         node = leaf >> level;
         ivec4 row = ray_levels[level];
-        number = texelFetch(nodes, row.w + node.x + row.x * (node.y + row.y * node.z)).x;
+        int place = row.w + node.x + row.x * (node.y + row.y * node.z);
+        number = texelFetch(nodes, place).x;
+#if FEATURE_RAYCAST_HOMOGENEOUS
+        mean_of_node = texelFetch(means, place).x;
+        if (number > 1.5) break;
+#endif
         if (number <= threshold || level == 0) break;
         --level;
     }

@@ -98,7 +98,7 @@ class RayBlock:
         block["size"] = *size, view.size[0] / 2.0
         least, greatest = max(casting.low, -_LARGEST), min(casting.high, _LARGEST)
         block["values"] = *self._reading, least, greatest
-        ends = (0.0, 1.0) if casting.transfer is None else casting.transfer.clim
+        ends = volume.value_range if casting.transfer is None else casting.transfer.clim
         block["table"] = *ends, view.size[1] / 2.0, min(max(casting.threshold, -_LARGEST), _LARGEST)
         block["surfaces"][: len(casting.values)] = casting.values
         if len(levels) > MAX_LEVELS:

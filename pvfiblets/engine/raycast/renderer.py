@@ -5,33 +5,28 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import moderngl
-import numpy as np
-import numpy.typing as npt
 
-from ...raycast.octree import build_octree, flags
 from ..errors import EngineError
-from ..gbuffer import EMPTY, GBuffer
-from ..opengl import BufferTexture, OpenGL
+from ..gbuffer import GBuffer
+from ..opengl import OpenGL
 from ..passes import Passes
 from ..shaders import Programs
 from ..view import View
 from .blocks import CONSTANTS, RayBlock
+from .nodes import NodeList
+from .pictures import Picture
 from .style import RaycastStyle
+from .tables import Tables
 from .textures import VolumeTexture
 
 if TYPE_CHECKING:
     from ...raycast.casting import Casting
-    from ...raycast.octree import Octree
-    from ...raycast.transfer import Transfer
     from ...raycast.volume import RaycastVolume
     from ..view import Style
 
 __all__ = ["RaycastRenderer"]
 
-TABLE_SIZE = 1024
-"""Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
-
-VOXELS_UNIT, NODES_UNIT, COLOURS_UNIT, SEGMENTS_UNIT, OUTSIDE_UNIT = 10, 11, 12, 13, 14
+VOXELS_UNIT, OUTSIDE_UNIT, COARSE_UNIT = 10, 14, 16
 
 _OF_MODE = {
     "isosurface": ["RAYCAST_SURFACE"],
@@ -88,17 +83,12 @@ class RaycastRenderer:
         self._gl = OpenGL(ctx)
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
+        self._nodes = NodeList(ctx, self._gl, volume)
+        self._tables = Tables(ctx)
         self._voxels: VolumeTexture | None = None
         self._block: RayBlock | None = None
-        self._buffer: GBuffer | None = None
-        self._target: moderngl.Framebuffer | None = None
-        self._nodes: tuple[moderngl.Buffer, BufferTexture] | None = None
-        self._nodes_for: object = None
-        self._tables: dict[str, moderngl.Texture] = {}
-        self._tables_for: object = None
-        self._octrees: dict[int, Octree] = {}
-        self._levels: npt.NDArray[np.int64] = np.zeros((0, 4), np.int64)
-        self._skipped = 0.0
+        self._picture: Picture | None = None
+        self._coarse: Picture | None = None
         self._features: list[str] = []
         self._made: tuple[View, Style] | None = None
         self._generation = 0
@@ -137,116 +127,118 @@ class RaycastRenderer:
         if not isinstance(style, RaycastStyle):
             raise TypeError(f"style is a {type(style).__name__}; volumes need a RaycastStyle")
         voxels, block = self._alive()
-        if self._buffer is not None and outside is None and self._made == (view, style):
-            return self._buffer
+        if self._picture is not None and outside is None and self._made == (view, style):
+            return self._picture.buffer
         self._made = None
         casting = style.casting
-        self._make_nodes(casting)
-        self._make_tables(casting, block)
+        self._nodes.make(casting)
+        self._tables.make(casting, block.step_mm(casting))
         with self._gl.framebuffers_kept():
-            buffer, target = self._targets(view.size, casting)
+            sparse = casting.sparse > 1
+            self._picture = self._fitting(self._picture, view.size, casting, marked=sparse)
             features = self._features_of(casting, outside is not None)
             self._features = sorted(features)
-            block.write(view, casting, self._levels)
+            block.write(view, casting, self._nodes.levels)
+            voxels.filter(casting.filter != "nearest")
             self._passes.begin()
             self._ctx.scissor = None
-            with self._passes.timed("clear"):
-                self._gl.clear_integers(target, (EMPTY,), 0)
-                self._gl.clear_integers(target, (EMPTY,), 1)
-            with self._passes.timed("rays"):
-                self._cast(target, voxels, features, casting, outside)
+            if sparse:
+                self._cast_sparsely(self._picture, features, casting, outside)
+            else:
+                with self._passes.timed("rays"):
+                    self._cast(self._picture, features, 1, view.size, outside)
         self._generation += 1
-        buffer.generation = self._generation
+        self._picture.buffer.generation = self._generation
         if outside is None:
             self._made = (view, style)
-        return buffer
+        return self._picture.buffer
+
+    def _cast_sparsely(
+        self, picture: Picture, features: list[str], casting: Casting, outside: moderngl.Texture | None
+    ) -> None:
+        """Cast some rays, fill in between, and cast the rest where that does not do."""
+        size, stride = picture.buffer.size, casting.sparse
+        coarse_size = -(-size[0] // stride), -(-size[1] // stride)
+        self._coarse = self._fitting(self._coarse, coarse_size, casting, marked=False)
+        with self._passes.timed("sparse rays"):
+            self._cast(self._coarse, features, stride, size, outside)
+        with self._passes.timed("between"):
+            program, array = self._programs.screen("raycast/fill.frag", [*_OF_MODE[casting.mode]])
+            coarse = self._coarse.buffer
+            textures = {
+                "coarse_depth": coarse.depth,
+                "coarse_owner": coarse.owner,
+                "coarse_position": coarse.position,
+                "coarse_normal": coarse.across,
+                "coarse_colour": coarse.colours,
+            }
+            for unit, (name, texture) in enumerate(textures.items(), COARSE_UNIT):
+                if name in program and texture is not None:
+                    texture.use(unit)
+                    program[name] = unit
+            self._place(program, stride, size)
+            program["threshold"] = casting.sparse_threshold
+            picture.framebuffer.use()
+            picture.framebuffer.depth_mask = True
+            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.depth_func = "1"
+            array.render(moderngl.TRIANGLES, vertices=3)
+        with self._passes.timed("other rays"):
+            # Whoever wants a ray has depth 1, and the others 0: the triangle lies between.
+            picture.framebuffer.depth_mask = False
+            self._ctx.depth_func = "<"
+            self._cast(picture, features, 1, size, outside, tested=True)
+            self._ctx.depth_func = "<="
 
     def _cast(
         self,
-        target: moderngl.Framebuffer,
-        voxels: VolumeTexture,
+        picture: Picture,
         features: list[str],
-        casting: Casting,
+        stride: int,
+        size: tuple[int, int],
         outside: moderngl.Texture | None,
+        *,
+        tested: bool = False,
     ) -> None:
+        """Cast a ray for every pixel of a picture, or those that pass the test of depth."""
         program, array = self._programs.screen("raycast/cast.frag", features)
-        voxels.filter(casting.filter != "nearest")
-        bound: list[tuple[str, Any, int]] = [("voxels", voxels.texture, VOXELS_UNIT)]
-        bound += [("colours", self._tables.get("colours"), COLOURS_UNIT)]
-        bound += [("segments", self._tables.get("segments"), SEGMENTS_UNIT), ("outside", outside, OUTSIDE_UNIT)]
+        voxels, _ = self._alive()
+        bound = (("voxels", voxels.texture, VOXELS_UNIT), ("outside", outside, OUTSIDE_UNIT))
         for name, texture, unit in bound:
             if name in program and texture is not None:
                 texture.use(unit)
                 program[name] = unit
-        assert self._nodes is not None
-        self._nodes[1].bind(NODES_UNIT)
-        self._gl.set_sampler(program, "nodes", NODES_UNIT)
-        target.use()
-        self._ctx.enable_only(moderngl.NOTHING)
+        self._tables.bind(program)
+        self._nodes.bind(program)
+        self._place(program, stride, size)
+        picture.framebuffer.use()
+        self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
         array.render(moderngl.TRIANGLES, vertices=3)
 
-    def _features_of(self, casting: Casting, outside: bool) -> list[str]:
+    @staticmethod
+    def _place(program: moderngl.Program, stride: int, size: tuple[int, int]) -> None:
+        program["ray_stride"] = stride
+        program["last_pixel"] = size[0] - 1, size[1] - 1
+
+    @staticmethod
+    def _features_of(casting: Casting, outside: bool) -> list[str]:
         features = [*_OF_MODE[casting.mode], *_OF_FILTER[casting.filter]]
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
             features += _OF_INTEGRATOR[casting.integrator]
+            features += ["RAYCAST_HOMOGENEOUS"] if casting.homogeneous > 0.0 and casting.octree else []
         return [*features, *(["RAYCAST_JITTER"] if casting.jitter else []), *(["OUTSIDE"] if outside else [])]
 
-    # What is kept of the volume
-
-    def _make_nodes(self, casting: Casting) -> None:
-        """Bring the octree's list up to date with what there is to see."""
-        key = casting.octree, casting.mode, casting.filter, casting.values, casting.transfer, casting.low, casting.high
-        if self._nodes_for == key:
-            return
-        margin = 2 if casting.filter == "tricubic" else 1
-        if margin not in self._octrees:
-            self._octrees[margin] = build_octree(self._volume, margin)
-        octree = self._octrees[margin]
-        lists = _numbers(octree, casting)
-        shapes = [numbers.shape for numbers in lists]
-        starts = np.cumsum([0, *(numbers.size for numbers in lists)])
-        self._levels = np.array([[*shape, start] for shape, start in zip(shapes, starts[:-1], strict=True)], np.int64)
-        data = np.concatenate([numbers.ravel(order="F") for numbers in lists]).astype("<f4")
-        self._skipped = float(np.mean(lists[0] == 0.0)) if casting.mode in ("isosurface", "composite") else 0.0
-        self._drop_nodes()
-        try:
-            buffer = self._ctx.buffer(data)
-        except moderngl.Error as error:
-            raise EngineError(f"no memory for an octree of {data.nbytes} bytes") from error
-        self._nodes = buffer, self._gl.texture_buffer(buffer, "r32f")
-        self._nodes_for = key
-
-    def _make_tables(self, casting: Casting, block: RayBlock) -> None:
-        """Bring colours by value up to date."""
-        transfer = casting.transfer if casting.mode == "composite" else None
-        step = block.step_mm(casting) if casting.integrator == "preintegrated" else None
-        if self._tables_for == (transfer, step):
-            return
-        for texture in self._tables.values():
-            texture.release()
-        self._tables = {}
-        if transfer is not None:
-            self._tables["colours"] = _table(self._ctx, _medium(transfer)[None])
-            if step is not None:
-                self._tables["segments"] = _table(self._ctx, transfer.preintegrated(step).transpose(1, 0, 2))
-        self._tables_for = transfer, step
-
-    def _targets(self, size: tuple[int, int], casting: Casting) -> tuple[GBuffer, moderngl.Framebuffer]:
+    def _fitting(self, picture: Picture | None, size: tuple[int, int], casting: Casting, *, marked: bool) -> Picture:
+        """Return a picture of that size and what the mode needs: the one there is, if it fits."""
         relief = "normal" if casting.mode == "isosurface" else None
         coloured = casting.mode == "composite"
-        buffer = self._buffer
-        fits = buffer is not None and buffer.size == size and buffer.relief == relief
-        if buffer is None or not fits or (buffer.colours is not None) != coloured or self._target is None:
-            self._drop_targets()
-            buffer = self._buffer = GBuffer(self._ctx, size)
-            buffer.want_relief(self._ctx, relief)
-            if coloured:
-                buffer.want_colours(self._ctx)
-            shown = [buffer.depth, buffer.owner, buffer.ids, buffer.position, buffer.across, buffer.colours]
-            self._target = self._ctx.framebuffer([texture for texture in shown if texture is not None])
-        return buffer, self._target
+        if picture is not None:
+            if picture.key == (size, relief, coloured, marked):
+                return picture
+            picture.release()
+        return Picture(self._ctx, size, relief, coloured=coloured, marked=marked)
 
     def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
         """Say whether rays shall end at opaque things: surfaces hide and are hidden by depth alone."""
@@ -269,84 +261,27 @@ class RaycastRenderer:
         sizes = {} if self._voxels is None else {"voxels": self._voxels.nbytes}
         if self._block is not None:
             sizes |= {name: buffer.size for name, buffer in self._block.buffers.items()}
-        if self._nodes is not None:
-            sizes["octree"] = self._nodes[0].size
-        sizes |= {name: 16 * table.width * table.height for name, table in self._tables.items()}
-        if self._buffer is not None:
-            sizes["gbuffer"] = self._buffer.nbytes
+        sizes |= {name: buffer.size for name, buffer in self._nodes.buffers.items()}
+        sizes |= self._tables.sizes
+        for name, picture in (("gbuffer", self._picture), ("sparse", self._coarse)):
+            if picture is not None:
+                sizes[name] = picture.nbytes
         return {
             "passes": self._passes.report(),
             "features": list(self._features),
             "buffers": [{"name": name, "bytes": size} for name, size in sizes.items()],
             "voxels_total": self._volume.n_points,
-            "nodes": 0 if self._nodes is None else self._nodes[0].size // 4,
-            "skipped": self._skipped,
+            "nodes": sum(int(x) * int(y) * int(z) for x, y, z, _ in self._nodes.levels),
+            "skipped": self._nodes.skipped,
         }
-
-    def _drop_nodes(self) -> None:
-        if self._nodes is not None:
-            buffer, texture = self._nodes
-            texture.release()
-            buffer.release()
-            self._nodes = None
-
-    def _drop_targets(self) -> None:
-        if self._target is not None:
-            self._target.release()
-            self._target = None
-        if self._buffer is not None:
-            self._buffer.release()
-            self._buffer = None
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        for holder in (self._voxels, self._block, *self._tables.values()):
+        for holder in (self._voxels, self._block, self._picture, self._coarse, self._nodes, self._tables):
             if holder is not None:
                 holder.release()
         self._voxels = self._block = None
-        self._tables = {}
-        self._tables_for = self._nodes_for = None
-        self._drop_nodes()
-        self._drop_targets()
+        self._picture = self._coarse = None
         self._programs.release()
         self._passes.release()
         self._made = None
-
-
-def _numbers(octree: Octree, casting: Casting) -> list[npt.NDArray[np.float32]]:
-    """Return a number for each node, leaves first: 0 where there is nothing to see, of peaks the greatest value."""
-    within = casting.low, casting.high
-    if not casting.octree:
-        return [np.full(level.least.shape, np.inf, np.float32) for level in octree.levels]
-    if casting.mode == "isosurface":
-
-        def visible(least: Any, greatest: Any) -> npt.NDArray[np.bool_]:
-            seen = [(least <= value) & (greatest >= value) for value in casting.values]
-            return np.logical_or.reduce(seen)
-    elif casting.transfer is not None and casting.mode == "composite":
-        transfer = casting.transfer
-
-        def visible(least: Any, greatest: Any) -> npt.NDArray[np.bool_]:
-            there = (greatest >= within[0]) & (least <= within[1])
-            return there & transfer.visible_range(least, greatest)
-    else:
-        return [
-            np.where((level.greatest >= within[0]) & (level.least <= within[1]), level.greatest, -np.inf)
-            for level in octree.levels
-        ]
-    return [level.astype(np.float32) for level in flags(octree, visible)]
-
-
-def _medium(transfer: Transfer) -> npt.NDArray[np.float32]:
-    """(k, 4) colour and extinction per mm, at values so dense that they may be taken as linear between."""
-    values = np.linspace(*transfer.clim, max(TABLE_SIZE, len(transfer.table)))
-    return np.concatenate([transfer.colour(values), transfer.extinction(values)[:, None]], axis=1).astype("<f4")
-
-
-def _table(ctx: moderngl.Context, rows: npt.NDArray[Any]) -> moderngl.Texture:
-    """A texture of colours, linear between them."""
-    height, width = rows.shape[:2]
-    texture = ctx.texture((width, height), 4, np.ascontiguousarray(rows, "<f4"), dtype="f4")
-    texture.filter = moderngl.LINEAR, moderngl.LINEAR
-    texture.repeat_x = texture.repeat_y = False
-    return texture
