@@ -190,9 +190,14 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
             resolve.uninstall(actor.GetShaderProperty(), self._installed)
             resolve.install(actor.GetShaderProperty(), wanted)
             self._installed = wanted
-        translucent = self._colouring.translucent()
+        translucent = self._translucent
         if translucent != actor.GetForceTranslucent():
             actor.SetForceTranslucent(translucent)
+
+    @property
+    def _translucent(self) -> bool:
+        """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
+        return self._colouring.translucent()
 
     # Drawing
 
@@ -237,8 +242,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         with context.foreign():
             engine = self._engine(context, slot)
             outside = None
-            if self._layers == 1 and engine.needs_outside(view, style) and others_before(renderer, actor):
-                outside = slot.outside_depth(context.ctx).copy(viewport)
+            if engine.needs_outside(view, style):
+                outside = self._outside(context, slot, renderer, viewport)
             buffer = engine.render(view, style, outside=outside)
             draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
@@ -253,6 +258,14 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
+
+    def _outside(
+        self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
+    ) -> Any:
+        """Return the depth of what was drawn before, as keys, where there is some and it may be looked at; else None."""
+        if self._layers == 1 and others_before(renderer, self.actor):
+            return slot.outside_depth(context.ctx).copy(viewport)
+        return None
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style in pixels of the framebuffer, which supersampling makes larger than the window."""

@@ -150,6 +150,20 @@ def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
     return False
 
 
+def others_opaque(renderer: vtkRenderer, actor: vtkProp) -> bool:
+    """Say whether anything else that a renderer shows is opaque, and so drawn before an actor that is translucent.
+
+    Props in the plane of the screen and volumes of VTK leave no depth, though they call themselves opaque.
+    """
+    props = renderer.GetViewProps()
+    for index in range(props.GetNumberOfItems()):
+        prop = props.GetItemAsObject(index)
+        flat = prop is actor or prop.IsA("vtkActor2D") or prop.IsA("vtkVolume")
+        if not flat and prop.GetVisibility() and prop.HasOpaqueGeometry():
+            return True
+    return False
+
+
 def world_planes(mapper: Any) -> Matrix:
     """Return the clipping planes of a mapper.
 
