@@ -1,7 +1,7 @@
 """Depth of what VTK has drawn before the fiblets, which hides some of them.
 
 VTK draws opaque actors in the order in which they were added, so a mesh that was added before the fiblets is there and
-one that was added later is not. The depth is that of one moment: a picture that was culled by it must not be used again
+one that was added later is not; what is translucent comes when all of them are there. The depth is that of one moment: a picture that was culled by it must not be used again
 for the next frame, in which the other actors may have moved.
 """
 
@@ -11,7 +11,7 @@ import ctypes
 from typing import Any
 
 import moderngl
-from vtkmodules.vtkRenderingCore import vtkMapper
+from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
 
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.shaders import read_shader
@@ -41,13 +41,15 @@ class OutsideDepth:
         self._target: moderngl.Framebuffer | None = None
         self._texture: moderngl.Texture | None = None
 
-    def copy(self, viewport: tuple[int, int, int, int]) -> moderngl.Texture | None:
+    def copy(self, viewport: tuple[int, int, int, int], *, moved: bool = False) -> moderngl.Texture | None:
         """Copy the depth of the framebuffer that is bound for drawing.
 
         Parameters
         ----------
         viewport : tuple of 4 ints
             x, y, width, height in pixels of that framebuffer.
+        moved : bool, default False
+            Copy it also where VTK moves depths afterwards.
 
         Returns
         -------
@@ -56,10 +58,34 @@ class OutsideDepth:
             be seen there. Valid until the next copy. None where the depth cannot be had (depth peeling has none), or
             where VTK moves the fiblets' depth afterwards (coincident topology).
         """
-        if vtkMapper.GetResolveCoincidentTopology() or not self._is_texture():
+        if (vtkMapper.GetResolveCoincidentTopology() and not moved) or not self._is_texture():
             return None
-        name = self._attachment(_OBJECT_NAME)
-        samples = self._gl.get_integer("GL_SAMPLES")
+        return self._copy(self._attachment(_OBJECT_NAME), self._gl.get_integer("GL_SAMPLES"), viewport)
+
+    def copy_of_window(self, renderer: vtkRenderer, size: tuple[int, int]) -> moderngl.Texture | None:
+        """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound.
+
+        Depth peeling draws what is translucent elsewhere, when all that is opaque is in that framebuffer.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+        size : tuple of 2 ints
+            Of the viewport.
+
+        Returns
+        -------
+        moderngl.Texture or None
+            As of :meth:`copy`. None where the renderer draws into another framebuffer: its render pass has one.
+        """
+        framebuffer = renderer.GetRenderWindow().GetRenderFramebuffer()
+        depth = None if framebuffer is None else framebuffer.GetDepthAttachmentAsTextureObject()
+        if depth is None or renderer.GetPass() is not None or tuple(renderer.GetSize()) != tuple(size):
+            return None
+        return self._copy(depth.GetHandle(), depth.GetSamples(), (*renderer.GetOrigin(), *size))
+
+    def _copy(self, name: int, samples: int, viewport: tuple[int, int, int, int]) -> moderngl.Texture | None:
+        """Copy a part of a texture."""
         with self._gl.framebuffers_kept():
             target = self._resize(viewport[2:])
             program, array = self._program(samples)

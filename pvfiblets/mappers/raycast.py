@@ -85,9 +85,9 @@ class RaycastMapper(EngineMapper):
 
     Notes
     -----
-    Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added. With depth peeling,
-    and in the passes of VTK that keep no depth to be read, it is that of the window's own picture, and where there is none,
-    rays run through.
+    Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at the
+    farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and the volume's light
+    lies over what its first part lies in front of.
 
     Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
 
@@ -223,7 +223,9 @@ class RaycastMapper(EngineMapper):
         # What VTK selects are props, each by the nearest depth that it has: rays need not end.
         if renderer.GetSelector() is not None or self.actor is None or not others_opaque(renderer, self.actor):
             return None
-        return slot.outside_depth(context.ctx).copy(viewport)
+        depth = slot.outside_depth(context.ctx)
+        found = depth.copy(viewport, moved=True)
+        return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
 
     def _draw(self, program: Any) -> None:
         """Draw nothing where an enlarged picture, which is drawn tile by tile, has no part of a renderer in a tile."""
