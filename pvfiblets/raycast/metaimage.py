@@ -62,6 +62,7 @@ def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Arra
             path, None, f"{len(dims)} axes and {channels} numbers per voxel",
             "three axes and one number per voxel: save one of its volumes or components",
         )  # fmt: skip
+    affine = _affine(path, fields)
     data = fields.get("elementdatafile", "LOCAL")
     if data.upper() not in ("LOCAL", "LIST") and "%" not in data and not (path.parent / data).exists():
         raise FileNotFoundError(f"{path}: its data are in {data!r}, and there is no file {path.parent / data}")
@@ -70,7 +71,7 @@ def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Arra
     shape = image.GetDimensions()
     if scalars is None or list(shape) != dims.astype(int).tolist():
         raise FormatError(path, None, f"{' x '.join(map(str, shape))} voxels", f"DimSize = {fields['dimsize']}")
-    return vtk_to_numpy(scalars).reshape(shape, order="F"), _affine(path, fields)
+    return vtk_to_numpy(scalars).reshape(shape, order="F"), affine
 
 
 def _fields(path: Path) -> dict[str, str]:

@@ -285,15 +285,20 @@ def _vtk_array(image: Any, name: str | None) -> tuple[Any, bool]:
                     found[0] = None
         # Filters leave arrays that nobody made active; one is as good as chosen.
         for i, attributes in enumerate(data):
-            if found == [None, None] and attributes.GetNumberOfArrays() == 1:
+            if _nothing(found) and attributes.GetNumberOfArrays() == 1:
                 found[i] = attributes.GetArray(0)
     else:
         found = [attributes.GetArray(name) for attributes in data]
-    if found == [None, None]:
+    if _nothing(found):
         names = [each.GetArrayName(i) for each in data for i in range(each.GetNumberOfArrays())]
         lacking = "no active scalars" if name is None else f"no array {name!r} of numbers"
         raise ValueError(f"the image has {lacking} among its arrays {names}; choose one by scalars=...")
     return (found[0], False) if found[0] is not None else (found[1], True)
+
+
+def _nothing(found: list[Any]) -> bool:
+    """Whether no array was found; == would ask VTK's arrays for each of their numbers."""
+    return all(array is None for array in found)
 
 
 def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArray[np.float32]:

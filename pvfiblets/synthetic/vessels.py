@@ -7,6 +7,7 @@ compared.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -154,6 +155,7 @@ def _drawn(
     return RaycastVolume(slices.T, affine, name=name)
 
 
+@lru_cache(maxsize=4)
 def _grown(seed: int) -> _Array:
     """``(n, 8)`` segments of all vessels: x, y, z, radius of both ends, mm."""
     rng = np.random.default_rng([seed, 0])
@@ -193,7 +195,9 @@ def _grown(seed: int) -> _Array:
     place, radius = forks[int(rng.integers(len(forks)))]
     blob = place + radius * _unit(rng.normal(size=3))
     segments.append(np.concatenate([place, [2.2 * radius], blob, [2.6 * radius]]))
-    return np.stack(segments)
+    grown = np.stack(segments)
+    grown.flags.writeable = False
+    return grown
 
 
 def _unit(vector: _Array) -> _Array:
