@@ -1,4 +1,4 @@
-"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes or what has halos. No PyVista here.
+"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes, what has halos, volumes. No PyVista here.
 
 >>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
 >>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP
@@ -10,6 +10,17 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.mappers.mapper import FibletMapper
+from pvfiblets.mappers.raycast import RaycastMapper, RayHit
 from pvfiblets.mappers.splines import SplineMapper, SplineOptions
 
-__all__ = ["Colouring", "EngineOptions", "FibletMapper", "HaloMapper", "HaloOptions", "SplineMapper", "SplineOptions"]
+__all__ = [
+    "Colouring",
+    "EngineOptions",
+    "FibletMapper",
+    "HaloMapper",
+    "HaloOptions",
+    "RayHit",
+    "RaycastMapper",
+    "SplineMapper",
+    "SplineOptions",
+]

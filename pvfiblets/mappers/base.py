@@ -262,8 +262,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     ) -> Any:
-        """Return the depth of what was drawn before, as keys, where there is some and it may be looked at; else None."""
-        if self._layers == 1 and others_before(renderer, self.actor):
+        """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
+        actor = self.actor
+        if self._layers == 1 and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 

@@ -1,8 +1,8 @@
 """`RaycastMapper`: a volume that rays are cast through, as geometry of an ordinary VTK actor.
 
-The engine (`pvfiblets.engine.raycast`) puts into its G-buffer what each pixel's ray meets. A surface is drawn by VTK among
-its opaque actors, with its lights on the surface's normals. Light and peaks are drawn in its translucent pass, when all
-that is opaque is there, so that rays end at it.
+The engine (`pvfiblets.engine.raycast`) puts into its G-buffer what each pixel's ray meets. A surface is drawn by VTK
+among its opaque actors, with its lights on the surface's normals. Light and peaks are drawn in its translucent pass, when
+all that is opaque is there, so that rays end at it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pvfiblets.raycast import RaycastVolume
     from pvfiblets.raycast.casting import Casting
 
-__all__ = ["RaycastMapper", "RayHit", "raycast_renderer"]
+__all__ = ["RayHit", "RaycastMapper", "raycast_renderer"]
 
 _LIGHT = "light"  # what the engine has in the place of a number at every point
 
@@ -57,8 +57,8 @@ class RayHit:
     voxel : tuple of 3 ints
         The nearest voxel.
     position : numpy.ndarray
-        ``(3,)`` float64 mm, in the data's coordinates: where the ray meets the surface, where its first light comes from,
-        or where its peak is.
+        ``(3,)`` float64 mm, in the data's coordinates: where the ray meets the surface, where its first light comes
+        from, or where its peak is.
     value : float
         Of the surface or the peak; of light that of the voxel.
     """
@@ -85,9 +85,9 @@ class RaycastMapper(EngineMapper):
 
     Notes
     -----
-    Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at the
-    farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and the volume's light
-    lies over what its first part lies in front of.
+    Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at
+    the farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and all of the
+    volume's light lies over what its first part is in front of.
 
     Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
 
@@ -105,9 +105,7 @@ class RaycastMapper(EngineMapper):
         renderer_factory: Callable[..., Any] = raycast_renderer,
     ) -> None:
         self._casting = casting
-        super().__init__(
-            volume, colouring=_plain(casting), options=Options(), renderer_factory=renderer_factory
-        )
+        super().__init__(volume, colouring=_plain(casting), options=Options(), renderer_factory=renderer_factory)
         self.show(casting, colouring)
 
     @property
@@ -162,9 +160,7 @@ class RaycastMapper(EngineMapper):
     def colouring(self, colouring: Colouring) -> None:
         self.show(self._casting, colouring)
 
-    def pick_at(
-        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 0
-    ) -> RayHit | None:
+    def pick_at(self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 0) -> RayHit | None:
         """Return what a pixel of the picture that was drawn last shows of the volume.
 
         Parameters

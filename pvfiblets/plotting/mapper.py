@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pyvista as pv
 
-from pvfiblets.mappers import FibletMapper, HaloMapper, SplineMapper
+from pvfiblets.mappers import FibletMapper, HaloMapper, RaycastMapper, SplineMapper
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.coloured import Coloured
@@ -61,5 +61,17 @@ class PlottedHalos(Plotted, HaloMapper):
     drawn : HaloLines or HaloPoints
         What to draw.
     look : Look
+        How.
+    """
+
+
+class PlottedRaycast(Plotted, RaycastMapper):
+    """A mapper of a volume that rays are cast through, with scalar bars.
+
+    Parameters
+    ----------
+    volume : RaycastVolume
+        What to draw.
+    casting : Casting
         How.
     """

@@ -1,0 +1,97 @@
+"""What users say about a volume's values: opacities, as for ``Plotter.add_volume``, surfaces and limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from pyvista.plotting.tools import opacity_transfer_function
+
+__all__ = ["is_number", "opacities", "surface_values", "value_limits"]
+
+
+def is_number(given: Any) -> bool:
+    """Whether something is one number."""
+    return isinstance(given, Real) or (isinstance(given, np.ndarray) and given.ndim == 0 and given.dtype.kind in "iuf")
+
+
+def opacities(given: Any, n_colors: int) -> np.ndarray:
+    """Return an opacity for each entry of a table of colours.
+
+    Parameters
+    ----------
+    given : str, float or array_like
+        A name of PyVista's (``"linear"``, ``"geom"``, ``"sigmoid"``, ``"foreground"``, with ``"_r"`` reversed, ...);
+        one number for all; or numbers from 0 to 1, linear between. Those of uint8 are from 0 to 255.
+    n_colors : int
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n_colors,)`` float64 from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If there is no such name, or a number is not from 0 to 1, or there are more of them than colours.
+    TypeError
+        If it is something else.
+    """
+    if isinstance(given, str):
+        named = opacity_transfer_function(given, n_colors)
+        return np.asarray(named, np.float64) / 255.0
+    table = np.asarray(given)
+    if table.dtype.kind not in "buif":
+        raise TypeError(f"opacity is a {type(given).__name__}; give a name, a number from 0 to 1, or a list of them")
+    if table.ndim > 1 or table.size == 0:
+        raise ValueError(f"opacity has the shape {table.shape}; give one number from 0 to 1, or a list of them")
+    table = table.astype(np.float64).ravel() / (255.0 if table.dtype == np.uint8 and table.ndim else 1.0)
+    wrong = np.flatnonzero(~((table >= 0.0) & (table <= 1.0)))  # and not of NaN
+    if len(wrong):
+        where = "" if table.size == 1 else f" at place {wrong[0]}"
+        raise ValueError(f"opacity is {table[wrong[0]]:g}{where}; give numbers from 0 to 1")
+    if len(table) > n_colors:
+        raise ValueError(f"opacity has {len(table)} entries for n_colors={n_colors}; give fewer, or more colours")
+    return np.interp(np.linspace(0.0, 1.0, n_colors), np.linspace(0.0, 1.0, len(table)), table)
+
+
+def surface_values(given: Any, bounds: tuple[float, float]) -> tuple[float, ...]:
+    """Return the values of surfaces: those given, or one in the middle of the volume's.
+
+    Raises
+    ------
+    ValueError
+        If it is neither a number nor a list of them.
+    """
+    if given is None:
+        return (0.5 * bounds[0] + 0.5 * bounds[1],)
+    values = np.asarray(given)
+    if values.dtype.kind not in "buif" or values.ndim > 1:
+        raise ValueError(f"values is {given!r}; give the value of a surface, or a list of values")
+    return tuple(values.astype(np.float64).ravel().tolist())
+
+
+def value_limits(given: Any) -> tuple[float, float]:
+    """Return the least and the greatest value that is there.
+
+    Parameters
+    ----------
+    given : float, (float or None, float or None) or None
+        One number is the least.
+
+    Raises
+    ------
+    ValueError
+        If it is something else.
+    """
+    if given is None:
+        return -math.inf, math.inf
+    ends = (given, None) if is_number(given) else given
+    fine = isinstance(ends, (Sequence, np.ndarray)) and not isinstance(ends, str) and len(ends) == 2
+    if not fine or not all(end is None or is_number(end) for end in ends):
+        raise ValueError(f"thresholds is {given!r}; give (low, high), of which one may be None")
+    low, high = ends
+    return -math.inf if low is None else float(low), math.inf if high is None else float(high)
