@@ -1,8 +1,8 @@
 """Depth of what VTK has drawn before the fiblets, which hides some of them.
 
 VTK draws opaque actors in the order in which they were added, so a mesh that was added before the fiblets is there and
-one that was added later is not; what is translucent comes when all of them are there. The depth is that of one moment: a
-picture that was culled by it must not be used again for the next frame, in which the other actors may have moved.
+one that was added later is not; what is translucent comes when all of them are there. The depth is that of one moment:
+a picture that was culled by it must not be used again for the next frame, in which the other actors may have moved.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """`RaycastMapper`: a volume that rays are cast through, as geometry of an ordinary VTK actor.
 
 The engine (`pvfiblets.engine.raycast`) puts into its G-buffer what each pixel's ray meets. A surface is drawn by VTK
-among its opaque actors, with its lights on the surface's normals. Light and peaks are drawn in its translucent pass, when
-all that is opaque is there, so that rays end at it.
+among its opaque actors, with its lights on the surface's normals. Light and peaks are drawn in its translucent pass,
+when all that is opaque is there, so that rays end at it.
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ class RaycastMapper(EngineMapper):
     Notes
     -----
     Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at
-    the farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and all of the
-    volume's light lies over what its first part is in front of.
+    the farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and all of
+    the volume's light lies over what its first part is in front of.
 
     Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
 
