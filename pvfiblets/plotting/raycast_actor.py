@@ -426,6 +426,8 @@ class RaycastActor(Coloured, SurfaceShading, pv.Actor):
         low, high = value_limits(self._thresholds)
         own = {"values": self.values, "threshold": self.peak, "low": low, "high": high, **wanted}
         update_table(self._table, settings, self._scalars, self._theme, None)
+        if mode != SURFACE:
+            _widen(self._table, max(int(settings.n_colors), 2))
         alpha = opacities(self._opacity_choice, self._table.n_values)
         if settings.color is not None:
             self._table.values[:, :3] = pv.Color(settings.color).int_rgb
@@ -479,6 +481,13 @@ def _checked(volume: Any) -> RaycastVolume:
 
 def _smoothed(volume: RaycastVolume, sigma: Any) -> RaycastVolume:
     return volume if sigma is None else smoothed(volume, sigma)
+
+
+def _widen(table: pv.LookupTable, count: int) -> None:
+    """Give a table so many entries at least, of the same colours: opacities want more than a list of a few colours."""
+    before = table.n_values
+    if before < count:
+        table.values = np.array(table.values)[np.arange(count) * before // count]
 
 
 def _scalars(volume: RaycastVolume) -> Scalars:
