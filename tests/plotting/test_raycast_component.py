@@ -278,10 +278,20 @@ def test_a_copy_looks_the_same(plotter):
     twin.release()
 
 
-def test_shading_effects_do_not_fail_in_any_mode(plotter):
-    actor = shown(plotter, values=4.0)
-    actor.depth_cue = actor.ambient_occlusion = True
-    for mode in ("composite", "isosurface", "mip", "local-mip"):
+def test_shading_effects_are_of_surfaces_and_fading_of_all(plotter):
+    actor = shown(plotter, mode="mip", opacity=1.0, cmap="gray", clim=(0, 10))
+    plain = shot(plotter)
+    actor.ambient_occlusion = True
+    assert (shot(plotter) == plain).all()
+    assert actor.ambient_occlusion["samples"] == 16
+    actor.mode = "isosurface"
+    assert "ambient_occlusion" in actor.explain()["features"]
+    assert shot(plotter).any()
+    actor.mode, actor.ambient_occlusion = "mip", False
+    actor.depth_cue = {"strength": 0.5, "color": "black", "range": (90.0, 110.0)}
+    faded = shot(plotter)[100, 100]  # the middle of the ball lies half way
+    assert faded == pytest.approx(0.75 * plain[100, 100], abs=3)
+    for mode in ("composite", "local-mip"):
         actor.mode = mode
         assert shot(plotter).any()
 
