@@ -47,10 +47,8 @@ class Spacing:
         if line_width is None:
             if self._width is None:
                 self._width = default_widths(self._drawn)[0]
-            line_width = self._width
-            if strip_width is not None and strip_width < 2.0 * line_width:
-                # A strip has room for halos, however narrow it was wanted.
-                line_width = strip_width / 2.0
+            # A strip has room for halos, however narrow it is wanted.
+            line_width = self._width if strip_width is None else min(self._width, 0.5 * strip_width)
         return default_widths(self._drawn, line_width, strip_width, max_displacement)
 
     @property
