@@ -15,9 +15,12 @@ from ..lattice import TOP
 from ..shaders import BLOCKS
 from ..view import Style, View
 
-__all__ = ["CONSTANTS", "HALOS_BYTES", "HaloBlocks"]
+__all__ = ["CONSTANTS", "HALOS_BYTES", "ITEM_SHIFT", "HaloBlocks"]
 
-CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4}
+ITEM_SHIFT = 3
+"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
+
+CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4, "item_shift": ITEM_SHIFT}
 """Of the shaders."""
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}

@@ -16,7 +16,7 @@ from ..passes import Passes
 from ..pulling import PulledShapes
 from ..shaders import Programs
 from ..view import View
-from .blocks import CONSTANTS, HaloBlocks
+from .blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .style import HaloStyle
 from .vertices import UNITS, Vertices
 
@@ -29,8 +29,6 @@ CULLING = ("two-phase", None)
 """How what others hide may be found out."""
 
 HITS_UNIT, DEPTHS_UNIT = 10, 11
-ITEM_SHIFT = 3
-"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
 
 
 class HaloRenderer:
@@ -81,7 +79,7 @@ class HaloRenderer:
         self._kind = ["HALO_POINTS"] if points else []
         self._gl = OpenGL(ctx)
         self._passes = Passes(ctx)
-        self._programs = Programs(ctx, {**CONSTANTS, "item_shift": ITEM_SHIFT})
+        self._programs = Programs(ctx, CONSTANTS)
         self._vertices: Vertices | None = None
         self._blocks: HaloBlocks | None = None
         self._shapes: PulledShapes | None = None
