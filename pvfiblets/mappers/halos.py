@@ -14,6 +14,7 @@ import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.gbuffer import EMPTY
+from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.base import EngineMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import Options
@@ -26,7 +27,7 @@ from pvfiblets.mappers.windows import gl_viewport
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
-    from pvfiblets.halos import HaloLines, HaloPoints, Look
+    from pvfiblets.halos import HaloPoints, Look
 
     Drawn = HaloLines | HaloPoints
 
@@ -272,13 +273,13 @@ class HaloMapper(EngineMapper):
             return None
         best = np.lexsort((depth[rows, columns], distance))[0]
         at = rows[best], columns[best]
-        if hasattr(self._drawn, "n_segments"):
+        if isinstance(self._drawn, HaloLines):
             return int(ids[(*at, 0)]), float(position[(*at, 0)])
         return int(owner[at])
 
     @property
     def _empty(self) -> bool:
-        return not getattr(self._drawn, "n_segments", self._drawn.n_points)
+        return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
 
     @property
     def _width(self) -> float:
