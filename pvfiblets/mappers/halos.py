@@ -23,7 +23,6 @@ from pvfiblets.mappers.picking import shown_by
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.shading import background
 from pvfiblets.mappers.tubes import thickened
-from pvfiblets.mappers.windows import gl_viewport
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
@@ -290,14 +289,6 @@ class HaloMapper(EngineMapper):
         super()._set_proxy()
         if not self._empty:
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
-
-    def _draw(self, program: Any) -> None:
-        """Draw nothing where an enlarged picture, which is drawn tile by tile, has no part of a renderer in a tile."""
-        actor = self.actor
-        if actor is not None and min(gl_viewport(self._active.find(actor).GetRenderWindow())[2:]) < 1:
-            program.SetUniform2i("fibletSize", (0, 0))
-            return
-        super()._draw(program)
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style in pixels of the framebuffer, of which tiles and supersampling have more than the window."""
