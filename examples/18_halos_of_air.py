@@ -68,7 +68,7 @@ def main(folder: Path) -> None:
     edges = pv.merge([pv.Box(np.add(box, (-10, 10, -10, 10, 0, 10))).extract_feature_edges() for box in FURNITURE])
     plotter.add_halo_lines(edges, line_width=14.0, max_displacement=200.0, tapering=False)
     plotter.view_vector((-0.35, -1.0, 0.55), viewup=(0, 0, 1))
-    plotter.camera.zoom(1.5)
+    plotter.camera.zoom(1.4)
     plotter.screenshot(folder / "halos_of_air.png")
     plotter.enable_stereo_render()
     plotter.render()

@@ -62,12 +62,12 @@ def main(folder: Path) -> None:
     print(f"{printed.shape[1]} x {printed.shape[0]} dots, black or white")
     page.close()
 
-    wool = ball_of_wool()
+    wool, widths = ball_of_wool(), {"line_width": 0.35, "strip_width": 3.0, "max_displacement": 6.0}
     plotter = pv.Plotter(off_screen=True, window_size=(1350, 460), shape=(1, 3), border=False)
     plotter.set_background("white", all_renderers=True)
     for index, displacement in enumerate(("square", "linear", "square root")):
         plotter.subplot(0, index)
-        plotter.add_halo_lines(wool, line_width=0.35, strip_width=3.0, max_displacement=6.0, displacement=displacement)
+        plotter.add_halo_lines(wool, **widths, displacement=displacement, tapering=False)
         plotter.add_text(displacement, color="black", font_size=10)
         plotter.camera.zoom(1.4)
     plotter.halo_lines.screenshot(folder / "displacement_functions.png", supersampling=2)
