@@ -14,6 +14,7 @@ from ..frame import FRAME_BYTES, frame_block, local_frame
 from ..lattice import TOP
 from ..shaders import BLOCKS
 from ..view import Style, View
+from .vertices import MOST
 
 __all__ = ["CONSTANTS", "HALOS_BYTES", "ITEM_SHIFT", "HaloBlocks"]
 
@@ -25,7 +26,6 @@ CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4, "item_
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}
 _TABLE = len(DISPLACEMENTS)
-_LARGEST = float(np.finfo(np.float32).max)
 _LAYOUT: list[Any] = [
     ("widths", "<f4", 4),
     ("depth", "<f4", 4),
@@ -95,7 +95,7 @@ class HaloBlocks:
         else:
             block["depth"] = look.max_displacement, float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0), 0.0, 0.0
         block["cue"] = self._cue(to_data, axis, w, scale_of_w, perspective, look.width_cue)
-        block["filter"] = max(look.low, -_LARGEST), min(look.high, _LARGEST), look.filter_taper, float(look.smooth)
+        block["filter"] = *np.clip((look.low, look.high), -MOST, MOST), look.filter_taper, float(look.smooth)
         block["mask"] = 0.0, *half_size, look.width_cue
         table = look.displacement
         named = isinstance(table, str)

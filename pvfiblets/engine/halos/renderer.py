@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import moderngl
+import numpy as np
 
 from ...halos.things import HaloLines, HaloPoints
 from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
@@ -94,7 +95,8 @@ class HaloRenderer:
             self._blocks = HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds)
             self._n = self._vertices.n_items
             self._shapes = PulledShapes(ctx, self._n)
-            if culling is not None and self._n >= LEAST_SEGMENTS and supports_listing(ctx):
+            many = self._n >= LEAST_SEGMENTS and not _flat(drawn.bounds)
+            if culling is not None and many and supports_listing(ctx):
                 self._listing = Listing(
                     ctx,
                     self._gl,
@@ -199,7 +201,8 @@ class HaloRenderer:
         def render(commands: moderngl.Buffer | None = None) -> None:
             target.hits_buffer.use()
             self._prepare(program)
-            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._ctx.front_face, self._ctx.cull_face = "ccw", "back"  # see shaders/halos/strips.vert
             self._ctx.depth_func = ">"  # depth is the other way round: see shaders/halos/halo.frag
             self._ctx.wireframe = False
             self._ctx.provoking_vertex = moderngl.LAST_VERTEX_CONVENTION
@@ -288,3 +291,9 @@ class HaloRenderer:
         self._programs.release()
         self._passes.release()
         self._made = None
+
+
+def _flat(bounds: tuple[float, ...]) -> bool:
+    """Say whether all is in one plane across an axis, where equal depths are the rule, and nothing is behind others."""
+    extents = np.ptp(np.reshape(bounds, (3, 2)), axis=1)
+    return bool(extents.min() <= 1e-6 * extents.max())
