@@ -215,10 +215,12 @@ def _strip(
     own = (b - a) / length
     # Widths are greatest at an end.
     reach = max(float(n.max()) for n in varying.half_widths(np.asarray(part)))
-    pixel, at = box(camera, np.stack([a, b]), 1.2 * reach + 2.0)
+    pixel, at = box(camera, np.stack([a, b]), reach + 2.0)
     along = (at - a) @ own
     s = np.clip(along / length, 0.0, 1.0)
     away = np.linalg.norm(at - a - (length * s)[:, None] * own, axis=1)
+    near = away < reach + 2.0
+    pixel, at, along, s, away = pixel[near], at[near], along[near], s[near], away[near]
     t = varying.places(s, part)
 
     # By how much edges recede per pixel along the axis: nothing where the foot stays.

@@ -73,6 +73,13 @@ def values_at_random(n, rng):
     return {"number": rng.uniform(0, 1, n), "colour": rng.uniform(0.1, 0.9, (n, 4)).astype(np.float32)}
 
 
+def with_numbers(drawn, numbers):
+    """The same with other numbers, named n."""
+    if isinstance(drawn, HaloPoints):
+        return HaloPoints(drawn.points, {"n": numbers})
+    return HaloLines(drawn.points, drawn.offsets, {"n": numbers})
+
+
 def moved(drawn, scale=1.0, shift=0.0):
     """The same elsewhere."""
     if isinstance(drawn, HaloPoints):
