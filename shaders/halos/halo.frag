@@ -26,12 +26,15 @@
 layout(location = 0) out uvec2 shown;
 
 float displacement(float x) {
-    if (halo_counts.y == 0) return x;
+#if FEATURE_HALO_BENT
     if (halo_counts.y == 1) return x * x;
     if (halo_counts.y == 2) return sqrt(x);
     float at = x * float(halo_counts.z - 1);
     int before = min(int(at), halo_counts.z - 2), after = before + 1;
     return mix(halo_table[before >> 2][before & 3], halo_table[after >> 2][after & 3], at - float(before));
+#else
+    return x;
+#endif
 }
 
 float mask(float x) {
@@ -81,7 +84,7 @@ void main() {
     uint steps = (beyond >> 29u) + (line ? 0u : 8u);
     gl_FragDepth = uintBitsToFloat(floatBitsToUint(max(far - back, 1e-9)) - steps);
     float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
-#if !FEATURE_HALO_POINTS
+#if FEATURE_HALO_CUT
     t = handed_part.x + t * (handed_part.y - handed_part.x);
 #endif
     shown = uvec2(handed_item & ~(FREE_START | FREE_END), uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));

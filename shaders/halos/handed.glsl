@@ -6,7 +6,7 @@ const uint FREE_START = 1u << 30, FREE_END = 1u << 31;
 HANDED uint handed_item;         // segment or point; which ends of a segment nothing goes on beyond
 HANDED vec4 handed_ends;         // pixels from the picture's middle: of the axis' start, of its end
 HANDED vec4 handed_depths;       // 1 / W of both; 1 - depth of both
-#if !FEATURE_HALO_POINTS
+#if FEATURE_HALO_CUT
 HANDED vec2 handed_part;         // where on the segment both are, 0..1: planes and the picture's edges may have cut it
 #endif
 #if FEATURE_HALO_TAPER

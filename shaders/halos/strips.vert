@@ -16,7 +16,7 @@
 // their edges do, on the bend's bisector; where a line turns by more than 60 degrees in the window, or runs at the viewer, both
 // are lengthened by half a width instead. Lines end square. What lies before the near plane, beyond the far one, far beside the
 // picture or beyond planes of the caller's is cut off the segment first: all that is handed on is finite, and exact to a
-// fraction of a pixel.
+// fraction of a pixel. Where nothing of the data can lie there, there is no code for it (HALO_CUT).
 //
 // Both segments at a bend find its corners by the same sums of the same numbers, so that there are no holes between. Where a
 // bend is so sharp for the width that its strip's corners cross, one of the two triangles is turned over, and not drawn.
@@ -47,7 +47,9 @@ vec2 filter_at(int vertex, vec3 here, float other, vec3 there, int next) {
 }
 #endif
 
-const float BESIDE = 3.0;      // half pictures from the middle, beyond which an axis is cut off
+#if FEATURE_HALO_CUT
+const float BESIDE = {{ beside }};      // half pictures from the middle, beyond which an axis is cut off
+#endif
 const float SHARPEST = 0.5;    // cosine of the sharpest bend whose corners meet on the bisector
 const float STEEPEST = 0.5;    // pixels by which half a strip widens per pixel along it, up to which they do
 
@@ -62,6 +64,7 @@ vec3 course(vec4 p, vec3 way) {
     return vec3(v * straight, -(halo_widths.x + halo_widths.y) * d.w / size * straight);
 }
 
+#if FEATURE_HALO_CUT
 // Narrows part to where a height that is a at 0 and b at 1 is not negative.
 void narrow(float a, float b, inout vec2 part) {
     float t = a / (a - b);
@@ -71,13 +74,18 @@ void narrow(float a, float b, inout vec2 part) {
 
 // What a number that is a at the start and b at the end is at either end of a part of the segment: exact where that is whole.
 vec2 cut(float a, float b, vec2 part) { return vec2(a + part.x * (b - a), b - (1.0 - part.y) * (b - a)); }
+#else
+vec2 cut(float a, float b, vec2 part) { return vec2(a, b); }
+#endif
 
 void main() {
     int segment = item_of_vertex();
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     handed_item = 0u;
     handed_ends = handed_depths = vec4(0.0);
+#if FEATURE_HALO_CUT
     handed_part = vec2(0.0);
+#endif
 #if FEATURE_HALO_TAPER
     handed_mask = vec2(0.0);
 #endif
@@ -91,7 +99,10 @@ void main() {
     vec3 start = local_place(segment), stop = local_place(segment + 1), way = stop - start;
     vec4 a = window_of(start), b = window_of(stop);
     vec2 cue = vec2(cue_at(start), cue_at(stop));
-    vec2 part = vec2(0.0, 1.0), margin = BESIDE * halo_mask.yz;
+    vec2 part = vec2(0.0, 1.0);
+    vec4 first = a, last = b;
+#if FEATURE_HALO_CUT
+    vec2 margin = BESIDE * halo_mask.yz;
     float reach = 2.0 * max(reaches(cue.x, a.w).y, reaches(cue.y, b.w).y);
     narrow(a.w - a.z, b.w - b.z, part);
     narrow(a.z, b.z, part);
@@ -105,7 +116,9 @@ void main() {
     }
 #endif
     if (part.x > part.y) return;
-    vec4 first = a + part.x * (b - a), last = b - (1.0 - part.y) * (b - a);
+    first += part.x * (b - a);
+    last -= (1.0 - part.y) * (b - a);
+#endif
     if (min(first.w, last.w) <= 0.0) return;
     vec4 ends = vec4(first.xy / first.w, last.xy / last.w);
 
@@ -138,7 +151,9 @@ void main() {
     handed_item = uint(segment) | (free.x ? FREE_START : 0u) | (free.y ? FREE_END : 0u);
     handed_ends = ends;
     handed_depths = vec4(1.0 / first.w, 1.0 / last.w, first.z / first.w, last.z / last.w);
+#if FEATURE_HALO_CUT
     handed_part = part;
+#endif
 #if FEATURE_HALO_CUE
     handed_cue = cut_cue;
 #endif

@@ -154,12 +154,14 @@ class HaloRenderer:
         vertices.show_mask(look.n_tapered, look.t_tapered)
         with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
             target = self._target_of(view.size, coloured=reads == "HALO_COLOURS")
-            planes = blocks.write(view, look, self._n)
+            planes, beside = blocks.write(view, look, self._n)
             wanted = {
                 "HALO_TAPER": look.n_tapered > 0 and not self._kind,
                 "HALO_CUE": look.width_cue > 0.0,
                 "HALO_FILTER": filtered,
-                "CLIP_PLANES": planes > 0,
+                "HALO_BENT": look.displacement != "linear",
+                "HALO_CUT": (beside or planes) and not self._kind,
+                "CLIP_PLANES": planes,
             }
             features = [*self._kind, *(name for name, on in wanted.items() if on)]
             self._features = sorted({*features, *([reads] if reads else [])})
