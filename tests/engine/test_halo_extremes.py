@@ -175,6 +175,20 @@ def test_a_camera_within_the_data(gl, camera, angle):
     assert_shows(draw_halos(gl, points, view, look()), points, view, look())
 
 
+@pytest.mark.parametrize("kind", EYES)
+def test_a_small_part_of_long_lines(gl, camera, kind):
+    """Segments of hundreds of pictures' width, most of which is cut off beside the picture."""
+    closer = {"height": 0.4} if kind == "parallel" else {"angle": 0.4}
+    view = View(SIZE, camera(SIZE, **EYES[kind] | closer | {"target": (0.5, 0.0, -0.4)}))
+    some = look(line_width=0.02, strip_width=0.1, max_displacement=0.2, n_tapered=1, t_tapered=0.4, width_cue=0.4)
+    ways = np.random.default_rng(1).normal(0, 1, (8, 2, 3)) * [40, 20, 40]
+    lines = [np.array([[0.5, 0, -0.4] + a, [0.5, 0, -0.4] - 0.9 * a + 0.004 * b]) for a, b in ways]
+    drawn = of_lines(*lines)
+    found = draw_halos(gl, drawn, view, some)
+    wanted, _ = assert_shows(found, drawn, view, some, depth=1e-5)
+    assert (wanted.kind == LINE).sum() > 500
+
+
 def test_what_is_behind_the_camera_is_not_there(gl, camera):
     view = View(SIZE, camera(SIZE, eye=(0, -62, 0), target=(0, -100, 0), near=1.0, far=500.0))
     for drawn in (wandering(), scattered()):

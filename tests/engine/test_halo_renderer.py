@@ -273,19 +273,25 @@ def test_explain(renderer, drawn, view):
 
 @pytest.mark.parametrize(
     ("more", "features"),
-    [({}, set()), ({"displacement": "square"}, {"HALO_BENT"}), ({"n_tapered": 2}, {"HALO_TAPER"}), ({"width_cue": 0.1}, {"HALO_CUE"}),
+    [({}, set()), ({"n_tapered": 2}, {"HALO_TAPER"}), ({"width_cue": 0.1}, {"HALO_CUE"}),
      ({"filter_by": "number"}, {"HALO_FILTER"}), ({"filter_by": "number", "filter_taper": 2.0}, {"HALO_FILTER"}),
-     ({"low": 0.2, "high": 0.4, "filter_taper": 2.0}, set()),
+     ({"low": 0.2, "high": 0.4, "filter_taper": 2.0}, set()), ({"displacement": "square"}, {"HALO_BENT"}),
      ({"n_tapered": 9, "width_cue": 1.0, "filter_by": "number"}, {"HALO_TAPER", "HALO_CUE", "HALO_FILTER"})],
 )  # fmt: skip
-def test_a_picture_pays_for_what_its_look_uses(renderer, drawn, view, more, features):
-    """There is code for ends that narrow, depth cueing, filters and planes only while something shows by them."""
-    kind = set() if isinstance(drawn, HaloLines) else {"HALO_POINTS"}
+def test_a_picture_pays_for_what_its_look_uses(renderer, drawn, camera, view, more, features):
+    """There is code for ends that narrow, depth cueing, filters and cuts only while something shows by them."""
+    lines = isinstance(drawn, HaloLines)
+    kind = set() if lines else {"HALO_POINTS"}
     renderer.render(view, styled(**PLAIN | more))
-    assert set(renderer.explain()["features"]) == kind | (features - {"HALO_TAPER"} if kind else features)
-    cut = {"CLIP_PLANES"} if kind else {"CLIP_PLANES", "HALO_CUT"}
-    for planes, used in (([[0, 1.0, 0, 1000.0]], set()), ([[0, 1.0, 0, 0]], cut)):
-        renderer.render(View(SIZE, view.model_view_projection, planes), styled("number", **PLAIN))
+    assert set(renderer.explain()["features"]) == kind | (features if lines else features - {"HALO_TAPER"})
+    cut = {"HALO_CUT"} if lines else set()
+    near = camera(SIZE, **EYES["perspective"] | {"near": 55.0})
+    for other, used in (
+        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]), set()),
+        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0]]), {"CLIP_PLANES"} | cut),
+        (View(SIZE, near), cut),
+    ):
+        renderer.render(other, styled("number", **PLAIN))
         assert set(renderer.explain()["features"]) == kind | {"HALO_VALUES"} | used
 
 
