@@ -28,7 +28,7 @@ _SAME = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-9}
 """Distances, by the largest coordinate, up to which places are one and the same."""
 
 _EXACT = 0.01
-"""A distance is found when none can be less by this share of it; mostly it is then right by a thousandth of that."""
+"""A distance is found when none can be less by more than this share of it."""
 
 _SKIPPED = 8
 """Things through a place that are passed over before the place is given up."""
@@ -224,8 +224,8 @@ def distances(things: _Things, places: Doubles, own: Ints) -> Doubles:
     Returns
     -------
     ndarray
-        ``(m,)`` float64, m <= n, in the frame: at least the nearer half of the distances; infinity for the rest; NaN
-        where nothing can be told.
+        ``(m,)`` float64, m <= n, in the frame: at least the nearer half of the distances, at most 1 % too far;
+        infinity for the rest; NaN where nothing can be told.
     """
     least = 4.0 * things.frame.same
     radius = max(things.usual_spacing(), least)
