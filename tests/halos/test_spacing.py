@@ -90,8 +90,8 @@ def test_a_sheet_of_long_segments_is_as_far_apart_as_it_is(scale, offset):
 
 def test_how_many_points_lines_have_does_not_matter():
     x = np.linspace(0, 10, 2001)
-    parts = [np.stack([x[:: 1 + 999 * (i % 2)], 0.5 * i + 0 * x[:: 1 + 999 * (i % 2)], 0 * x[:: 1 + 999 * (i % 2)]], axis=1)
-             for i in range(20)]  # fmt: skip
+    many_and_few = [x[:: 1 + 999 * (i % 2)] for i in range(20)]
+    parts = [np.stack([x, np.full(len(x), 0.5 * i), 0 * x], axis=1) for i, x in enumerate(many_and_few)]
     assert line_spacing(lines_of(*parts)) == pytest.approx(0.5, rel=1e-3)
     assert line_spacing(lines_of(*[part.astype(np.float32) for part in parts])) == pytest.approx(0.5, rel=1e-3)
 
