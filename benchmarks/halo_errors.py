@@ -62,7 +62,8 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
 
 
 def _measured(ctx: Any, renderer: Any, name: str, drawn: Any, cameras: list[Any], options: Any) -> list[dict[str, Any]]:
-    looks = {smooth: look_of(drawn, smooth=smooth) for smooth in (False, True)}
+    look = look_of(drawn)
+    looks = {smooth: dataclasses.replace(look, smooth=smooth) for smooth in (False, True)}
     right, other = ([picture(renderer, camera, looks[smooth], options.reference) for camera in cameras]
                     for smooth in (False, True))  # fmt: skip
     common = {"set": name, "vertices": drawn.n_points}

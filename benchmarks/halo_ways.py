@@ -139,7 +139,7 @@ def orbit(drawn: HaloLines | HaloPoints, places: int, frames: int, size: tuple[i
     return [cameras[i : i + frames + 1] for i in range(0, len(cameras), frames + 1)]
 
 
-def run(way: str, row: Row, drawn: HaloLines | HaloPoints, options: Any) -> dict[str, Any]:
+def run(way: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
     """Return times and sizes of one way.
 
     Raises
@@ -149,7 +149,7 @@ def run(way: str, row: Row, drawn: HaloLines | HaloPoints, options: Any) -> dict
     """
     kinds = {"vtk": _VTK, "plotter": _Plotter, "engine": _Engine, "engine-unculled": _Engine}
     cameras = orbit(drawn, options.places, options.frames, tuple(options.size))
-    way_drawn = kinds[way](way, row, drawn, options, cameras[0][0])
+    way_drawn = kinds[way](way, row, drawn, look, options, cameras[0][0])
     try:
         times = timed(way_drawn.draw, cameras, options.seconds)
         facts = way_drawn.facts()
@@ -158,7 +158,8 @@ def run(way: str, row: Row, drawn: HaloLines | HaloPoints, options: Any) -> dict
     finally:
         way_drawn.close()
     low, median, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
-    strip = look_of(drawn).strip_width * scale_of(cameras[0][0])
+    scale = scale_of(cameras[0][0])
+    strip = look.strip_width * scale + max(look.min_width - look.line_width * scale, 0.0)
     return {"ms": median, "ms_spread": [low, high], "frames": len(times), "darkness": dark, "strip_pixels": strip,
             **facts}  # fmt: skip
 
@@ -228,7 +229,7 @@ class _Window:
 class _VTK(_Window):
     """VTK's lines and points."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, options: Any, camera: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, camera: Camera) -> None:
         super().__init__(row, options)
         common = {"color": "black", "lighting": False, "show_scalar_bar": False}
         if isinstance(drawn, HaloLines):
@@ -236,7 +237,7 @@ class _VTK(_Window):
             # Poly-lines are drawn as pairs of indices, four bytes each; points are three float32.
             self.bytes, self.size = 12 * drawn.n_points + 8 * drawn.n_segments, 1.0
         else:
-            self.size = max(1.0, round(look_of(drawn).line_width * scale_of(camera)))
+            self.size = max(1.0, round(look.line_width * scale_of(camera)))
             self.plotter.add_mesh(polydata(drawn), style="points", point_size=self.size, **common)
             self.bytes = (12 + 4) * drawn.n_points
         self.show()
@@ -248,13 +249,18 @@ class _VTK(_Window):
 class _Plotter(_Window):
     """Halos by this program in a PyVista scene."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, options: Any, __: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, __: Camera) -> None:
         super().__init__(row, options)
-        add = getattr(self.plotter, "add_halo_lines" if isinstance(drawn, HaloLines) else "add_halo_points", None)
-        if add is None:
+        lines = isinstance(drawn, HaloLines)
+        name, widths = ("add_halo_lines", ("line_width", "strip_width")) if lines else (
+            "add_halo_points", ("point_size", "halo_size"))  # fmt: skip
+        if not hasattr(self.plotter, name):
             self.plotter.close()
-            raise UnmeasuredError("there is no plotter.add_halo_lines here")
-        self.actor = add(polydata(drawn))
+            raise UnmeasuredError(f"there is no plotter.{name} here")
+        # Its own defaults, measured already.
+        given = dict(zip(widths, (look.line_width, look.strip_width), strict=True))
+        given |= {"max_displacement": look.max_displacement, "width_cue": look.width_cue}
+        self.actor = getattr(self.plotter, name)(drawn, **given)
         self.show()
 
     def facts(self) -> dict[str, Any]:
@@ -264,13 +270,13 @@ class _Plotter(_Window):
 class _Engine:
     """Halos by this program without VTK."""
 
-    def __init__(self, way: str, row: Row, drawn: Any, _: Any, __: Camera) -> None:
+    def __init__(self, way: str, row: Row, drawn: Any, look: Look, _: Any, __: Camera) -> None:
         from pvfiblets.engine.halos import HaloRenderer, HaloStyle
 
         if row.anaglyph:
             raise UnmeasuredError("stereo is VTK's")
         self.ctx = context()
-        self.style = HaloStyle(look=look_of(drawn))
+        self.style = HaloStyle(look=look)
         self.renderer = HaloRenderer(self.ctx, drawn, culling=None if way == "engine-unculled" else "two-phase")
 
     def draw(self, camera: Camera) -> None:

@@ -84,7 +84,7 @@ def child(way: str, name: str, options: Any) -> dict[str, Any]:
         "max_displacement": look.max_displacement,
     }
     try:
-        measured = run(way, row, drawn, options)
+        measured = run(way, row, drawn, look, options)
     except UnmeasuredError as error:
         return {"about": about, "unmeasured": str(error)}
     return {"about": about, **measured, "bytes_per_vertex": measured["gpu_bytes"] / drawn.n_points}

@@ -72,6 +72,8 @@ FEATURES: dict[str, str] = {
     "HALO_LISTED": "halos that are not hidden",
     "HALO_TAPER": "lines with halos whose ends narrow",
     "HALO_CUE": "lines with halos that are narrower far away",
+    "HALO_CUT": "lines with halos that planes or the edges of the picture cut",
+    "HALO_BENT": "halos that do not fall back evenly",
     "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -61,7 +62,7 @@ class HaloLines:
         """Points of all lines."""
         return len(self.points)
 
-    @property
+    @cached_property
     def n_segments(self) -> int:
         """Segments between neighbouring points of a line, those without length included."""
         return int(np.maximum(np.diff(self.offsets) - 1, 0).sum())
@@ -71,7 +72,7 @@ class HaloLines:
         """Nothing lies outside the bounds."""
         return 0.0
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[float, ...]:
         """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
         return _bounds(self.points)
@@ -116,7 +117,7 @@ class HaloPoints:
         """Nothing lies outside the bounds."""
         return 0.0
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[float, ...]:
         """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
         return _bounds(self.points)

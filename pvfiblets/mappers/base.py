@@ -234,6 +234,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
                 f"{self._NAME} of the same data, with an actor of its own"
             )
         viewport = gl_viewport(context.window)
+        if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
+            program.SetUniform2i("fibletSize", (0, 0))
+            return
         frame = frame_of(renderer, actor, viewport)
         planes = frame.planes_in_data(world_planes(self))
         view = View(viewport[2:], frame.model_view_projection, planes, frame.region_in_data(self._region))

@@ -14,6 +14,7 @@ import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.gbuffer import EMPTY
+from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.base import EngineMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import Options
@@ -22,11 +23,10 @@ from pvfiblets.mappers.picking import shown_by
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.shading import background
 from pvfiblets.mappers.tubes import thickened
-from pvfiblets.mappers.windows import gl_viewport
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
-    from pvfiblets.halos import HaloLines, HaloPoints, Look
+    from pvfiblets.halos import HaloPoints, Look
 
     Drawn = HaloLines | HaloPoints
 
@@ -272,13 +272,13 @@ class HaloMapper(EngineMapper):
             return None
         best = np.lexsort((depth[rows, columns], distance))[0]
         at = rows[best], columns[best]
-        if hasattr(self._drawn, "n_segments"):
+        if isinstance(self._drawn, HaloLines):
             return int(ids[(*at, 0)]), float(position[(*at, 0)])
         return int(owner[at])
 
     @property
     def _empty(self) -> bool:
-        return not getattr(self._drawn, "n_segments", self._drawn.n_points)
+        return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
 
     @property
     def _width(self) -> float:
@@ -289,14 +289,6 @@ class HaloMapper(EngineMapper):
         super()._set_proxy()
         if not self._empty:
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
-
-    def _draw(self, program: Any) -> None:
-        """Draw nothing where an enlarged picture, which is drawn tile by tile, has no part of a renderer in a tile."""
-        actor = self.actor
-        if actor is not None and min(gl_viewport(self._active.find(actor).GetRenderWindow())[2:]) < 1:
-            program.SetUniform2i("fibletSize", (0, 0))
-            return
-        super()._draw(program)
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style in pixels of the framebuffer, of which tiles and supersampling have more than the window."""

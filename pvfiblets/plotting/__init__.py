@@ -1,17 +1,35 @@
 """PyVista's side: what a user of :class:`pyvista.Plotter` sees.
 
 ``plotter.add_fiblets(...)``, ``plotter.fiblets``, ``plotter.add_spline_tubes(...)``,
-``plotter.spline_tubes`` and ``polydata.fiblets`` need no import: PyVista finds them by entry points
-(see ``pyproject.toml``), which name the modules ``component``, ``spline_component`` and ``accessor``
-here. ``files`` serves ``pyvista.read`` and ``save``. The actor's colours are found in
-``scalars`` and made into a look-up table in ``colours``; the drawing is the mapper's.
+``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
+``plotter.add_halo_points(...)``, ``plotter.halo_points`` and ``polydata.fiblets`` need no import:
+PyVista finds them by entry points (see ``pyproject.toml``), which name the modules ``component``,
+``spline_component``, ``halo_component``, ``halo_point_component`` and ``accessor`` here. ``files``
+serves ``pyvista.read`` and ``save``. The actor's colours are found in ``scalars`` and made into a
+look-up table in ``colours``; the drawing is the mapper's.
 """
 
 from __future__ import annotations
 
 from pvfiblets.plotting.actor import FibletActor
 from pvfiblets.plotting.component import AddFiblets, FibletsComponent
+from pvfiblets.plotting.halo_component import AddHaloLines, HaloLinesComponent
+from pvfiblets.plotting.halo_kinds import HaloLineActor, HaloPointActor
+from pvfiblets.plotting.halo_point_component import AddHaloPoints, HaloPointsComponent
 from pvfiblets.plotting.spline_actor import SplineTubeActor
 from pvfiblets.plotting.spline_component import AddSplineTubes, SplineTubesComponent
 
-__all__ = ["AddFiblets", "AddSplineTubes", "FibletActor", "FibletsComponent", "SplineTubeActor", "SplineTubesComponent"]
+__all__ = [
+    "AddFiblets",
+    "AddHaloLines",
+    "AddHaloPoints",
+    "AddSplineTubes",
+    "FibletActor",
+    "FibletsComponent",
+    "HaloLineActor",
+    "HaloLinesComponent",
+    "HaloPointActor",
+    "HaloPointsComponent",
+    "SplineTubeActor",
+    "SplineTubesComponent",
+]

@@ -38,20 +38,22 @@ class Spacing:
     def __init__(self, drawn: HaloLines | HaloPoints) -> None:
         self._drawn = drawn
         self._width: float | None = None
+        self._widths: dict[tuple[float | None, ...], tuple[float, float, float]] = {}
         self._step: float | None = None
 
     def widths(
         self, line_width: float | None, strip_width: float | None, max_displacement: float | None
     ) -> tuple[float, float, float]:
         """Return widths of lines and strips and the greatest displacement, mm: what is given, and what suits it."""
-        if line_width is None:
-            if self._width is None:
-                self._width = default_widths(self._drawn)[0]
-            line_width = self._width
-            if strip_width is not None and strip_width < 2.0 * line_width:
-                # A strip has room for halos, however narrow it was wanted.
-                line_width = strip_width / 2.0
-        return default_widths(self._drawn, line_width, strip_width, max_displacement)
+        given = line_width, strip_width, max_displacement
+        if given not in self._widths:
+            if line_width is None:
+                if self._width is None:
+                    self._width = default_widths(self._drawn)[0]
+                # A strip has room for halos, however narrow it is wanted.
+                line_width = self._width if strip_width is None else min(self._width, 0.5 * strip_width)
+            self._widths = {given: default_widths(self._drawn, line_width, strip_width, max_displacement)}
+        return self._widths[given]
 
     @property
     def step(self) -> float:

@@ -26,12 +26,15 @@
 layout(location = 0) out uvec2 shown;
 
 float displacement(float x) {
-    if (halo_counts.y == 0) return x;
+#if FEATURE_HALO_BENT
     if (halo_counts.y == 1) return x * x;
     if (halo_counts.y == 2) return sqrt(x);
     float at = x * float(halo_counts.z - 1);
     int before = min(int(at), halo_counts.z - 2), after = before + 1;
     return mix(halo_table[before >> 2][before & 3], halo_table[after >> 2][after & 3], at - float(before));
+#else
+    return x;
+#endif
 }
 
 float mask(float x) {
@@ -40,13 +43,16 @@ float mask(float x) {
 }
 
 void main() {
+    uint beyond = 0u;       // which end of the segment the pixel is beyond
     vec2 from_start = gl_FragCoord.xy - halo_mask.yz - handed_ends.xy;
     float over_w = handed_depths.x, far = handed_depths.z, t = 0.0;
 #if !FEATURE_HALO_POINTS
     vec2 axis = handed_ends.zw - handed_ends.xy;
-    float s = clamp(dot(from_start, axis) / max(dot(axis, axis), 1e-30), 0.0, 1.0);
+    float place = dot(from_start, axis) / max(dot(axis, axis), 1e-30), s = clamp(place, 0.0, 1.0);
+    beyond = place < 0.0 ? FREE_START : place > 1.0 ? FREE_END : 0u;
+    if ((handed_item & beyond) != 0u) discard;      // corners may be there where bends are sharp for their width
     from_start -= s * axis;
-    over_w += s * (handed_depths.y - over_w);
+    over_w = (1.0 - s) * over_w + s * handed_depths.y;
     far += s * (handed_depths.w - far);
     t = s * handed_depths.y / over_w;
 #endif
@@ -61,20 +67,25 @@ void main() {
     m = mask(5.0 * min(u, 1.0 - u));
 #endif
 #if FEATURE_HALO_FILTER
-    vec2 number = handed_filter.xz + t * (handed_filter.yw - handed_filter.xz);
+    vec2 change = handed_filter.yw - handed_filter.xz;      // of number.x, and of how much that changes per mm
+    vec2 number = t < 0.5 ? handed_filter.xz + t * change : handed_filter.yw - (1.0 - t) * change;      // exact at both ends
     float inside = min(number.x - halo_filter.x, halo_filter.y - number.x);
     if (!(number.x >= halo_filter.x && number.x <= halo_filter.y)) discard;       // NaN as well
-    if (halo_filter.z > 0.0) m = min(m, mask(inside / max(number.y * halo_filter.z, 1e-30)));
+    float fall = number.y * halo_filter.z;
+    if (fall > 0.0) m = min(m, mask(inside / fall));
 #endif
     if (!(r <= m)) discard;
     float edge = share * m;
     bool line = r <= edge;
     float d = line ? 0.0 : halo_depth.x * displacement(r);
     float back = d * (halo_depth.y + halo_depth.z / (w * (w + halo_depth.w * d)));
-    gl_FragDepth = max(far - back, 1e-9);       // a halo beyond the far plane is there
+    // A halo beyond the far plane is there. Of what is equally deep lines lie before halos, and segments before the ends of
+    // others that go on round; by the least steps of a float32, so that it does not matter which is drawn first.
+    uint steps = (beyond >> 29u) + (line ? 0u : 8u);
+    gl_FragDepth = uintBitsToFloat(floatBitsToUint(max(far - back, 1e-9)) - steps);
     float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
-#if !FEATURE_HALO_POINTS
+#if FEATURE_HALO_CUT
     t = handed_part.x + t * (handed_part.y - handed_part.x);
 #endif
-    shown = uvec2(handed_item, uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));
+    shown = uvec2(handed_item & ~(FREE_START | FREE_END), uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));
 }

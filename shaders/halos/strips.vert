@@ -6,16 +6,20 @@
 //                (X_D W - X W_D, Y_D W - Y W_D), which is the same all along a segment, behind the eye as well
 //   along        unit vector along a segment in the window
 //
-//            0 ------- 1       a corner's bits: 1 for the segment's end, 2 for its right side
+//            2 ------- 3       a corner's bits: 1 for the segment's end, 2 for its left side
 //        a  -----------> b
-//            2 ------- 3
+//            0 ------- 1
 //
 // Algorithm
 // The paper widens a vertex along the mean direction of its two segments, so that strips become thinner in bends. Here a strip
-// is all that is within half its width of the line in the window. Corners of neighbours meet where their edges do; where a line
-// turns by more than 60 degrees in the window, or runs at the viewer, both are lengthened by half a width instead. Lines end
-// square. What lies before the near plane, beyond the far one, far beside the picture or beyond planes of the caller's is cut
-// off the segment first: all that is handed on is finite, and exact to a fraction of a pixel.
+// is all that is within half its width of the line in the window, and four corners bound it. Those of neighbours meet where
+// their edges do, on the bend's bisector; where a line turns by more than 60 degrees in the window, or runs at the viewer, both
+// are lengthened by half a width instead. Lines end square. What lies before the near plane, beyond the far one, far beside the
+// picture or beyond planes of the caller's is cut off the segment first: all that is handed on is finite, and exact to a
+// fraction of a pixel. Where nothing of the data can lie there, there is no code for it (HALO_CUT).
+//
+// Both segments at a bend find its corners by the same sums of the same numbers, so that there are no holes between. Where a
+// bend is so sharp for the width that its strip's corners cross, one of the two triangles is turned over, and not drawn.
 
 #version 430
 
@@ -43,19 +47,24 @@ vec2 filter_at(int vertex, vec3 here, float other, vec3 there, int next) {
 }
 #endif
 
-const float BESIDE = 3.0;      // half pictures from the middle, beyond which an axis is cut off
+#if FEATURE_HALO_CUT
+const float BESIDE = {{ beside }};      // half pictures from the middle, beyond which an axis is cut off
+#endif
+const float SHARPEST = 0.5;    // cosine of the sharpest bend whose corners meet on the bisector
+const float STEEPEST = 0.5;    // pixels by which half a strip widens per pixel along it, up to which they do
 
-vec2 unit(vec2 v) {
-    float size = max(abs(v.x), abs(v.y));
-    return size > 0.0 ? normalize(v / size) : vec2(0.0);
-}
-
-// Along the window by the way from a place whose window is p: the direction, times W W times the length on the screen.
-vec2 turn(vec4 p, vec3 way) {
+// A way in the window from a place whose window is p. xy: its direction; z: pixels by which half a strip widens per pixel.
+vec3 course(vec4 p, vec3 way) {
     vec4 d = vec4(way, 0.0) * halo_rows;
-    return d.xy * p.w - p.xy * d.w;
+    vec2 v = d.xy * p.w - p.xy * d.w;          // W W times the way on the screen
+    float size = max(abs(v.x), abs(v.y));
+    if (!(size > 0.0)) return vec3(0.0);
+    v /= size;
+    float straight = inversesqrt(dot(v, v));
+    return vec3(v * straight, -(halo_widths.x + halo_widths.y) * d.w / size * straight);
 }
 
+#if FEATURE_HALO_CUT
 // Narrows part to where a height that is a at 0 and b at 1 is not negative.
 void narrow(float a, float b, inout vec2 part) {
     float t = a / (a - b);
@@ -63,14 +72,20 @@ void narrow(float a, float b, inout vec2 part) {
     else if (b < 0.0) part.y = min(part.y, t);
 }
 
-float between(float a, float b, float t) { return a + t * (b - a); }      // exact where both are the same
+// What a number that is a at the start and b at the end is at either end of a part of the segment: exact where that is whole.
+vec2 cut(float a, float b, vec2 part) { return vec2(a + part.x * (b - a), b - (1.0 - part.y) * (b - a)); }
+#else
+vec2 cut(float a, float b, vec2 part) { return vec2(a, b); }
+#endif
 
 void main() {
     int segment = item_of_vertex();
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     handed_item = 0u;
     handed_ends = handed_depths = vec4(0.0);
+#if FEATURE_HALO_CUT
     handed_part = vec2(0.0);
+#endif
 #if FEATURE_HALO_TAPER
     handed_mask = vec2(0.0);
 #endif
@@ -81,10 +96,13 @@ void main() {
     handed_filter = vec4(0.0);
 #endif
     if (segment >= halo_counts.x || is_last(segment)) return;
-    vec3 start = local_place(segment), way = local_place(segment + 1) - start;
-    vec4 a = window_of(start), b = window_of(start + way);
-    vec2 cue = vec2(cue_at(start), cue_at(start + way));
-    vec2 part = vec2(0.0, 1.0), margin = BESIDE * halo_mask.yz;
+    vec3 start = local_place(segment), stop = local_place(segment + 1), way = stop - start;
+    vec4 a = window_of(start), b = window_of(stop);
+    vec2 cue = vec2(cue_at(start), cue_at(stop));
+    vec2 part = vec2(0.0, 1.0);
+    vec4 first = a, last = b;
+#if FEATURE_HALO_CUT
+    vec2 margin = BESIDE * halo_mask.yz;
     float reach = 2.0 * max(reaches(cue.x, a.w).y, reaches(cue.y, b.w).y);
     narrow(a.w - a.z, b.w - b.z, part);
     narrow(a.z, b.z, part);
@@ -94,48 +112,59 @@ void main() {
     narrow(margin.y * a.w + reach - a.y, margin.y * b.w + reach - b.y, part);
 #if FEATURE_CLIP_PLANES
     for (int plane = 0; plane < clip_count(); ++plane) {
-        narrow(clip_height_of(plane, start), clip_height_of(plane, start + way), part);
+        narrow(clip_height_of(plane, start), clip_height_of(plane, stop), part);
     }
 #endif
-    vec2 own = turn(a, way), along = unit(own);
-    if (part.x > part.y || along == vec2(0.0)) return;      // segments without length are drawn by their neighbours' ends
-    vec4 first = a + part.x * (b - a), last = a + part.y * (b - a);
+    if (part.x > part.y) return;
+    first += part.x * (b - a);
+    last -= (1.0 - part.y) * (b - a);
+#endif
     if (min(first.w, last.w) <= 0.0) return;
     vec4 ends = vec4(first.xy / first.w, last.xy / last.w);
 
-    int end = gl_VertexID & 1, vertex = segment + end;
+    int end = gl_VertexID & 1;
     float side = (gl_VertexID & 2) == 0 ? 1.0 : -1.0, forward = end == 0 ? 1.0 : -1.0;
     bool before = segment > 0 && !is_last(segment - 1), after = !is_last(segment + 1);      // segments that go on
-    bool joined = end == 0 ? before && part.x == 0.0 : after && part.y == 1.0;
-    vec2 corner = vec2(-along.y, along.x);
-    float past = 0.0;
-    if (joined) {
-        vec3 here = end == 0 ? start : start + way;
-        vec2 along_next = unit(turn(end == 0 ? a : b, forward * (here - local_place(segment + 3 * end - 1))));
-        float straight = dot(along, along_next);
-        if (straight >= 0.5) corner = (corner + vec2(-along_next.y, along_next.x)) / (1.0 + straight);
-        else past = 1.0;
+    bvec2 free = bvec2(!before || part.x > 0.0, !after || part.y < 1.0);
+    vec2 cut_cue = cut(cue.x, cue.y, part);
+    vec2 widths = vec2(reaches(cut_cue.x, first.w).y / first.w, reaches(cut_cue.y, last.w).y / last.w);
+    float width = end == 0 ? widths.x : widths.y, past = 0.0;
+    vec4 here = end == 0 ? a : b;
+    vec3 own = course(here, way);       // 0, and so no area, without length: neighbours' ends draw such a segment
+    vec2 corner = vec2(own.y, -own.x);
+    if (end == 0 ? !free.x : !free.y) {
+        vec3 beside = local_place(segment + 3 * end - 1), next = course(here, forward * ((end == 0 ? start : stop) - beside));
+        float straight = dot(own.xy, next.xy), steep = max(abs(own.z), abs(next.z));
+        if (straight >= SHARPEST && steep <= STEEPEST) {
+            // Where strips widen, their edges meet the bisector farther out.
+            width /= 1.0 + straight - steep * sqrt(max(1.0 - straight * straight, 0.0));
+            corner += vec2(next.y, -next.x);
+        } else {
+            past = width;
+            width *= 1.0 + max(-forward * own.z, 0.0);
+        }
     }
-    float t = end == 0 ? part.x : part.y, w = end == 0 ? first.w : last.w;
-    float width = reaches(between(cue.x, cue.y, t), w).y / w;
-    vec2 pixel = (end == 0 ? ends.xy : ends.zw) + width * (side * corner - past * forward * along);
+    if (abs(own.z) > STEEPEST) width = max(widths.x, widths.y);
+    vec2 pixel = (end == 0 ? ends.xy : ends.zw) + width * side * corner - past * forward * own.xy;
     gl_Position = vec4(pixel / halo_mask.yz, 0.0, 1.0);
 
-    handed_item = uint(segment);
+    handed_item = uint(segment) | (free.x ? FREE_START : 0u) | (free.y ? FREE_END : 0u);
     handed_ends = ends;
     handed_depths = vec4(1.0 / first.w, 1.0 / last.w, first.z / first.w, last.z / last.w);
+#if FEATURE_HALO_CUT
     handed_part = part;
+#endif
 #if FEATURE_HALO_CUE
-    handed_cue = cue.x + part * (cue.y - cue.x);
+    handed_cue = cut_cue;
 #endif
 #if FEATURE_HALO_TAPER
     vec2 u = vec2(float(texelFetch(mask_texels, segment).x), float(texelFetch(mask_texels, segment + 1).x)) / float(LAST);
-    handed_mask = u.x + part * (u.y - u.x);
+    handed_mask = cut(u.x, u.y, part);
 #endif
 #if FEATURE_HALO_FILTER
     float number = texelFetch(filter_texels, segment).x, number_after = texelFetch(filter_texels, segment + 1).x;
-    vec2 f0 = filter_at(segment, start, number_after, start + way, before ? segment - 1 : segment);
-    vec2 f1 = filter_at(segment + 1, start + way, number, start, after ? segment + 2 : segment + 1);
-    handed_filter = vec4(f0.x + part * (f1.x - f0.x), f0.y + part * (f1.y - f0.y));
+    vec2 f0 = filter_at(segment, start, number_after, stop, before ? segment - 1 : segment);
+    vec2 f1 = filter_at(segment + 1, stop, number, start, after ? segment + 2 : segment + 1);
+    handed_filter = vec4(cut(f0.x, f1.x, part), cut(f0.y, f1.y, part));
 #endif
 }

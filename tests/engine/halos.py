@@ -73,6 +73,13 @@ def values_at_random(n, rng):
     return {"number": rng.uniform(0, 1, n), "colour": rng.uniform(0.1, 0.9, (n, 4)).astype(np.float32)}
 
 
+def with_numbers(drawn, numbers):
+    """The same with other numbers, named n."""
+    if isinstance(drawn, HaloPoints):
+        return HaloPoints(drawn.points, {"n": numbers})
+    return HaloLines(drawn.points, drawn.offsets, {"n": numbers})
+
+
 def moved(drawn, scale=1.0, shift=0.0):
     """The same elsewhere."""
     if isinstance(drawn, HaloPoints):
@@ -152,16 +159,19 @@ def assert_shows(found, drawn, view, look, *, near=0.03, depth=1e-6, least=0.6, 
 
     `near` is in pixels and `depth` in window depth: within these of an edge, and of each other, rounding decides. At
     least a share of `least` of what shows must be surer than that, and of that as many pixels as `wrong` may be.
+    Without exception, what is farther within a strip than `near` is not empty.
     """
     wanted = picture(drawn, look, view.model_view_projection, view.size, clip_planes=view.clip_planes)
-    sure = (wanted.margin > near) & (wanted.gap > depth)
+    assert found.shown[wanted.cover > near].all(), f"holes at {np.argwhere(~found.shown & (wanted.cover > near))[:5]}"
+    sure = (wanted.margin > near) & (wanted.other > depth)
     shown = (wanted.kind != NOTHING) | found.shown
     assert (sure & shown).sum() >= least * shown.sum()
     different = sure & (found.kind != wanted.kind)
     assert different.sum() <= wrong, f"{different.sum()} of {(sure & shown).sum()}, as {np.argwhere(different)[:5]}"
     both = sure & ~different & shown
-    assert (np.abs(found.depth - wanted.depth) - wanted.slack > depth)[both].sum() <= wrong
-    assert (found.owner != wanted.owner)[both & (wanted.kind == LINE)].sum() <= wrong
+    assert (np.abs(found.depth - wanted.depth) > depth)[both].sum() <= wrong
+    one = both & (wanted.kind == LINE) & (wanted.gap > depth)
+    assert (found.owner != wanted.owner)[one].sum() <= wrong
     return wanted, both
 
 

@@ -14,6 +14,7 @@ from .halos import (
     EYES,
     PLAIN,
     SIZE,
+    assert_same,
     assert_shows,
     draw_halos,
     equation_4,
@@ -21,7 +22,7 @@ from .halos import (
     of_lines,
     scattered,
     wandering,
-    zigzag,
+    with_numbers,
 )
 
 
@@ -74,25 +75,17 @@ LOOKS = {
 def test_every_look(shows, view, kind, name):
     drawn = wandering() if kind == "lines" else scattered()
     some = look(**({"line_width": 1.2} | LOOKS[name]))
-    _, wanted, _ = shows(drawn, view, some, depth=1e-5)
-    assert (wanted.kind == LINE).sum() > 120
+    _, wanted, _ = shows(drawn, view, some)
+    assert (wanted.kind == LINE).sum() > 50
     assert (wanted.kind == HALO).sum() > (100 if name != "all line" else -1)
-
-
-@pytest.mark.parametrize("name", ["plain", "the paper's", "wide", "cue", "taper 3"])
-@pytest.mark.parametrize("seed", range(3))
-def test_lines_with_sharp_bends(shows, view, seed, name):
-    _, wanted, both = shows(zigzag(seed=seed), view, look(**LOOKS[name]), depth=1e-5, least=0.4, wrong=4)
-    assert both.sum() > 400
 
 
 @pytest.mark.parametrize("cue", [0.0, 0.7])
 def test_thin_lines_are_widened_to_their_least_width(shows, view, cue):
-    """Of a strip that grows with distance not all is linear along it: its depth is what a tenth of a pixel makes."""
     some = look(line_width=0.2, min_width=3.0, width_cue=cue)
-    found, wanted, _ = shows(wandering(), view, some, depth=2e-4, near=0.1, least=0.5)
+    found, wanted, _ = shows(wandering(), view, some)
     assert found.ink.sum() == pytest.approx(wanted.ink.sum(), rel=0.01)
-    thin, _, _ = shows(wandering(), view, look(line_width=0.2, min_width=0.0), depth=2e-4)
+    thin, _, _ = shows(wandering(), view, look(line_width=0.2, min_width=0.0))
     assert (found.kind == LINE).sum() > 3 * (thin.kind == LINE).sum()
     shows(scattered(), view, some)
 
@@ -105,7 +98,7 @@ def test_long_segments_that_recede(gl, camera, min_width):
     some = look(line_width=0.05, strip_width=0.6, max_displacement=1.0, n_tapered=0, min_width=min_width)
     for end in ([10, 5, -100], [40, 20, -100], [-30, 25, 0]):
         drawn = of_lines([[-1, -1, 5], end])
-        assert_shows(draw_halos(gl, drawn, view, some), drawn, view, some, near=0.05, depth=1e-5, least=0.8, wrong=3)
+        assert_shows(draw_halos(gl, drawn, view, some), drawn, view, some)
 
 
 def test_smooth_edges(shows, view):
@@ -138,32 +131,22 @@ def test_ends_of_lines_with_few_vertices(shows, above, count, n, t):
 def test_filters(shows, view, low, high, taper):
     some = look(filter_by="number", low=low, high=high, filter_taper=taper)
     for drawn in (wandering(seed=2), scattered()):
-        # Numbers that change fast end a line within less of a pixel than its mask's width.
-        _, wanted, _ = shows(drawn, view, some, near=0.05, least=0.5, depth=1e-5)
+        _, wanted, _ = shows(drawn, view, some)
         assert (wanted.kind != NOTHING).any() == (low < 1)
 
 
-def test_a_filter_at_sharp_bends(shows, view):
-    some = look(filter_by="number", low=0.4, filter_taper=1.0)
-    shows(zigzag(), view, some, near=0.05, least=0.3, depth=1e-5, wrong=4)
-
-
 def test_what_has_no_number_is_not_there(shows, view):
-    lines, points = wandering(), scattered()
-    for drawn in (lines, points):
+    for drawn in (wandering(), scattered()):
         numbers = drawn.values["number"].copy()
         numbers[::5] = np.nan
-        values = {"n": numbers}
-        drawn = HaloPoints(points.points, values) if drawn is points else HaloLines(lines.points, lines.offsets, values)
-        found, _, _ = shows(drawn, view, look(filter_by="n"), depth=1e-5)
+        drawn = with_numbers(drawn, numbers)
+        found, _, _ = shows(drawn, view, look(filter_by="n"))
         owners = np.unique(found.owner[found.kind == LINE])
         assert len(owners) > 10
         assert not np.isnan(numbers[owners]).any()
-        if drawn is not points and isinstance(drawn, HaloLines):
+        if isinstance(drawn, HaloLines):
             assert not np.isnan(numbers[owners + 1]).any()
-        taper, _, _ = shows(
-            drawn, view, look(filter_by="n", low=0.2, filter_taper=2.0), near=0.05, least=0.5, depth=1e-5
-        )
+        taper, _, _ = shows(drawn, view, look(filter_by="n", low=0.2, filter_taper=2.0))
         assert taper.shown.sum() < found.shown.sum()
 
 
@@ -175,20 +158,42 @@ def test_thresholds_that_are_numbers_of_the_data_pass(shows, above):
     assert set(np.unique(found.owner)) == {-1, 3, 4, 5, 6, 7}
 
 
+@pytest.mark.parametrize("taper", [0.0, 2.0])
 @pytest.mark.parametrize("label", [0.3, 7.0, 1 / 3, 123456.0])
 @pytest.mark.parametrize("kind", ["lines", "points"])
-def test_labels_can_be_filtered_by(gl, view, kind, label):
-    """What has exactly the number of both thresholds everywhere is there without a hole."""
+def test_labels_can_be_filtered_by(gl, view, kind, label, taper):
+    """What has exactly the number of both thresholds everywhere is there without a hole, and ends nowhere."""
     drawn = wandering() if kind == "lines" else scattered()
-    alike = np.full(drawn.n_points, label)
-    drawn = (
-        HaloLines(drawn.points, drawn.offsets, {"n": alike})
-        if kind == "lines"
-        else HaloPoints(drawn.points, {"n": alike})
-    )
+    drawn = with_numbers(drawn, np.full(drawn.n_points, label))
     all_of_it = draw_halos(gl, drawn, view, look())
-    found = draw_halos(gl, drawn, view, look(filter_by="n", low=label, high=label))
-    assert (found.kind == all_of_it.kind).all()
+    assert_same(all_of_it, draw_halos(gl, drawn, view, look(filter_by="n", low=label, high=label, filter_taper=taper)))
+
+
+@pytest.mark.parametrize("label", [1, 2, 3])
+def test_labels_of_parts_of_lines(shows, view, label):
+    """Between one label and the next nothing has either."""
+    drawn = wandering(m=12, step=2.5)
+    numbers = np.tile(np.repeat([1, 2, 3], 4), drawn.n_lines)
+    found, _, _ = shows(with_numbers(drawn, numbers), view, look(filter_by="n", low=label, high=label, **PLAIN))
+    owners = np.unique(found.owner[found.kind == LINE])
+    assert len(owners) > 10
+    assert (numbers[owners] == label).all()
+    assert (numbers[owners + 1] == label).all()
+
+
+def test_infinite_numbers_are_beyond_all_thresholds_but_infinity(gl, shows, above):
+    places = np.stack([np.linspace(-12, 12, 7), np.zeros(7), np.zeros(7)], axis=1)
+    drawn = of_lines(places, n=[np.inf, np.inf, 1.0, 1.0, -np.inf, -np.inf, -np.inf])
+    whole, _, _ = shows(drawn, above, look(filter_by="n", **PLAIN))
+    assert_same(whole, draw_halos(gl, drawn, above, look(**PLAIN)))
+    for low, high, owners in (
+        (1.0, np.inf, {0, 1, 2}),
+        (-np.inf, 1.0, {2, 3, 4, 5}),
+        (0.0, 1.0, {2}),
+        (2.0, 1e38, {1}),
+    ):
+        found, _, _ = shows(drawn, above, look(filter_by="n", low=low, high=high, **PLAIN))
+        assert set(np.unique(found.owner[found.kind == LINE])) == owners
 
 
 # -------------------------------------------------------------------------------------------------------------- cuts
@@ -205,29 +210,8 @@ PLANES = {
 def test_planes(shows, view, name):
     view = View(SIZE, view.model_view_projection, PLANES[name])
     for drawn in (wandering(seed=3), scattered()):
-        found, _, _ = shows(drawn, view, look(), depth=1e-5, least=0.5)
+        found, _, _ = shows(drawn, view, look())
         assert found.shown.any() == (name != "all")
-
-
-def test_planes_at_sharp_bends(shows, view):
-    view = View(SIZE, view.model_view_projection, PLANES["one"])
-    shows(zigzag(), view, look(**PLAIN), least=0.4, depth=1e-5, wrong=4)
-
-
-CORNER = of_lines([[-9, -4, 0], [0, -4, 0], [0, 8, 3]], n=[0.0, 1.0, 2.0])
-"""A bend of 90 degrees."""
-
-
-@pytest.mark.parametrize(
-    ("more", "planes"),
-    [({}, []), ({}, [[1, 0, 0, 5.0]]), ({}, [[-1, 0, 0, -2.0]]), ({}, [[0, -1, 0, 1.0]]),
-     ({"filter_by": "n", "low": 0.4}, []), ({"filter_by": "n", "high": 1.3, "filter_taper": 2.0}, []),
-     ({"n_tapered": 1}, []), ({"width_cue": 0.9}, [])],
-)  # fmt: skip
-def test_a_strip_that_ends_round_keeps_what_is_along_it(shows, above, more, planes):
-    """The half disc at a sharp bend is beyond the segment: all that varies along it ends at the vertex."""
-    view = View(SIZE, above.model_view_projection, planes)
-    shows(CORNER, view, look(**({"line_width": 2.0, "strip_width": 7.0} | PLAIN | more)), depth=1e-5)
 
 
 # -------------------------------------------------------------------------------------------- what pixels stand for
@@ -277,9 +261,7 @@ def test_places_go_on_from_segment_to_segment(shows, view):
     found, wanted, both = shows(drawn, view, look(line_width=1.0, **PLAIN), values="number")
     line = both & (wanted.kind == LINE)
     place = found.place[line] + drawn.offsets[found.line[line]]
-    # Where sides of a strip are of unequal length, which place is beside a pixel is open by some of that.
-    assert np.quantile(np.abs(place - wanted.owner[line] - wanted.t[line]), 0.9) < 0.02
-    assert np.abs(place - wanted.owner[line] - wanted.t[line]).max() < 0.1
+    assert np.abs(place - wanted.owner[line] - wanted.t[line]).max() < 5e-5
     assert np.abs(found.value[line] - np.interp(place, np.arange(drawn.n_points), drawn.values["number"])).max() < 1e-4
 
 

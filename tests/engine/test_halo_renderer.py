@@ -190,6 +190,20 @@ def test_what_stands_before_all_is_found_at_once(gl, camera):
     whole.release()
 
 
+@pytest.mark.usefixtures("few_are_many")
+def test_what_is_flat_is_not_culled(gl, camera):
+    """Equal depths show in the order of the data, which lists of what shows do not keep."""
+    crowd = wandering(60, 12, seed=3, step=3.0)
+    flat = HaloLines(crowd.points * [1.0, 1.0, 0.0], crowd.offsets, crowd.values)
+    view = View(SIZE, camera(SIZE, eye=(0, 0, 60), up=(0, 1, 0), height=30.0))
+    renderer, whole = HaloRenderer(gl, flat), HaloRenderer(gl, flat, culling=None)
+    for some in (STYLE, styled(line_width=2.0), STYLE):
+        assert_same(read_halos(renderer.render(view, some)), read_halos(whole.render(view, some)))
+    assert renderer.explain()["culling"] is None
+    for made in (renderer, whole):
+        made.release()
+
+
 def test_few_are_not_culled(gl, drawn, view):
     renderer = HaloRenderer(gl, drawn)
     renderer.render(view, STYLE)
@@ -252,14 +266,33 @@ def test_explain(renderer, drawn, view):
     assert said["points_total"] == drawn.n_points
     assert said["lines_total"] == (drawn.n_lines if lines else 0)
     assert 2 * (drawn.n_segments if lines else drawn.n_points) <= said["primitives"] <= 2 * drawn.n_points
-    assert said["features"] == ([] if lines else ["HALO_POINTS"])
-    # Planes and filters cost nothing where there are none, or where they touch nothing.
-    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]), STYLE)
-    assert renderer.explain()["features"] == said["features"]
-    renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0.0]]), styled("number", filter_by="number"))
-    assert set(renderer.explain()["features"]) - set(said["features"]) == {"CLIP_PLANES", "HALO_FILTER", "HALO_VALUES"}
+    assert said["features"] == (["HALO_TAPER"] if lines else ["HALO_POINTS"])
     assert renderer.share == 1.0
     assert not renderer.needs_outside(view, STYLE)
+
+
+@pytest.mark.parametrize(
+    ("more", "features"),
+    [({}, set()), ({"n_tapered": 2}, {"HALO_TAPER"}), ({"width_cue": 0.1}, {"HALO_CUE"}),
+     ({"filter_by": "number"}, {"HALO_FILTER"}), ({"filter_by": "number", "filter_taper": 2.0}, {"HALO_FILTER"}),
+     ({"low": 0.2, "high": 0.4, "filter_taper": 2.0}, set()), ({"displacement": "square"}, {"HALO_BENT"}),
+     ({"n_tapered": 9, "width_cue": 1.0, "filter_by": "number"}, {"HALO_TAPER", "HALO_CUE", "HALO_FILTER"})],
+)  # fmt: skip
+def test_a_picture_pays_for_what_its_look_uses(renderer, drawn, camera, view, more, features):
+    """There is code for ends that narrow, depth cueing, filters and cuts only while something shows by them."""
+    lines = isinstance(drawn, HaloLines)
+    kind = set() if lines else {"HALO_POINTS"}
+    renderer.render(view, styled(**PLAIN | more))
+    assert set(renderer.explain()["features"]) == kind | (features if lines else features - {"HALO_TAPER"})
+    cut = {"HALO_CUT"} if lines else set()
+    near = camera(SIZE, **EYES["perspective"] | {"near": 55.0})
+    for other, used in (
+        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]), set()),
+        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0]]), {"CLIP_PLANES"} | cut),
+        (View(SIZE, near), cut),
+    ):
+        renderer.render(other, styled("number", **PLAIN))
+        assert set(renderer.explain()["features"]) == kind | {"HALO_VALUES"} | used
 
 
 def test_release_twice_and_use_after(gl, drawn, view):

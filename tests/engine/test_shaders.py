@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from pvfiblets.engine import EngineError
-from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.halos.blocks import CONSTANTS as OF_HALOS
+from pvfiblets.engine.pipelines import CONSTANTS as OF_PIPELINES
 from pvfiblets.engine.shaders import FEATURES, Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,6 +38,7 @@ COMPUTE = [p for p in SOURCES if p.suffix == ".comp" and p.stem != "split"]
 
 
 NAMES = [p.relative_to(ROOT / "shaders").as_posix() for p in COMPUTE]
+CONSTANTS = {**OF_HALOS, **OF_PIPELINES}
 ALWAYS = {"splines/cull.comp": ("TUBES",)}  # rays are what it is about
 
 

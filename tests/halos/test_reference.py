@@ -8,7 +8,8 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.halos import HaloLines, HaloPoints, Look
-from pvfiblets.halos.reference import HALO, LINE, NOTHING, mask, picture, places_along, rates
+from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
+from pvfiblets.halos.strips_reference import mask, places_along, rates
 
 SIZE = (80, 60)
 NEAR, FAR = 50.0, 250.0
@@ -327,26 +328,56 @@ def bent(degrees, *, length=25.0):
     return line([-length, -5, 100], [0, -5, 100], [length * np.cos(turn), -5 + length * np.sin(turn), 100])
 
 
-@pytest.mark.parametrize("degrees", [20.0, 59.0, -59.0, 61.0, 90.0, 150.0, 180.0])
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 59.0, -59.0, 61.0, 90.0, 150.0, 180.0])
 def test_bends(degrees):
-    """Up to 60 degrees the strip goes on to where its edges meet; else it ends round."""
+    """Either segment goes on round; up to 60 degrees it ends at the bisector, where the other is as near."""
     look = Look(6.0, 16.0, 5.0, **PLAIN)
     found = picture(bent(degrees), look, parallel(), SIZE)
     x, y = centres()
     turn = np.radians(degrees)
     e = np.array([np.cos(turn), np.sin(turn)])
     first, second = (x, y + 5), (x * e[0] + (y + 5) * e[1], (y + 5) * e[0] - x * e[1])
+    off = np.hypot(x, y + 5)
+    one = np.where(first[0] < 0, abs(first[1]), off) + 99 * (first[0] < -25)
+    two = np.where(second[0] > 0, abs(second[1]), off) + 99 * (second[0] > 25)
+    away = np.minimum(one, two)
+    assert (found.kind == kinds(away < 3, away < 8)).all()
+    assert np.abs(found.depth - window_depth(100 + 5 * away / 8 * (away > 3)))[found.kind != NOTHING].max() < 1e-12
+    # What lies next behind the line may be the other segment as line; halos are farther.
+    assert (found.other >= 0.999 * window_depth(NEAR + 5 * 3 / 8))[found.kind == LINE].all()
+    assert ((found.cover > 0) == (away < 8)).all()
+    inner = (away < 8) & (off < 16)
+    assert np.abs(found.cover - (8 - away))[inner].max() < 1e-9
     if abs(degrees) < 60:
         side = x * (1 + e[0]) + (y + 5) * e[1]
-        away = np.where(side < 0, abs(first[1]), abs(second[1]))
-        there = np.where(side < 0, first[0] > -25, second[0] < 25)
-    else:
-        off = np.hypot(x, y + 5)
-        one = np.where(first[0] < 0, abs(first[1]), off) + 99 * (first[0] < -25)
-        two = np.where(second[0] > 0, abs(second[1]), off) + 99 * (second[0] > 25)
-        away, there = np.minimum(one, two), True
-    assert (found.kind == kinds(away < 3, (away < 8) & there)).all()
-    assert np.abs(found.depth - window_depth(100 + 5 * away / 8 * (away > 3)))[found.kind != NOTHING].max() < 1e-12
+        assert (found.owner == np.where(away < 8, side > 0, -1)).all()
+
+
+@pytest.mark.parametrize("degrees", [45.0, 120.0])
+def test_bends_take_everything_from_the_foot(degrees):
+    """Beyond a segment's end all is as at its end: depth, width, number."""
+    turn = np.radians(degrees)
+    far = [25 * np.cos(turn), -5 + 25 * np.sin(turn), 130]
+    look = Look(6.0, 16.0, 5.0, min_width=0.0, smooth=False, n_tapered=1, t_tapered=0.1, width_cue=0.4)
+    found = picture(line([-25, -5, 100], [0, -5, 115], far), look, parallel(), SIZE)
+    x, y = centres()
+    off = np.hypot(x, y + 5)
+    beyond = (x > 0.1) & (x * np.cos(turn) + (y + 5) * np.sin(turn) < -0.1) & (found.kind != NOTHING)
+    assert beyond.sum() > (3 if degrees < 60 else 30)
+    # The vertex has u = 0.5: the middle of three; of the depth there is half, and of the cue.
+    assert ((found.kind == LINE) == (off < 3 * 0.8))[beyond].all()
+    assert np.abs(found.depth - window_depth(115 + 5 * off / 8 * (off > 2.4)))[beyond].max() < 1e-12
+    assert np.isin(found.owner + found.t, [1.0])[beyond].all()
+
+
+def test_steep_bends_are_round():
+    """A segment that runs at the viewer, and whose strip so soon widens much, has no bisector with the next."""
+    look = Look(6.0, 16.0, 5.0, **PLAIN)
+    x, y = centres()
+    before = (x < -0.1) & (np.hypot(x, y) < 3)
+    for z, divided in ((140, False), (101, True)):
+        found = picture(line([-5, 0, z], [0, 0, 100], [25, 0, 100]), look, perspective(), SIZE)
+        assert (found.owner[before] == (0 if divided else 1)).all()
 
 
 def test_repeated_points_and_segments_seen_end_on_are_round():

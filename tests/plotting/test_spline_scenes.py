@@ -111,3 +111,16 @@ def test_pickers_of_pyvista_that_look_at_the_picture_find_tubes(plotter):
     )
     plotter.iren._mouse_left_button_click(100, 100)
     assert actors == [actor]
+
+
+def test_pictures_of_subplots_are_enlarged_tile_by_tile():
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=(80, 60), lighting="none")
+    plotter.add_spline_tubes(BAR, radius=RADIUS, color="white", lighting=False)
+    plotter.set_background("black")
+    plotter.show(auto_close=False)
+    plain = plotter.screenshot(None).astype(float)
+    large = plotter.screenshot(None, scale=2).astype(float)
+    plotter.close()
+    reduced = large.reshape(60, 2, 80, 2, 3).mean(axis=(1, 3))
+    assert plain[:, :40].max() == 255.0
+    assert np.abs(reduced - plain).mean() < 6.0

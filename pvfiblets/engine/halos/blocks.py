@@ -14,15 +14,21 @@ from ..frame import FRAME_BYTES, frame_block, local_frame
 from ..lattice import TOP
 from ..shaders import BLOCKS
 from ..view import Style, View
+from .vertices import MOST
 
-__all__ = ["CONSTANTS", "HALOS_BYTES", "HaloBlocks"]
+__all__ = ["CONSTANTS", "HALOS_BYTES", "ITEM_SHIFT", "HaloBlocks"]
 
-CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4}
+BESIDE = 3.0
+"""Half pictures from the middle, beyond which an axis is cut off."""
+
+ITEM_SHIFT = 3
+"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
+
+CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4, "item_shift": ITEM_SHIFT, "beside": BESIDE}
 """Of the shaders."""
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}
 _TABLE = len(DISPLACEMENTS)
-_LARGEST = float(np.finfo(np.float32).max)
 _LAYOUT: list[Any] = [
     ("widths", "<f4", 4),
     ("depth", "<f4", 4),
@@ -60,17 +66,29 @@ class HaloBlocks:
         self._corners = np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])
         self.buffers: dict[str, moderngl.Buffer] = {}
 
-    def write(self, view: View, look: Look, n_items: int) -> int:
-        """Bring all up to date and bind them; return how many clip planes may touch anything."""
+    def write(self, view: View, look: Look, n_items: int) -> tuple[bool, bool]:
+        """Bring all up to date and bind them.
+
+        Returns
+        -------
+        planes : bool
+            Whether a clip plane may touch anything.
+        beside : bool
+            Whether anything may lie before the near plane, beyond the far one or far beside the picture.
+        """
         self._put("frame", "Frame", FRAME_BYTES, frame_block(view, Style(), *self._place)[0])
         self._put("halos", "Halos", HALOS_BYTES, self._block(view, look, n_items))
         planes = clip_planes_block(view, 1.0, *self._place, 0.0)
-        if planes is None:
-            if "clip_planes" in self.buffers:
-                self.buffers.pop("clip_planes").release()
-            return 0
-        self._put("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
-        return int(np.frombuffer(planes, "<f4")[-4])
+        if planes is not None:
+            self._put("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
+        elif "clip_planes" in self.buffers:
+            self.buffers.pop("clip_planes").release()
+        return planes is not None, self._beside(view)
+
+    def _beside(self, view: View) -> bool:
+        x, y, z, w = view.model_view_projection @ np.column_stack([self._corners, np.ones(8)]).T
+        inside = (np.abs(z) < w) & (np.maximum(np.abs(x), np.abs(y)) < BESIDE * w)
+        return not inside.all()
 
     def _block(self, view: View, look: Look, n_items: int) -> bytes:
         _, to_data, (x, y, z, w) = local_frame(view, *self._place)
@@ -92,7 +110,7 @@ class HaloBlocks:
         else:
             block["depth"] = look.max_displacement, float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0), 0.0, 0.0
         block["cue"] = self._cue(to_data, axis, w, scale_of_w, perspective, look.width_cue)
-        block["filter"] = max(look.low, -_LARGEST), min(look.high, _LARGEST), look.filter_taper, float(look.smooth)
+        block["filter"] = *np.clip((look.low, look.high), -MOST, MOST), look.filter_taper, float(look.smooth)
         block["mask"] = 0.0, *half_size, look.width_cue
         table = look.displacement
         named = isinstance(table, str)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import moderngl
+import numpy as np
 
 from ...halos.things import HaloLines, HaloPoints
 from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
@@ -16,7 +17,7 @@ from ..passes import Passes
 from ..pulling import PulledShapes
 from ..shaders import Programs
 from ..view import View
-from .blocks import CONSTANTS, HaloBlocks
+from .blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .style import HaloStyle
 from .vertices import UNITS, Vertices
 
@@ -29,8 +30,6 @@ CULLING = ("two-phase", None)
 """How what others hide may be found out."""
 
 HITS_UNIT, DEPTHS_UNIT = 10, 11
-ITEM_SHIFT = 3
-"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
 
 
 class HaloRenderer:
@@ -81,7 +80,7 @@ class HaloRenderer:
         self._kind = ["HALO_POINTS"] if points else []
         self._gl = OpenGL(ctx)
         self._passes = Passes(ctx)
-        self._programs = Programs(ctx, {**CONSTANTS, "item_shift": ITEM_SHIFT})
+        self._programs = Programs(ctx, CONSTANTS)
         self._vertices: Vertices | None = None
         self._blocks: HaloBlocks | None = None
         self._shapes: PulledShapes | None = None
@@ -96,7 +95,8 @@ class HaloRenderer:
             self._blocks = HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds)
             self._n = self._vertices.n_items
             self._shapes = PulledShapes(ctx, self._n)
-            if culling is not None and self._n >= LEAST_SEGMENTS and supports_listing(ctx):
+            many = self._n >= LEAST_SEGMENTS and not _flat(drawn.bounds)
+            if culling is not None and many and supports_listing(ctx):
                 self._listing = Listing(
                     ctx,
                     self._gl,
@@ -154,12 +154,14 @@ class HaloRenderer:
         vertices.show_mask(look.n_tapered, look.t_tapered)
         with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
             target = self._target_of(view.size, coloured=reads == "HALO_COLOURS")
-            planes = blocks.write(view, look, self._n)
+            planes, beside = blocks.write(view, look, self._n)
             wanted = {
                 "HALO_TAPER": look.n_tapered > 0 and not self._kind,
                 "HALO_CUE": look.width_cue > 0.0,
                 "HALO_FILTER": filtered,
-                "CLIP_PLANES": planes > 0,
+                "HALO_BENT": look.displacement != "linear",
+                "HALO_CUT": (beside or planes) and not self._kind,
+                "CLIP_PLANES": planes,
             }
             features = [*self._kind, *(name for name, on in wanted.items() if on)]
             self._features = sorted({*features, *([reads] if reads else [])})
@@ -201,7 +203,8 @@ class HaloRenderer:
         def render(commands: moderngl.Buffer | None = None) -> None:
             target.hits_buffer.use()
             self._prepare(program)
-            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._ctx.front_face, self._ctx.cull_face = "ccw", "back"  # see shaders/halos/strips.vert
             self._ctx.depth_func = ">"  # depth is the other way round: see shaders/halos/halo.frag
             self._ctx.wireframe = False
             self._ctx.provoking_vertex = moderngl.LAST_VERTEX_CONVENTION
@@ -290,3 +293,9 @@ class HaloRenderer:
         self._programs.release()
         self._passes.release()
         self._made = None
+
+
+def _flat(bounds: tuple[float, ...]) -> bool:
+    """Say whether all is in one plane across an axis, where equal depths are the rule, and nothing is behind others."""
+    extents = np.ptp(np.reshape(bounds, (3, 2)), axis=1)
+    return bool(extents.min() <= 1e-6 * extents.max())

@@ -18,7 +18,7 @@ from ..errors import EngineError
 from ..lattice import lattice, places
 from ..opengl import TEXEL_FORMATS, BufferTexture, OpenGL
 
-__all__ = ["LAST", "UNITS", "Vertices", "mask_places"]
+__all__ = ["LAST", "MOST", "UNITS", "Vertices", "mask_places"]
 
 UNITS = {"place_texels": 13, "mask_texels": 14, "filter_texels": 15, "value_texels": 16, "colour_texels": 17,
          "offset_texels": 18}  # fmt: skip
@@ -28,6 +28,9 @@ LAST = 65535
 """Place on the mask of a line's last vertex, and of no other."""
 
 _LARGEST = float(np.finfo(np.float32).max)
+
+MOST = _LARGEST / 2.0
+"""Numbers that filter, and thresholds, count as no larger, infinity neither: what lies between two is a number then."""
 
 
 class Vertices:
@@ -82,7 +85,7 @@ class Vertices:
 
     def show_filter(self, name: str | None) -> bool:
         """Have the numbers that filter, and no others; say whether there are."""
-        return self._show("filter_texels", None if name is None else self._values(name, 1))
+        return self._show("filter_texels", None if name is None else self._values(name, 1), MOST)
 
     def show_values(self, name: Any) -> str | None:
         """Have the numbers or colours that show, and no others; return the feature that reads them."""
@@ -102,14 +105,14 @@ class Vertices:
             raise EngineError(f"values {name!r} are colours, and cannot filter; give numbers")
         return known[name]
 
-    def _show(self, sampler: str, values: npt.NDArray[Any] | None) -> bool:
+    def _show(self, sampler: str, values: npt.NDArray[Any] | None, most: float = np.inf) -> bool:
         if values is None:
             self._drop(sampler)
         elif self.n_items and self._holds.get(sampler) is not values:
             if values.ndim == 2:
                 self._put(sampler, "r32ui", _packed(values), values)
             else:
-                self._put(sampler, "r32f", _singles(values), values)
+                self._put(sampler, "r32f", _singles(values, most), values)
         return values is not None
 
     def _put(self, sampler: str, texel: str, data: npt.NDArray[Any], holds: object) -> None:
@@ -187,13 +190,12 @@ def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float
     return places
 
 
-def _singles(numbers: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-    """As float32; what is larger than that holds becomes its largest, and what is not finite stays so."""
-    if numbers.dtype == np.float32:
+def _singles(numbers: npt.NDArray[Any], most: float) -> npt.NDArray[np.float32]:
+    """As float32, none beyond +-most; what is finite and larger than float32 holds becomes its largest."""
+    if numbers.dtype == np.float32 and most == np.inf:
         return np.asarray(numbers, "<f4")
-    wide = numbers.astype(np.float64)
-    within = np.where(np.isfinite(wide), np.clip(wide, -_LARGEST, _LARGEST), wide)
-    return within.astype("<f4")
+    wide = np.clip(numbers.astype(np.float64), -most, most)
+    return np.where(np.isfinite(wide), np.clip(wide, -_LARGEST, _LARGEST), wide).astype("<f4")
 
 
 def _packed(colours: npt.NDArray[np.float32]) -> npt.NDArray[np.uint32]:

@@ -1,0 +1,57 @@
+"""A scanned surface as a cloud of points: gaps where one part of it passes in front of another, and no mesh at all.
+
+Run it as ``python examples/19_halos_of_a_scan.py [FOLDER]``. Pictures like figure 15 of Everts et al. 2009. The
+surface is that of the bones in PyVista's frog, which was cut into slices and photographed.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from pyvista import examples
+
+BONE = 13  # as the frog's voxels are labelled
+
+
+def surface() -> pv.PolyData:
+    """Return the surface of the bones, mm."""
+    frog = examples.load_frog_tissues()
+    return frog.contour([0.5], scalars=(frog["MetaImage"] == BONE).astype(np.uint8), method="flying_edges")
+
+
+def scan(mesh: pv.PolyData, n: int, seed: int = 0) -> np.ndarray:
+    """Return points of a surface, spread over it by chance, evenly by area."""
+    rng = np.random.default_rng(seed)
+    corners = mesh.points[mesh.regular_faces]
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    hit = rng.choice(len(area), n, p=area / area.sum())
+    u, v = rng.random((2, n, 1))
+    outside = u + v > 1.0  # in the other half of the parallelogram
+    u, v = np.where(outside, 1.0 - u, u), np.where(outside, 1.0 - v, v)
+    return a[hit] + u * (b - a)[hit] + v * (c - a)[hit]
+
+
+def main(folder: Path) -> None:
+    """Write a picture of the skeleton in ink, and of its head in light."""
+    points = scan(surface(), 300_000)
+    window = {"window_size": (1500, 800), "shape": (1, 2), "border": False}
+    plotter = pv.Plotter(off_screen=True, **window)
+    sizes = {"point_size": 0.55, "halo_size": 5.0, "max_displacement": 12.0}  # mm
+    plotter.set_background("white", all_renderers=False)
+    actor = plotter.add_halo_points(points, **sizes, displacement="square root")
+    plotter.view_vector((0.3, -0.5, -1.0), viewup=(0, -1, 0))
+    plotter.camera.zoom(1.35)
+
+    plotter.subplot(0, 1)
+    plotter.set_background("black", all_renderers=False)
+    plotter.add_halo_points(points, **sizes, displacement="square root", light_on_dark=True)
+    plotter.camera_position = [(420.0, 60.0, -330.0), (390.0, 215.0, 90.0), (0.0, -1.0, 0.0)]
+    plotter.screenshot(folder / "halos_of_a_scan.png")
+    print(f"{actor.explain()['points_total']:,} points, {actor.explain()['gpu_bytes'] / 1e6:.0f} MB with pictures")
+    plotter.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

@@ -1,0 +1,89 @@
+"""Displacement functions by name, as tables and as functions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets.halos import Look
+from pvfiblets.halos.displacement import as_displacement, displaced
+from pvfiblets.halos.look import DISPLACEMENTS, TABLE_SIZE
+
+X = np.linspace(0, 1, 1001)
+
+
+@pytest.mark.parametrize(
+    ("name", "function"), [("linear", lambda x: x), ("square", lambda x: x**2), ("square root", lambda x: x**0.5)]
+)
+def test_names(name, function):
+    assert as_displacement(name) == name
+    np.testing.assert_array_equal(displaced(X, name), function(X))
+    # The same as a function is a table, which is linear between its places.
+    table = as_displacement(function)
+    assert len(table) == TABLE_SIZE
+    assert displaced(np.linspace(0, 1, TABLE_SIZE), table) == pytest.approx(function(np.linspace(0, 1, TABLE_SIZE)))
+    error = np.abs(displaced(X, table) - function(X))
+    assert error.max() <= 1 / 31
+    assert error[X > 0.15].max() < 1e-3
+
+
+def test_all_names_are_known():
+    assert [as_displacement(name) for name in DISPLACEMENTS] == list(DISPLACEMENTS)
+
+
+def test_tables_are_linear_between_equally_spaced_places():
+    for table in ([0, 0.5, 0.25], (0, 0.5, 0.25), np.array([0, 0.5, 0.25], np.float32)):
+        form = as_displacement(table)
+        assert form == (0.0, 0.5, 0.25)
+        assert all(type(entry) is float for entry in form)
+        assert displaced([0, 0.25, 0.5, 0.75, 1], form).tolist() == [0, 0.25, 0.5, 0.375, 0.25]
+        assert Look(1, 2, 3, form).displacement == form
+
+
+def test_what_lies_outside_counts_as_the_nearer_end():
+    for form in ("linear", "square", "square root", (0.25, 0.5)):
+        np.testing.assert_array_equal(displaced([-3, 4], form), displaced([0, 1], form))
+    assert np.isnan(displaced(np.nan, "square"))
+    assert displaced(0.5, "square").shape == ()
+    assert displaced(np.full((2, 3), 0.5), "square").tolist() == [[0.25] * 3] * 2
+
+
+def test_functions_may_be_constant_and_round():
+    assert as_displacement(lambda x: 1.0) == (1.0,) * TABLE_SIZE
+    assert as_displacement(np.zeros_like) == (0.0,) * TABLE_SIZE
+    table = as_displacement(lambda x: np.where(x < 0.5, -1e-12, 1 + 1e-12))
+    assert set(table) == {0.0, 1.0}
+    assert as_displacement(lambda x: list(x))[-1] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("cubic", r"'cubic'; choose one of \('linear', 'square', 'square root'\), or give a table or a function"),
+        ([0.5], r"shape \(1,\), expected 2 to 64 numbers"),
+        (np.zeros(65), r"shape \(65,\), expected 2 to 64 numbers"),
+        (np.zeros((4, 4)), r"shape \(4, 4\)"),
+        ([0, 1.5, 1], "1.5 at 0.5, expected 0 to 1"),
+        ([0, 0.5, -0.1], "-0.1 at 1, expected 0 to 1"),
+        ([0, np.nan], "nan at 1, expected"),
+        (["a", "b"], "expected numbers"),
+        ([[1], [1, 2]], "expected numbers"),
+        (lambda x: 2 * x, "function gives .* expected 0 to 1"),
+        (lambda x: x[:5], r"function gives the shape \(5,\), expected 64 numbers for an array of as many"),
+        (lambda x: x / (x - x), "function gives nan at 0"),
+        (lambda x: None, "function gives"),
+        (lambda x: "dark", "function gives 'dark', expected numbers"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*encountered in divide:RuntimeWarning")
+def test_what_cannot_be(given, message):
+    with pytest.raises(ValueError, match=message):
+        as_displacement(given)
+    with pytest.raises(ValueError, match=message):
+        displaced(X, given)
+
+
+@pytest.mark.parametrize("given", [None, 0.5, b"linear", {0.0: 1.0}, {0.0, 1.0}])
+def test_what_is_none_of_these(given):
+    with pytest.raises(TypeError, match=f"displacement is a {type(given).__name__}"):
+        as_displacement(given)
