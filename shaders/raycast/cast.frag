@@ -72,6 +72,7 @@ void main() {
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
     vec3 normal = size > 0.0 ? g / size : -way;
     shown_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);
+    shown_ids.y = packed_tangent(way - normal * dot(way, normal) / dot(normal, normal), 0u);      // along the surface, away
 #elif FEATURE_RAYCAST_LIGHT
     vec4 light;
     if (!gather(ray, step, start, hit, light)) return;

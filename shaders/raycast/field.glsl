@@ -37,10 +37,11 @@ float value_at(vec3 p) {
 float value_at(vec3 p) { return read_linear(p) * ray_values.x + ray_values.y; }
 #endif
 
-// By mm, from central differences of one voxel (section III.A).
+// By mm, from central differences of one voxel (section III.A), one-sided at the box's faces.
 vec3 gradient_at(vec3 p) {
-    vec3 g = 0.5 * vec3(value_at(p + vec3(1.0, 0.0, 0.0)) - value_at(p - vec3(1.0, 0.0, 0.0)),
-                        value_at(p + vec3(0.0, 1.0, 0.0)) - value_at(p - vec3(0.0, 1.0, 0.0)),
-                        value_at(p + vec3(0.0, 0.0, 1.0)) - value_at(p - vec3(0.0, 0.0, 1.0)));
+    vec3 low = max(p - 1.0, 0.0), high = min(p + 1.0, ray_size.xyz - 1.0);
+    vec3 g = vec3(value_at(vec3(high.x, p.yz)) - value_at(vec3(low.x, p.yz)),
+                  value_at(vec3(p.x, high.y, p.z)) - value_at(vec3(p.x, low.y, p.z)),
+                  value_at(vec3(p.xy, high.z)) - value_at(vec3(p.xy, low.z))) / (high - low);
     return g.x * ray_to_voxels[0].xyz + g.y * ray_to_voxels[1].xyz + g.z * ray_to_voxels[2].xyz;
 }

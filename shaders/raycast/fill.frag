@@ -77,6 +77,8 @@ void main() {
     float spread = max(max(far[0], far[1]), max(far[2], far[3])) - min(min(far[0], far[1]), min(far[2], far[3]));
     alike = alike && abs(far[0] + far[3] - far[1] - far[2]) <= max(threshold * spread, 1024.0) && lowest.y == highest.y;
     shown_normal = alike ? packed_direction(normal) : 0u;
+    vec3 along = abs(normal.x) < 0.7 * length(normal) ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    uint tangent = alike ? packed_tangent(cross(normal, along), 0u) : 0u;
 #elif FEATURE_RAYCAST_LIGHT
     vec4 colour = vec4(0.0), low_colour = vec4(1.0), high_colour = vec4(0.0);
     for (int k = 0; k < 4; ++k) {
@@ -96,7 +98,11 @@ void main() {
     shown_depth = alike ? 0xFFFFFFFFu - uint(clamp(mean, 1.0, 4294967040.0)) : 0xFFFFFFFFu;
     shown_owner = alike ? texelFetch(coarse_owner, at[weights[0] >= max(weights[1], max(weights[2], weights[3])) ? 0
         : weights[1] >= max(weights[2], weights[3]) ? 1 : weights[2] >= weights[3] ? 2 : 3], 0).x : 0xFFFFFFFFu;
+#if FEATURE_RAYCAST_SURFACE
+    shown_ids = uvec2(0u, tangent);
+#else
     shown_ids = uvec2(0u);
+#endif
     shown_position = alike ? position : vec2(0.0);
     gl_FragDepth = alike || nothing ? 0.0 : 1.0;
 }

@@ -6,10 +6,10 @@ from typing import Any
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
 from ...raycast.volume import RaycastVolume
 from ..errors import EngineError
+from ..passes import is_software
 
 __all__ = ["VolumeTexture"]
 
@@ -49,8 +49,11 @@ class VolumeTexture:
                 f"a volume of {' x '.join(map(str, volume.shape))} voxels has more than {limit} along an axis, the "
                 "most of this OpenGL's textures; take every second voxel, or a part of it"
             )
-        kind, self.scale, self.shift = _FORMATS[volume.values.dtype.type]
         voxels = volume.values
+        if voxels.dtype == np.uint8 and is_software(ctx):
+            # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
+            voxels = voxels.astype(np.uint16)
+        kind, self.scale, self.shift = _FORMATS[voxels.dtype.type]
         if voxels.dtype == np.int16:
             voxels = (voxels.astype(np.int32) + 32768).astype(np.uint16)
         data = np.ascontiguousarray(voxels.transpose(2, 1, 0))
@@ -69,8 +72,3 @@ class VolumeTexture:
     def release(self) -> None:
         """Give it back; twice is harmless."""
         self.texture.release()
-
-
-def as_floats(values: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-    """Return values as float32 that shaders read."""
-    return np.ascontiguousarray(values, "<f4")
