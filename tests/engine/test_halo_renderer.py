@@ -169,6 +169,15 @@ def test_culling_changes_no_pixel(gl, camera, kind, name):
 
 
 @pytest.mark.usefixtures("few_are_many")
+def test_items_listed_last_are_whole(gl):
+    """Where all are listed, the last need not be the data's last, which may have less quads than the others."""
+    for n in (901, 907, 1000):
+        renderer = HaloRenderer(gl, HaloPoints(np.zeros((n, 3)) + np.arange(n)[:, None]))
+        assert buffers(renderer)["indices"] >= -(-n // 8) * 8 * 6 * 2
+        renderer.release()
+
+
+@pytest.mark.usefixtures("few_are_many")
 def test_what_stands_before_all_is_found_at_once(gl, camera):
     """After a jump to behind a wall of lines, all that the last picture showed is hidden."""
     x = np.linspace(-20, 20, 300)

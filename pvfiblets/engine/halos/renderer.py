@@ -94,7 +94,8 @@ class HaloRenderer:
             self._vertices = Vertices(ctx, self._gl, drawn)
             self._blocks = HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds)
             self._n = self._vertices.n_items
-            self._shapes = PulledShapes(ctx, self._n)
+            # Lists are of whole items; what is beyond the last quad draws nothing.
+            self._shapes = PulledShapes(ctx, -(-self._n >> ITEM_SHIFT) << ITEM_SHIFT)
             many = self._n >= LEAST_SEGMENTS and not _flat(drawn.bounds)
             if culling is not None and many and supports_listing(ctx):
                 self._listing = Listing(
@@ -280,7 +281,7 @@ class HaloRenderer:
             "buffers": [{"name": name, "bytes": size} for name, size in sizes.items()],
             "points_total": self._drawn.n_points,
             "lines_total": self._drawn.n_lines if isinstance(self._drawn, HaloLines) else 0,
-            "primitives": 0 if self._shapes is None else self._shapes.primitives,
+            "primitives": 0 if self._shapes is None else 2 * self._n,
             "culling": "two-phase" if self._listed else None,
         }
 
