@@ -25,43 +25,56 @@ const int QUADS = 1 << {{ item_shift }};
 const float CORNER = 1.5;      // half widths from the axis to a strip's farthest corner: sqrt(2) where it ends in a disc
 const float SLACK = 1e-6;      // of depth, for rounding
 
-// Whether an item may be seen.
+// What some vertices that follow each other on a line cover.
+struct Cover {
+    vec2 low;          // pixels from the picture's middle
+    vec2 high;
+    float nearest;     // the largest 1 - depth; -1 where there are none in front of the eye
+    bool beside;       // whether some lie beside the eye or behind it
+};
+
+// May be seen: is not beside the picture, and not behind all that is drawn there.
+bool may_show(Cover cover) {
+    if (cover.nearest < 0.0) return false;
+    if (cover.beside) return true;
+    vec2 low = cover.low + halo_mask.yz, high = cover.high + halo_mask.yz;
+    if (any(lessThan(high, vec2(0.0))) || any(greaterThan(low, viewport.xy))) return false;
+    if (second_round == 0) return true;
+    ivec2 from = ivec2(clamp(low - 0.6, vec2(0.0), viewport.xy - 1.0)), to = ivec2(clamp(high + 0.6, vec2(0.0), viewport.xy - 1.0));
+    return 1.0 - cover.nearest <= farthest_in(from, to) + SLACK;
+}
+
+// An item holds the end of one line and the beginning of the next, or more of short ones: up to the first end, and from there on.
 bool may_show(int first) {
-    vec2 low = vec2(3e38), high = vec2(-3e38);
-    float nearest = 0.0;                           // the largest 1 - depth
-    bool any_seen = false, any_beside = false;
+    Cover covers[2];
+    covers[0] = covers[1] = Cover(vec2(3e38), vec2(-3e38), -1.0, false);
 #if FEATURE_HALO_POINTS
     int count = min(first + QUADS, halo_counts.x);
+    const int part = 0;
     for (int k = first; k < count; ++k) {
 #else
-    int count = min(first + QUADS, halo_counts.x) + 1;
+    int count = min(first + QUADS, halo_counts.x) + 1, part = 0, next = 0;
     bool before = false;                           // whether a segment of this item ends at vertex k
     for (int k = first; k < count; ++k) {
         bool after = k + 1 < count && !is_last(k), used = before || after;
+        part = next;
+        if (!after) next = 1;
         before = after;
         if (!used) continue;
 #endif
         vec3 here = local_place(k);
         vec4 at = window_of(here);
         if (at.w <= 1e-30) {
-            any_beside = true;
+            covers[part].beside = true;
             continue;
         }
-        any_seen = true;
         vec2 middle = at.xy / at.w;
         float reach = CORNER * reaches(cue_at(here), at.w).y / at.w;
-        low = min(low, middle - reach);
-        high = max(high, middle + reach);
-        nearest = max(nearest, at.z / at.w);
+        covers[part].low = min(covers[part].low, middle - reach);
+        covers[part].high = max(covers[part].high, middle + reach);
+        covers[part].nearest = max(covers[part].nearest, at.z / at.w);
     }
-    if (!any_seen) return false;
-    if (any_beside) return true;
-    low += halo_mask.yz;
-    high += halo_mask.yz;
-    if (any(lessThan(high, vec2(0.0))) || any(greaterThan(low, viewport.xy))) return false;
-    if (second_round == 0) return true;
-    ivec2 from = ivec2(clamp(low - 0.6, vec2(0.0), viewport.xy - 1.0)), to = ivec2(clamp(high + 0.6, vec2(0.0), viewport.xy - 1.0));
-    return 1.0 - nearest <= farthest_in(from, to) + SLACK;
+    return may_show(covers[0]) || may_show(covers[1]);
 }
 
 void main() {
