@@ -38,6 +38,11 @@ def look(**more):
     return Look(**({"line_width": 1.0, "strip_width": 4.0, "max_displacement": 2.5} | more))
 
 
+def styled(values=None, **more):
+    """The same look with a style around it."""
+    return HaloStyle(look=look(**more), values=values)
+
+
 # ------------------------------------------------------------------------------------------------------------ scenes
 
 
@@ -128,6 +133,11 @@ def read_halos(gbuffer):
         ids[..., 0].astype(np.int64), unpacked_tangent(ids[..., 1]), position[..., 0], position[..., 1],
         np.where(drawn, ink, 0.0), colour,
     )  # fmt: skip
+
+
+def buffers(renderer):
+    """Bytes of all buffers, by name."""
+    return {buffer["name"]: buffer["bytes"] for buffer in renderer.explain()["buffers"]}
 
 
 def draw_halos(gl, drawn, view, look, *, values=None, **options):
