@@ -130,6 +130,7 @@ class Fragments:
     foot: Array  # (n, 4) clip coordinates of the nearest place of the axis
     r: Array  # distance from the foot over half the strip's width
     inside: Array  # from where the strip ends; negative beyond
-    room: Array  # the same, but for the bend's bisector, beyond which the next segment goes on
+    at_start: Array  # the same but for the bisector at its start, if that is close by; else negative
+    at_end: Array  # and at its end
     inked: Array  # across the axis, from where the line turns into halo; positive within the line
     edge: Array  # from there any way

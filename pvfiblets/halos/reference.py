@@ -55,8 +55,8 @@ class Picture:
         float64 window depth between what shows and the next of the other kind: as `gap`, but for fragments that
         would look alike, such as those of both segments at a bend.
     cover : numpy.ndarray
-        float64 pixels, to first order: how far within strips the pixel is, where several are there in the one that
-        reaches farthest, with no heed to bisectors of bends, at which another strip goes on. 0 where there is nothing.
+        float64 pixels, to first order: at least so far is the pixel from where there may be nothing; 0 where there is
+        nothing. The bisector of a bend does not count where both segments are there.
     """
 
     kind: Ints
@@ -147,8 +147,8 @@ def _discs(
         away = np.linalg.norm(at - centre, axis=1)
         foot = np.broadcast_to(clip[i], (len(pixel), 4))
         inside, inked = half - away, line - away
-        owner, t = np.full(len(pixel), i), np.zeros(len(pixel))
-        yield Fragments(pixel, owner, t, foot, away / half, inside, inside, inked, np.abs(inked))
+        owner, t, nowhere = np.full(len(pixel), i), np.zeros(len(pixel)), np.full(len(pixel), -1.0)
+        yield Fragments(pixel, owner, t, foot, away / half, inside, nowhere, nowhere, inked, np.abs(inked))
 
 
 def _nearest(fragments: list[Fragments], camera: Camera, look: Look) -> Picture:
@@ -176,7 +176,14 @@ def _nearest(fragments: list[Fragments], camera: Camera, look: Look) -> Picture:
         for found, among in ((gap, rest), (other, unlike)):
             np.minimum.at(found, every.pixel[among], at[among])
             found -= depth
-        np.maximum.at(cover, every.pixel[there], every.room[there])
+        np.maximum.at(cover, every.pixel[there], every.inside[there])
+        # Close to a bisector rounding may choose either segment, in the room that both have.
+        ends, starts = np.flatnonzero(every.at_end > 0.0), np.flatnonzero(every.at_start > 0.0)
+        # Of the same pixel, and the same vertex: a segment's first, and the end of the segment before.
+        before, after = every.pixel[ends] + n * (every.owner[ends] + 1), every.pixel[starts] + n * every.owner[starts]
+        _, one, next_one = np.intersect1d(before, after, assume_unique=True, return_indices=True)
+        one, next_one = ends[one], starts[next_one]
+        np.maximum.at(cover, every.pixel[one], np.minimum(every.at_end[one], every.at_start[next_one]))
         # Of what lies behind the pixel's depth even as line, no edge matters.
         matters = (kind[every.pixel] == NOTHING) | (at_axis <= depth[every.pixel])
         near = np.minimum(np.abs(every.inside), np.where(every.inside > -1.0, every.edge, np.inf))

@@ -36,6 +36,9 @@ STEEPEST = 0.5
 FOLDED = 1.5
 """Half widths from the axis: where bisectors cross before, it is open what of a strip is beyond them."""
 
+CLOSE = 0.1
+"""Pixels from a bisector within which it is noted whether both segments of the bend are there."""
+
 OPEN = -np.finfo(np.float64).tiny
 """Pixels within: not there, and yet as near to it as can be."""
 
@@ -239,16 +242,16 @@ def _strip(
         room = np.minimum(room, along)
     if bends[1] is None:
         room = np.minimum(room, length - along)
-    mitred = [bend is not None and bend.any() for bend in bends]
-    inside = room
-    if mitred[0]:
-        inside = np.minimum(inside, (at - a) @ bends[0])
-    if mitred[1]:
-        inside = np.minimum(inside, (b - at) @ bends[1])
-    if any(mitred) and _folded(own, length, FOLDED * reach, bends):
+    none = np.full(len(pixel), np.inf)
+    after = (at - a) @ bends[0] if bends[0] is not None and bends[0].any() else none
+    before = (b - at) @ bends[1] if bends[1] is not None and bends[1].any() else none
+    inside = np.minimum(np.minimum(room, after), before)
+    at_start = np.where(np.abs(after) < CLOSE, np.minimum(room, before), -1.0)
+    at_end = np.where(np.abs(before) < CLOSE, np.minimum(room, after), -1.0)
+    if _folded(own, length, FOLDED * reach, bends):
         inside = np.where((room >= 0.0) & (inside < 0.0), OPEN, inside)
     foot, whole = between(varying.clip, t), varying.half_widths(t)[1]
-    yield Fragments(pixel, np.full(len(pixel), owner), t, foot, away / whole, inside, room, inked, edge)
+    yield Fragments(pixel, np.full(len(pixel), owner), t, foot, away / whole, inside, at_start, at_end, inked, edge)
 
 
 def _in_pixels(above: Array, per_pixel: Array) -> Array:
