@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.splines.sources import Lines, gather
+from pvfiblets.splines.sources import Lines, flat, gather, joined
 from pvfiblets.streamlines import Streamlines
 
 from .things import HaloLines, HaloPoints
@@ -176,9 +176,9 @@ class _Rows:
         """Return the name of what was given, the array, and whether it has a row for each line, not each point."""
         if isinstance(given, str):
             if given in self.point_data:
-                return given, _flat(self.point_data[given], f"{what} {given!r}"), False
+                return given, flat(self.point_data[given], f"{what} {given!r}"), False
             if given in self.line_data:
-                return given, _flat(self.line_data[given], f"{what} {given!r}"), True
+                return given, flat(self.line_data[given], f"{what} {given!r}"), True
             known = [
                 f"{title} {', '.join(map(repr, data))}"
                 for title, data in (("point data", self.point_data), ("line data", self.line_data))
@@ -188,7 +188,7 @@ class _Rows:
                 f"{what} is {given!r}, which the source does not have; it has {' and '.join(known) or 'no data'}"
                 + elsewhere
             )
-        array = _flat(_joined(given, (self.n_points, self.n_lines)), what)
+        array = flat(joined(given, (self.n_points, self.n_lines)), what)
         if array.ndim and len(array) == self.n_points:
             return unnamed, array, False
         if array.ndim and len(array) == self.n_lines:
@@ -306,25 +306,6 @@ def _points_of_vtk(mesh: Any) -> tuple[Array, _Rows, str]:
 
 
 # ---------------------------------------------------------------------- arrays
-
-
-def _flat(array: Array, what: str) -> Array:
-    """The array with its one column as numbers, as tractograms store them."""
-    if array.dtype.kind not in "fiub":
-        raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
-    return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
-
-
-def _joined(given: Any, counts: tuple[int, int | None]) -> Array:
-    """An array of what was given; a list of arrays, one for each line, becomes one."""
-    arrays = isinstance(given, Sequence) and not isinstance(given, bytes) and any(np.ndim(part) for part in given)
-    if not arrays:
-        return np.asarray(given)
-    sizes = {np.shape(part) for part in given}
-    # A list with a row of three or four numbers for each point or line, rather than the arrays of lines.
-    if len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given):
-        return np.asarray(given)
-    return np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
 
 
 def _values(array: Array, name: str, rgb: bool) -> Array:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .sources import Lines, gather
+from .sources import Lines, flat, gather, joined
 from .tangents import METHODS, Steps, derivatives
 from .tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 
@@ -278,18 +277,14 @@ class _Builder:
         n_points, n_lines = len(lines.points), lines.n_tubes
         if isinstance(given, str):
             if given in lines.point_data:
-                return _flat(lines.point_data[given], f"{what} {given!r}"), False
+                return flat(lines.point_data[given], f"{what} {given!r}"), False
             if given in lines.line_data:
-                return _flat(lines.line_data[given], f"{what} {given!r}"), True
+                return flat(lines.line_data[given], f"{what} {given!r}"), True
             known = [f"{title} {', '.join(map(repr, data))}" for title, data in (
                 ("point data", lines.point_data), ("line data", lines.line_data)) if data]
             has = " and ".join(known) or "no data"
             raise ValueError(f"{what} is {given!r}, which the source does not have; it has {has}")
-        if _is_list_of_arrays(given) and not _is_list_of_rows(given, (n_points, n_lines)):
-            array = np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
-        else:
-            array = np.asarray(given)
-        array = _flat(array, what)
+        array = flat(joined(given, (n_points, n_lines)), what)
         if array.ndim and len(array) == n_points:
             return array, False
         if array.ndim and len(array) == n_lines:
@@ -309,20 +304,3 @@ class _Builder:
         if not good.all():
             row = int(np.argmin(good.reshape(len(rows), -1).all(axis=1)))
             raise ValueError(f"{what} {self._where(row)} is {rows[row].tolist()}, expected {expected}")
-
-
-def _flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
-    """The array with its one column as numbers, as tractograms store them."""
-    if array.dtype.kind not in "fiub":
-        raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
-    return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
-
-
-def _is_list_of_arrays(given: Any) -> bool:
-    return isinstance(given, Sequence) and not isinstance(given, (str, bytes)) and any(np.ndim(p) for p in given)
-
-
-def _is_list_of_rows(given: Sequence[Any], counts: tuple[int, int]) -> bool:
-    """Whether a list holds one row of three or four numbers for each point or line, rather than the arrays of lines."""
-    sizes = {np.shape(part) for part in given}
-    return len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given)

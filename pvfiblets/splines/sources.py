@@ -17,7 +17,7 @@ from .tubes import Ints
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Lines", "gather"]
+__all__ = ["Lines", "flat", "gather", "joined"]
 
 _EXPECTED = "a PolyData with lines, Streamlines, a FibletSet, an (n, 3) array, a list of them or (points, segments)"
 
@@ -260,3 +260,22 @@ def _chains(before: Ints) -> tuple[Ints, Ints]:
             break
         before = np.where(ring & (least == own), own, before)
     return root, place
+
+
+def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
+    """The array with its one column as numbers, as tractograms store them."""
+    if array.dtype.kind not in "fiub":
+        raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
+    return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
+
+
+def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:
+    """An array of what was given; a list of arrays, one for each line, becomes one."""
+    arrays = isinstance(given, Sequence) and not isinstance(given, bytes) and any(np.ndim(part) for part in given)
+    if not arrays:
+        return np.asarray(given)
+    sizes = {np.shape(part) for part in given}
+    # A list with a row of three or four numbers for each point or line, rather than the arrays of lines.
+    if len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given):
+        return np.asarray(given)
+    return np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
