@@ -49,22 +49,42 @@ def shared_data() -> Path:
     return folder
 
 
+class _Headless:
+    """One headless context for all tests, made anew when VTK has taken its display away by closing a window."""
+
+    def __init__(self, moderngl) -> None:
+        self._moderngl = moderngl
+        self.version = self._make().info["GL_VERSION"]
+
+    def _make(self):
+        self._context = self._moderngl.create_standalone_context(require=430, backend="egl")
+        return self._context
+
+    def context(self):
+        from pvfiblets.engine.errors import EngineError
+        from pvfiblets.engine.loader import loader
+
+        with self._context:  # never within another `with` of it: leaving the inner one leaves none current
+            try:
+                loader()
+            except EngineError:  # nothing became current: its display is gone, and all that it held
+                return self._make()
+        return self._context
+
+
 @pytest.fixture(scope="session")
-def _headless_context():
-    moderngl = pytest.importorskip("moderngl")
-    context = moderngl.create_standalone_context(require=430, backend="egl")
-    context.extra = context.info["GL_VERSION"]  # VTK takes the display away when it closes a window
-    yield context
-    context.release()
+def _headless():
+    return _Headless(pytest.importorskip("moderngl"))
 
 
 @pytest.fixture
-def gl(_headless_context):
+def gl(_headless):
     """Return a current headless OpenGL 4.3 context that must be free of errors on both sides."""
-    with _headless_context:
-        assert _headless_context.error == "GL_NO_ERROR", "an earlier test left an OpenGL error"
-        yield _headless_context
-        assert _headless_context.error == "GL_NO_ERROR", "this test left an OpenGL error"
+    context = _headless.context()
+    with context:
+        assert context.error == "GL_NO_ERROR", "an earlier test left an OpenGL error"
+        yield context
+        assert context.error == "GL_NO_ERROR", "this test left an OpenGL error"
 
 
 # What OpenGL 4.1 lacks and Mesa lists as extensions however old it is told to be. Two more it will not take away,
@@ -77,13 +97,13 @@ NEWER_THAN_4_1 = (
 
 
 @pytest.fixture(scope="session")
-def older_opengl(_headless_context):
+def older_opengl(_headless):
     """Return a function: the environment in which Mesa's OpenGL is no newer than a version up to 4.1, for a subprocess.
 
     MESA_GL_VERSION_OVERRIDE alone changes the number that is told and nothing else: compute shaders still compile and
     run, so that a test under it shows nothing. The version of GLSL must be held down and extensions taken away too.
     """
-    if "Mesa" not in _headless_context.extra:
+    if "Mesa" not in _headless.version:
         pytest.skip("only Mesa's OpenGL can be told to be older")
 
     def environment(version: str) -> dict[str, str]:

@@ -7,19 +7,8 @@ import os
 import subprocess
 import sys
 
-import moderngl
-import pytest
-
 from pvfiblets.cli import main
 from pvfiblets.engine.capabilities import PIPELINES
-
-
-@pytest.fixture
-def gl():
-    """Return a context of this test's own: the session's does not outlive the first VTK window that is closed."""
-    context = moderngl.create_standalone_context(require=430, backend="egl")
-    yield context
-    context.release()
 
 
 def test_gl_lists_the_driver_its_limits_and_every_pipeline(gl, capsys):

@@ -23,16 +23,10 @@ def described(internal_format):
     return DTYPES[rest.lstrip("0123456789")][rest.rstrip("uif")], CHANNELS[channels]
 
 
-@pytest.fixture(scope="module")
-def target(_headless_context):
-    with _headless_context:
-        return _headless_context.simple_framebuffer((4, 4))
-
-
 @pytest.fixture
-def gl(gl, target):
+def gl(gl):
     """Bind a framebuffer: a headless context has none, and without one not even transform feedback runs."""
-    with gl.scope(target):
+    with gl.scope(gl.simple_framebuffer((4, 4))):
         yield gl
 
 
@@ -180,17 +174,19 @@ def test_an_integer_attachment_is_cleared_and_no_other(gl):
         thing.release()
 
 
-def test_framebuffers_are_bound_again_and_moderngl_knows(gl, target):
-    functions, mine = OpenGL(gl), gl.simple_framebuffer((2, 2))
+def test_framebuffers_are_bound_again_and_moderngl_knows(gl):
+    functions = OpenGL(gl)
+    bound = functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
+    mine = gl.simple_framebuffer((2, 2))
     with functions.framebuffers_kept():
         mine.use()
         assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == mine.glo
-    assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == target.glo
-    assert functions.get_integer("GL_READ_FRAMEBUFFER_BINDING") == target.glo
+    assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == bound
+    assert functions.get_integer("GL_READ_FRAMEBUFFER_BINDING") == bound
     mine.release()
     another = gl.simple_framebuffer((2, 2))  # binds what moderngl remembers: an error, were it the released one
     assert gl.error == "GL_NO_ERROR"
-    assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == target.glo
+    assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == bound
     another.release()
 
 
