@@ -15,7 +15,7 @@ demo: environment gl
 
 test: export LEAST = 4.3
 test: environment gl shaders lint
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile
 
 lint: environment
 	$(BIN)/ruff check .

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from vtkmodules.vtkRenderingCore import vtkActor
+from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import FibletMapper, windows
@@ -29,6 +29,15 @@ def _standin():
 
 
 standin = _standin()
+
+
+@pytest.fixture(autouse=True)
+def _no_coincident_topology():
+    """Switch off what PyVista switches on for the whole process when it draws edges: VTK then shifts depths."""
+    before = vtkMapper.GetResolveCoincidentTopology()
+    vtkMapper.SetResolveCoincidentTopologyToOff()
+    yield
+    vtkMapper.SetResolveCoincidentTopology(before)
 
 
 def helices(count: int = 24, points: int = 150, seed: int = 0) -> Streamlines:
