@@ -129,6 +129,16 @@ class RaycastMapper(EngineMapper):
         same = (casting.mode == "composite") == (self._casting.mode == "composite")
         self.show(casting, self._colouring if same else None)
 
+    @property
+    def region(self) -> Any:
+        """`pvfiblets.regions.Region` in world mm outside of which nothing of the volume is; None for none."""
+        return self._region
+
+    @region.setter
+    def region(self, region: Any) -> None:
+        self._region = region
+        self._actor_modified()
+
     def show(self, casting: Casting, colouring: Colouring | None = None) -> None:
         """Change both from the next frame on.
 

@@ -22,7 +22,8 @@ from pvfiblets.plotting.choices import (
     in_groups,
     unique_name,
 )
-from pvfiblets.plotting.cutting import as_region, slab
+from pvfiblets.plotting.clipping import Clipping, without
+from pvfiblets.plotting.cutting import as_region
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from pvfiblets.regions import Region
 
 
-class Filtering:
+class Filtering(Clipping):
     """The part of :class:`~pvfiblets.plotting.actor.FibletActor` that chooses what is there to be drawn."""
 
     _mapper: PlottedMapper
@@ -105,7 +106,7 @@ class Filtering:
 
     def remove_criterion(self, name: str | None = None) -> None:
         """Take a criterion back, or all of them."""
-        self._choose(criteria=_without(self._choices.criteria, name, "criterion"))
+        self._choose(criteria=without(self._choices.criteria, name, "criterion"))
 
     # Regions ------------------------------------------------------------------------------------
 
@@ -139,7 +140,7 @@ class Filtering:
 
     def remove_condition(self, name: str | None = None) -> None:
         """Take a condition back, or all of them."""
-        self._choose(conditions=_without(self._choices.conditions, name, "condition"))
+        self._choose(conditions=without(self._choices.conditions, name, "condition"))
 
     def streamlines_where(self, condition: Any) -> np.ndarray:
         """Return the streamlines for which a condition holds.
@@ -213,76 +214,14 @@ class Filtering:
         self._choices = Choices()
         self._apply(filtering=True, cuts=True)
 
-    # Cuts ---------------------------------------------------------------------------------------
-
-    def clip(self, what: Any, inside: bool = True, *, name: str | None = None) -> str:
-        """Cut: show only what lies within a region, or without.
-
-        Parameters
-        ----------
-        what : region-like
-            A region of :mod:`pvfiblets.regions`, a closed mesh, six bounds, or a plane as
-            ``(normal, origin)``. In world coordinates. Several cuts add up; ``&``, ``|``, ``~`` of
-            regions make others.
-        inside : bool, default: True
-            Which side stays: of a plane, that which the normal points to.
-        name : str, optional
-            Replaces the cut of the same name.
-
-        Returns
-        -------
-        str
-            The name, for :meth:`unclip`.
-
-        Raises
-        ------
-        TypeError
-            If that is no region.
-        ValueError
-            If a mesh is open, empty or inside-out, a number makes no sense, or it is of labels.
-        """
-        from pvfiblets.engine.cutting import check_region
-
-        region = as_region(what)
-        check_region(region)
-        known = self._choices.clips
-        name = unique_name(known, "clip") if name is None else name
-        self._choose(clips={**known, name: region if inside else ~region})
-        return name
-
-    def clip_slab(
-        self, normal: Any, origin: Any, thickness: float, *, name: str | None = None
-    ) -> str:
-        """Cut a slab out, as of a radiologist's slice.
-
-        Parameters
-        ----------
-        normal : str or (3,) array
-            ``"x"``, ``"y"``, ``"z"``, or a direction.
-        origin : float or (3,) array
-            A point of its middle plane; for an axis a coordinate will do, mm.
-        thickness : float
-            mm.
-        name : str, optional
-            Replaces the cut of the same name.
-
-        Returns
-        -------
-        str
-            The name, for :meth:`unclip`.
-        """
-        return self.clip(slab(normal, origin, thickness), name=name)
-
-    def unclip(self, name: str | None = None) -> None:
-        """Take a cut back, or all of them."""
-        self._choose(clips=_without(self._choices.clips, name, "cut"))
+    # Inside -------------------------------------------------------------------------------------
 
     @property
-    def clips(self) -> Mapping[str, Region]:
-        """Cuts by name, in the order in which they were made."""
-        return MappingProxyType(self._choices.clips)
+    def _cuts(self) -> Mapping[str, Region]:
+        return self._choices.clips
 
-    # Inside -------------------------------------------------------------------------------------
+    def _cut(self, clips: dict[str, Region]) -> None:
+        self._choose(clips=clips)
 
     @property
     def _data(self) -> FibletSet:
@@ -375,15 +314,6 @@ def _same(a: Any, b: Any) -> bool:
     from pvfiblets.codec.query.measures import Distance
 
     return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
-
-
-def _without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:
-    if name is None:
-        return {}
-    if name not in known:
-        there = ", ".join(repr(key) for key in known) or "none"
-        raise KeyError(f"there is no {kind} {name!r}; there are: {there}")
-    return {key: value for key, value in known.items() if key != name}
 
 
 def _subset(

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.plotting.clipping import Clipping
 from pvfiblets.plotting.mapper import PlottedRaycast
 from pvfiblets.plotting.raycast_opacity import is_number
 from pvfiblets.plotting.raycast_settings import RAYS, SURFACE, RaySettings
@@ -19,11 +23,12 @@ from pvfiblets.raycast import RaycastVolume, smoothed
 if TYPE_CHECKING:
     from pvfiblets.mappers import RayHit
     from pvfiblets.plotting.colours import ColourSettings
+    from pvfiblets.regions import Region
 
 __all__ = ["RaycastActor"]
 
 
-class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
+class RaycastActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     """A volume that rays are cast through: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -76,6 +81,7 @@ class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
         self._init_colours(None, settings, theme)
         self._init_shading()
         self._occlusion: Any = None
+        self._clips: dict[str, Region] = {}
         self._see_through = 1.0
         self._scalars = _scalars(self._volume)
         made, colouring = self._init_rays(
@@ -155,7 +161,7 @@ class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``mode``; ``voxels_total``; ``nodes`` of the octree, and ``skipped``: the
-            share of its leaves with nothing to see, ``None`` before the first picture.
+            share of its leaves with nothing to see, ``None`` before the first picture; ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -167,6 +173,7 @@ class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
             "voxels_total": self._volume.n_points,
             "nodes": latest.get("nodes"),
             "skipped": latest.get("skipped"),
+            "clips": list(self._clips),
         }
 
     def copy(self, deep: bool = True) -> RaycastActor:
@@ -201,6 +208,7 @@ class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
         twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
         twin.visibility, twin.pickable = self.visibility, self.pickable
         twin._shade_surface_like(self)
+        twin._cut(self._clips)
         return twin
 
     # What a component asks ----------------------------------------------------------------------
@@ -217,6 +225,14 @@ class RaycastActor(RaySettings, SurfaceShading, pv.Actor):
         self._mapper.release(window)
 
     # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _cuts(self) -> Mapping[str, Region]:
+        return self._clips
+
+    def _cut(self, clips: dict[str, Region]) -> None:
+        self._mapper.region = reduce(operator.and_, clips.values()) if clips else None
+        self._clips = dict(clips)
 
     @property
     def _drawn(self) -> RaycastVolume:

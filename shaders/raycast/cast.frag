@@ -22,6 +22,9 @@
 #else
 #include "raycast/peak.glsl"
 #endif
+#if FEATURE_CLIP_REGION
+#include "raycast/parts.glsl"
+#endif
 #if FEATURE_OUTSIDE
 uniform usampler2D outside;       // keys of what is opaque
 #endif
@@ -66,7 +69,11 @@ void main() {
 #endif
     float hit, value = 0.0;
 #if FEATURE_RAYCAST_SURFACE
+#if FEATURE_CLIP_REGION
+    if (!find_surface_in_parts(pixel, ray, step, start - ray.first, hit, value)) return;
+#else
     if (!find_surface(ray, step, start, hit, value)) return;
+#endif
     vec3 g = gradient_at(at(ray, hit));
     vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
@@ -75,10 +82,18 @@ void main() {
     shown_ids.y = packed_tangent(way - normal * dot(way, normal) / dot(normal, normal), 0u);      // along the surface, away
 #elif FEATURE_RAYCAST_LIGHT
     vec4 light;
+#if FEATURE_CLIP_REGION
+    if (!gather_in_parts(pixel, ray, step, start - ray.first, hit, light)) return;
+#else
     if (!gather(ray, step, start, hit, light)) return;
+#endif
     shown_colour = vec4(light.rgb / light.a, light.a);
 #else
+#if FEATURE_CLIP_REGION
+    if (!find_peak_in_parts(pixel, ray, step, start - ray.first, hit, value)) return;
+#else
     if (!find_peak(ray, step, start, hit, value)) return;
+#endif
 #endif
     float far = farness(ray, hit);
     shown_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));

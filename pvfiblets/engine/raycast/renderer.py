@@ -10,9 +10,10 @@ from ..errors import EngineError
 from ..gbuffer import GBuffer
 from ..opengl import OpenGL
 from ..passes import Passes
-from ..shaders import Programs
+from ..shaders import BLOCKS, Programs
 from ..view import View
 from .blocks import CONSTANTS, RayBlock
+from .cuts import RayCuts
 from .nodes import NodeList
 from .pictures import Picture
 from .style import RaycastStyle
@@ -34,7 +35,7 @@ _OF_MODE = {
     "mip": [],
     "local-mip": ["RAYCAST_LOCAL"],
 }
-_OF_FILTER = {"nearest": ["RAYCAST_NEAREST"], "trilinear": [], "tricubic": ["RAYCAST_TRICUBIC"]}
+FEATURES_OF_FILTER = {"nearest": ["RAYCAST_NEAREST"], "trilinear": [], "tricubic": ["RAYCAST_TRICUBIC"]}
 _OF_REFINEMENT = {"none": ["RAYCAST_UNREFINED"], "regula-falsi": [], "newton": ["RAYCAST_NEWTON"]}
 _OF_INTEGRATOR = {
     "preintegrated": ["RAYCAST_PREINTEGRATED"],
@@ -85,6 +86,7 @@ class RaycastRenderer:
         self._programs = Programs(ctx, CONSTANTS)
         self._nodes = NodeList(ctx, self._gl, volume)
         self._tables = Tables(ctx)
+        self._cuts = RayCuts(ctx, self._gl, self._programs, volume)
         self._voxels: VolumeTexture | None = None
         self._block: RayBlock | None = None
         self._picture: Picture | None = None
@@ -105,7 +107,7 @@ class RaycastRenderer:
         Parameters
         ----------
         view : View
-            Its region is not looked at.
+            Its region cuts in all modes.
         style : RaycastStyle
         outside : moderngl.Texture, optional
             r32ui keys of what is opaque in the picture: rays end there.
@@ -123,6 +125,8 @@ class RaycastRenderer:
             After :meth:`release`, or if the picture is too large.
         TypeError
             If the style does not say how to cast.
+        ValueError
+            If the view's region holds a label volume.
         """
         if not isinstance(style, RaycastStyle):
             raise TypeError(f"style is a {type(style).__name__}; volumes need a RaycastStyle")
@@ -136,7 +140,7 @@ class RaycastRenderer:
         with self._gl.framebuffers_kept():
             sparse = casting.sparse > 1
             self._picture = self._fitting(self._picture, view.size, casting, marked=sparse)
-            features = self._features_of(casting, outside is not None)
+            features = [*self._features_of(casting, outside is not None), *self._cuts.update(view)]
             self._features = sorted(features)
             block.write(view, casting, self._nodes.levels)
             voxels.filter(casting.filter != "nearest")
@@ -210,10 +214,19 @@ class RaycastRenderer:
                 program[name] = unit
         self._tables.bind(program)
         self._nodes.bind(program)
+        self._cuts.bind(program)
         self._place(program, stride, size)
         picture.framebuffer.use()
         self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
         array.render(moderngl.TRIANGLES, vertices=3)
+
+    def bind_field(self, program: moderngl.Program) -> None:
+        """Bind the volume, its octree and the rays of the last picture for another pass over that picture."""
+        voxels, block = self._alive()
+        block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
+        voxels.texture.use(VOXELS_UNIT)
+        program["voxels"] = VOXELS_UNIT
+        self._nodes.bind(program)
 
     @staticmethod
     def _place(program: moderngl.Program, stride: int, size: tuple[int, int]) -> None:
@@ -222,7 +235,7 @@ class RaycastRenderer:
 
     @staticmethod
     def _features_of(casting: Casting, outside: bool) -> list[str]:
-        features = [*_OF_MODE[casting.mode], *_OF_FILTER[casting.filter]]
+        features = [*_OF_MODE[casting.mode], *FEATURES_OF_FILTER[casting.filter]]
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
@@ -262,7 +275,7 @@ class RaycastRenderer:
         if self._block is not None:
             sizes |= {name: buffer.size for name, buffer in self._block.buffers.items()}
         sizes |= {name: buffer.size for name, buffer in self._nodes.buffers.items()}
-        sizes |= self._tables.sizes
+        sizes |= self._tables.sizes | self._cuts.sizes
         for name, picture in (("gbuffer", self._picture), ("sparse", self._coarse)):
             if picture is not None:
                 sizes[name] = picture.nbytes
@@ -277,7 +290,7 @@ class RaycastRenderer:
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        for holder in (self._voxels, self._block, self._picture, self._coarse, self._nodes, self._tables):
+        for holder in (self._voxels, self._block, self._picture, self._coarse, self._nodes, self._tables, self._cuts):
             if holder is not None:
                 holder.release()
         self._voxels = self._block = None

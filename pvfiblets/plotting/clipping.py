@@ -1,0 +1,108 @@
+"""Cuts of an actor by regions of space, which add up: the part that actors of fiblets and of volumes share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.plotting.choices import unique_name
+from pvfiblets.plotting.cutting import as_region, slab
+
+if TYPE_CHECKING:
+    from pvfiblets.regions import Region
+
+__all__ = ["Clipping", "without"]
+
+
+class Clipping:
+    """The part of an actor that cuts it; the actor says where cuts are kept, by ``_cuts`` and ``_cut``."""
+
+    def clip(self, what: Any, inside: bool = True, *, name: str | None = None) -> str:
+        """Cut: show only what lies within a region, or without.
+
+        Parameters
+        ----------
+        what : region-like
+            A region of :mod:`pvfiblets.regions`, a closed mesh, six bounds, or a plane as
+            ``(normal, origin)``. In world coordinates. Several cuts add up; ``&``, ``|``, ``~`` of
+            regions make others.
+        inside : bool, default: True
+            Which side stays: of a plane, that which the normal points to.
+        name : str, optional
+            Replaces the cut of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`unclip`.
+
+        Raises
+        ------
+        TypeError
+            If that is no region.
+        ValueError
+            If a mesh is open, empty or inside-out, a number makes no sense, or it is of labels.
+        """
+        from pvfiblets.engine.cutting import check_region
+
+        region = as_region(what)
+        check_region(region)
+        name = unique_name(self._cuts, "clip") if name is None else name
+        self._cut({**self._cuts, name: region if inside else ~region})
+        return name
+
+    def clip_slab(self, normal: Any, origin: Any, thickness: float, *, name: str | None = None) -> str:
+        """Cut a slab out, as of a radiologist's slice.
+
+        Parameters
+        ----------
+        normal : str or (3,) array
+            ``"x"``, ``"y"``, ``"z"``, or a direction.
+        origin : float or (3,) array
+            A point of its middle plane; for an axis a coordinate will do, mm.
+        thickness : float
+            mm.
+        name : str, optional
+            Replaces the cut of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`unclip`.
+        """
+        return self.clip(slab(normal, origin, thickness), name=name)
+
+    def unclip(self, name: str | None = None) -> None:
+        """Take a cut back, or all of them."""
+        self._cut(without(self._cuts, name, "cut"))
+
+    @property
+    def clips(self) -> Mapping[str, Region]:
+        """Cuts by name, in the order in which they were made."""
+        return MappingProxyType(dict(self._cuts))
+
+    @property
+    def _cuts(self) -> Mapping[str, Region]:
+        """All cuts, by name."""
+        raise NotImplementedError
+
+    def _cut(self, clips: dict[str, Region]) -> None:
+        """Cut by these, and no others."""
+        raise NotImplementedError
+
+
+def without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:
+    """Return a mapping without one of its entries, or, of None, an empty one.
+
+    Raises
+    ------
+    KeyError
+        If there is no such entry; the message lists those that there are.
+    """
+    if name is None:
+        return {}
+    if name not in known:
+        there = ", ".join(repr(key) for key in known) or "none"
+        raise KeyError(f"there is no {kind} {name!r}; there are: {there}")
+    return {key: value for key, value in known.items() if key != name}
