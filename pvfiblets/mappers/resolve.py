@@ -39,6 +39,7 @@ FEATURES = (
     "highlight",
     "illuminated",
     "ambient_occlusion",
+    "ray_occlusion",
     "ink",
     "depth_cue",
     "halo",

@@ -111,13 +111,13 @@ class AmbientOcclusion(_Piece):
 
     def __post_init__(self) -> None:
         if self.radius is not None:
-            object.__setattr__(self, "radius", _positive(self.radius, "radius of ambient occlusion", "mm"))
+            object.__setattr__(self, "radius", positive(self.radius, "radius of ambient occlusion", "mm"))
         if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:
             raise ValueError(
                 f"samples of ambient occlusion is {self.samples!r}; give a whole number from 1 to {MAX_SAMPLES}"
             )
         object.__setattr__(self, "samples", int(self.samples))
-        object.__setattr__(self, "strength", _share(self.strength, "strength of ambient occlusion"))
+        object.__setattr__(self, "strength", share(self.strength, "strength of ambient occlusion"))
 
     def make(self, ctx: Any) -> AmbientOcclusionPass:
         """Make the passes."""
@@ -163,7 +163,7 @@ class DepthCue(_Piece):
     features = frozenset({"depth_cue"})
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "strength", _share(self.strength, "strength of depth cueing"))
+        object.__setattr__(self, "strength", share(self.strength, "strength of depth cueing"))
         if self.color is not None:
             object.__setattr__(self, "color", _colour(self.color, "color of depth cueing"))
         if self.range is not None:
@@ -212,9 +212,9 @@ class Halos(_Piece):
 
     def __post_init__(self) -> None:
         if self.width is not None:
-            object.__setattr__(self, "width", _positive(self.width, "width of halos", "mm"))
+            object.__setattr__(self, "width", positive(self.width, "width of halos", "mm"))
         if self.depth is not None:
-            object.__setattr__(self, "depth", _positive(self.depth, "depth of halos", "mm"))
+            object.__setattr__(self, "depth", positive(self.depth, "depth of halos", "mm"))
         if self.color is not None:
             object.__setattr__(self, "color", _colour(self.color, "color of halos"))
 
@@ -349,14 +349,14 @@ def _colour(value: Any, name: str) -> Colour:
     return channels
 
 
-def _positive(value: Any, name: str, unit: str) -> float:
+def positive(value: Any, name: str, unit: str) -> float:
     number = float(value)
     if not (math.isfinite(number) and number > 0.0):
         raise ValueError(f"{name} is {value!r}; give {unit}, a finite number above 0")
     return number
 
 
-def _share(value: Any, name: str) -> float:
+def share(value: Any, name: str) -> float:
     number = float(value)
     if not 0.0 <= number <= 1.0:
         raise ValueError(f"{name} is {value!r}; give a number from 0 to 1")

@@ -79,7 +79,7 @@ class ScreenEffect:
 
     def explain(self) -> dict[str, list[dict[str, object]]]:
         """Return ``passes``, name and ms of when it last drew, and ``buffers``, name and bytes of its textures."""
-        sizes = {"f1": 1, "u1": 1, "f4": 4, "u4": 4}
+        sizes = {"f1": 1, "u1": 1, "f2": 2, "f4": 4, "u4": 4}
         buffers: list[dict[str, object]] = [
             {"name": f"{name} (effect)", "bytes": texture.width * texture.height * sizes[texture.dtype]}
             for name, texture in self._textures().items()
