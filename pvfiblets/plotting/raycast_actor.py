@@ -15,9 +15,9 @@ from pvfiblets.plotting.clipping import Clipping
 from pvfiblets.plotting.mapper import PlottedRaycast
 from pvfiblets.plotting.raycast_opacity import is_number
 from pvfiblets.plotting.raycast_settings import RAYS, SURFACE, RaySettings
+from pvfiblets.plotting.raycast_shading import RaycastShading
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.scalars import Scalars
-from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.raycast import RaycastVolume, smoothed
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["RaycastActor"]
 
 
-class RaycastActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
+class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
     """A volume that rays are cast through: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -80,7 +80,6 @@ class RaycastActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         self._lit = theme.lighting if lighting is None else bool(lighting)
         self._init_colours(None, settings, theme)
         self._init_shading()
-        self._occlusion: Any = None
         self._clips: dict[str, Region] = {}
         self._see_through = 1.0
         self._scalars = _scalars(self._volume)
@@ -257,18 +256,12 @@ class RaycastActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
         surface = self.mode == SURFACE
-        self._mapper.set_extra("ambient_occlusion", self._occlusion if surface else None)
+        self._shade_surfaces(surface)
         self.prop.lighting = self._lit and surface
         opacity = float(self._opacity_choice) if surface and is_number(self._opacity_choice) else 1.0
         if opacity != self._see_through:  # what was set of the property itself stays
             self._see_through = self.prop.opacity = opacity
         self.prop.color = "white" if self._settings.color is None else self._settings.color
-
-    def _shade(self, name: str, kind: type, wanted: Any) -> None:
-        super()._shade(name, kind, wanted)
-        if name == "ambient_occlusion":
-            self._occlusion = self._mapper.extras.get(name)
-            self._look()
 
 
 def _checked(volume: Any) -> RaycastVolume:

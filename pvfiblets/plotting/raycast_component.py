@@ -84,6 +84,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
         shape: Any = None,
         dtype: Any = None,
         lighting: bool | None = None,
+        ray_occlusion: bool | dict[str, Any] = False,
         name: str | None = None,
         label: str | None = None,
         show_scalar_bar: bool | None = None,
@@ -160,6 +161,9 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             Of bare numbers in a file.
         lighting : bool, optional
             Shade surfaces by the scene's lights; the theme's by default.
+        ray_occlusion : bool or dict, default: False
+            Darken surfaces where the volume stands over them, by rays through it:
+            ``{"samples": 32, "radius": mm, "strength": 1.0, "seed": 0}``, or ``True`` for these.
         name : str, optional
             Replaces the actor of the same name.
         label : str, optional
@@ -259,6 +263,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             lighting=lighting,
             theme=self._plotter.theme,
         )
+        actor.ray_occlusion = ray_occlusion
         return self._enter(
             actor,
             name=name,
