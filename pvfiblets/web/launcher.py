@@ -1,0 +1,231 @@
+"""Sessions: one process each, started, watched and ended.
+
+A session lives while a browser is connected, and for `timeout` seconds after the last one has gone: a reload or a lost
+connection finds it as it was. Its process ends with it, and what it held on the GPU goes back. The process ends by
+itself when its standard input closes, so that none is left behind when the gate dies.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+import os
+import secrets
+import sys
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from pvfiblets.web.options import Options
+
+logger = logging.getLogger("pvfiblets.web")
+
+GRACE = 5.0  # seconds that a process has to end by itself
+START = 600.0  # seconds to open the files it was started with
+LAST_LINES = 40  # of a process's standard error, for the log when it fails
+SHARED = "shared"
+
+
+@dataclass
+class Session:
+    """One scene and the process that holds it.
+
+    Attributes
+    ----------
+    id : str
+        What the browser's cookie says.
+    port : int or None
+        Where its process listens on loopback, once it does.
+    key : str
+        What every request to the process must carry, so that other users of this machine cannot make one.
+    failure : str or None
+        Why it ended, if it was not asked to.
+    connections : int
+        Browsers (or tabs) that are connected now.
+    """
+
+    id: str
+    key: str = field(default_factory=lambda: secrets.token_hex(32), repr=False)
+    port: int | None = None
+    failure: str | None = None
+    connections: int = 0
+    seen: float = field(default_factory=time.monotonic)
+    process: asyncio.subprocess.Process | None = None
+    tasks: list[asyncio.Task[None]] = field(default_factory=list)
+    ready: asyncio.Event = field(default_factory=asyncio.Event)
+    ended: bool = False
+
+    @property
+    def short(self) -> str:
+        """What logs call it: too little of the cookie to use."""
+        return self.id[:6]
+
+
+class Launcher:
+    """Starts and ends the sessions of one server.
+
+    Parameters
+    ----------
+    options : Options
+        The limit, the timeout and what a session opens with.
+    on_end : callable, optional
+        Called with a session that has ended, however it did.
+    """
+
+    def __init__(self, options: Options, on_end: Callable[[Session], None] = lambda session: None) -> None:
+        self._options = options
+        self._on_end = on_end
+        self.sessions: dict[str, Session] = {}
+        self._failed: deque[Session] = deque(maxlen=32)
+        self._spare: Session | None = None
+        self._reaper: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        """Begin to watch, and prepare the first session before its browser comes."""
+        self._reaper = asyncio.create_task(self._reap())
+        self._spare = await self._launch(SHARED if self._options.shared else secrets.token_urlsafe(24))
+
+    def find(self, identifier: str | None) -> Session | None:
+        """Return the session of a browser's cookie, ended ones included while they are remembered."""
+        if identifier is None:
+            return None
+        found = self.sessions.get(identifier)
+        if found is None:
+            found = next((session for session in self._failed if session.id == identifier), None)
+        return found
+
+    @property
+    def full(self) -> bool:
+        """Whether no further session may start."""
+        return len(self.sessions) >= self._options.limit
+
+    async def open(self) -> Session | None:
+        """Return a session for a browser that has none, or ``None`` at the limit."""
+        if self._options.shared and SHARED in self.sessions:
+            return self.sessions[SHARED]
+        if self.full and self._spare is None:
+            return None
+        session, self._spare = self._spare, None
+        if session is None or session.ended:
+            if self.full:
+                return None
+            session = await self._launch(SHARED if self._options.shared else secrets.token_urlsafe(24))
+        session.seen = time.monotonic()
+        return session
+
+    async def _launch(self, identifier: str) -> Session:
+        session = Session(identifier)
+        self.sessions[identifier] = session
+        environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "pvfiblets.web.worker",
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            env=environment,
+        )
+        session.process = process
+        assert process.stdin is not None
+        # By standard input: command lines and environments can be read by others.
+        told = self._options.as_dict() | {"token": None, "host": "127.0.0.1", "port": 0}
+        process.stdin.write((json.dumps({"options": told, "key": session.key}) + "\n").encode())
+        with contextlib.suppress(ConnectionError):
+            await process.stdin.drain()
+        session.tasks = [asyncio.create_task(self._watch(session))]
+        logger.info("session %s: started as process %d", session.short, process.pid)
+        return session
+
+    async def _watch(self, session: Session) -> None:
+        """Read what a process says until it ends."""
+        process = session.process
+        assert process is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        lines: deque[str] = deque(maxlen=LAST_LINES)
+        errors = asyncio.create_task(self._keep(process.stderr, lines))
+        said = None
+        async for line in process.stdout:
+            try:
+                told = json.loads(line)
+            except ValueError:
+                continue
+            if isinstance(told, dict) and "port" in told:
+                session.port = int(told["port"])
+                session.ready.set()
+            elif isinstance(told, dict) and "failure" in told:
+                said = str(told["failure"])
+        code = await process.wait()
+        await errors
+        if not session.ended:
+            session.failure = said or "its process ended unexpectedly"
+            logger.error("session %s: %s (exit code %s)", session.short, session.failure, code)
+            for text in lines:
+                logger.error("session %s: | %s", session.short, text)
+        await self._forget(session)
+
+    async def _keep(self, stream: asyncio.StreamReader, lines: deque[str]) -> None:
+        while True:
+            try:
+                line = await stream.readline()
+            except ValueError:  # a line longer than the buffer
+                continue
+            if not line:
+                return
+            text = line.decode(errors="replace").rstrip()
+            lines.append(text)
+            logger.debug("%s", text)
+
+    async def _forget(self, session: Session) -> None:
+        session.ended = True
+        session.ready.set()
+        if self.sessions.get(session.id) is session:
+            del self.sessions[session.id]
+        if self._spare is session:
+            self._spare = None
+        if session.failure is not None:
+            self._failed.append(session)
+        self._on_end(session)
+
+    async def end(self, session: Session) -> None:
+        """End a session and its process."""
+        if session.ended:
+            return
+        session.ended = True
+        logger.info("session %s: ended", session.short)
+        self._on_end(session)
+        process = session.process
+        if process is not None and process.returncode is None:
+            if process.stdin is not None:
+                process.stdin.close()
+            try:
+                await asyncio.wait_for(process.wait(), GRACE)
+            except TimeoutError:
+                process.kill()
+                await process.wait()
+        await asyncio.gather(*session.tasks, return_exceptions=True)
+
+    async def _reap(self) -> None:
+        """End sessions whose browser has not come back."""
+        pause = min(5.0, self._options.timeout / 4)
+        while True:
+            await asyncio.sleep(pause)
+            now = time.monotonic()
+            for session in list(self.sessions.values()):
+                idle = now - session.seen
+                if session is self._spare or session.connections or session.ended:
+                    continue
+                if idle > self._options.timeout:
+                    logger.info("session %s: no browser for %.0f s", session.short, idle)
+                    await self.end(session)
+
+    async def stop(self) -> None:
+        """End all sessions."""
+        if self._reaper is not None:
+            self._reaper.cancel()
+            await asyncio.gather(self._reaper, return_exceptions=True)
+        await asyncio.gather(*(self.end(session) for session in list(self.sessions.values())))

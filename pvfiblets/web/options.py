@@ -1,0 +1,124 @@
+"""What ``pvfiblets serve`` was asked for, checked before anything starts."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import asdict, dataclass, field
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Any
+
+MEBIBYTE = 1024 * 1024
+SHORTEST_TOKEN = 8  # characters of a token that a person chose
+CODECS = ("jpeg", "png", "webp")
+
+
+@dataclass(frozen=True)
+class Options:
+    """The settings of one server; :meth:`checked` says what is wrong with them.
+
+    Parameters
+    ----------
+    files, volume, mesh : list of str
+        What a session opens with; they need not lie under `root`.
+    demo : bool
+        Open with a made-up tractogram.
+    host, port : str, int
+        Where to listen; port 0 lets the system choose.
+    root : str
+        The only folder that browsers may open files from and save to.
+    token : str or None
+        What a browser must present; ``None`` asks for nothing.
+    shared : bool
+        All browsers see and steer one session.
+    limit : int
+        The greatest number of sessions at once.
+    timeout : float
+        Seconds that a session without a browser is kept.
+    upload : int
+        The greatest size of an uploaded file, in bytes.
+    codec : str
+        How pictures travel: 'jpeg', 'png' or 'webp'.
+    origins : list of str
+        Other origins that pages may come from, such as that of a proxy which renames the host.
+    """
+
+    files: list[str] = field(default_factory=list)
+    volume: list[str] = field(default_factory=list)
+    mesh: list[str] = field(default_factory=list)
+    demo: bool = False
+    host: str = "127.0.0.1"
+    port: int = 8080
+    root: str = "."
+    token: str | None = None
+    shared: bool = False
+    limit: int = 8
+    timeout: float = 300.0
+    upload: int = 2048 * MEBIBYTE
+    codec: str = "jpeg"
+    origins: list[str] = field(default_factory=list)
+
+    @property
+    def on_loopback(self) -> bool:
+        """Whether only this machine can reach the server."""
+        return is_loopback(self.host)
+
+    def checked(self) -> Options:
+        """Return these options.
+
+        Raises
+        ------
+        ValueError
+            If one of them cannot be; the message names it and says what can.
+        OSError
+            If a file or the root is missing.
+        """
+        if not 0 <= self.port <= 65535:
+            raise ValueError(f"--port {self.port}: a port is from 0 to 65535")
+        if self.limit < 1:
+            raise ValueError(f"--limit {self.limit}: at least one session is needed")
+        if not self.timeout > 0.0:
+            raise ValueError(f"--timeout {self.timeout:g}: seconds above zero are needed")
+        if self.upload < 0:
+            raise ValueError(f"--upload {self.upload}: a size of zero or more is needed")
+        if self.codec not in CODECS:
+            raise ValueError(f"--codec {self.codec!r} is none of {', '.join(CODECS)}")
+        if self.token is None and not self.on_loopback:
+            raise ValueError(
+                f"--token none: {self.host} can be reached from other machines, so a token is needed; "
+                "use --token auto, or --host 127.0.0.1 and an SSH tunnel"
+            )
+        if self.token is not None and len(self.token) < SHORTEST_TOKEN:
+            raise ValueError(f"--token: at least {SHORTEST_TOKEN} characters are needed; --token auto makes one")
+        if not Path(self.root).is_dir():
+            raise NotADirectoryError(20, "not a folder; --root names the one that browsers may open files from", self.root)
+        for path in (*self.files, *self.volume, *self.mesh):
+            if not Path(path).is_file():
+                raise FileNotFoundError(2, "No such file", path)
+        return self
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for :meth:`from_dict` in another process."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Options:
+        """Return the options that :meth:`as_dict` gave."""
+        return cls(**data)
+
+
+def chosen_token(text: str) -> str | None:
+    """Return the token that ``--token auto|TEXT|none`` means."""
+    if text == "none":
+        return None
+    return secrets.token_urlsafe(24) if text == "auto" else text
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether a host name or address can be reached from this machine only."""
+    if host.lower() == "localhost":
+        return True
+    try:
+        return ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,67 @@
+"""The gate's own pages: asking for the token, opening, full, ended, refused. They need no script."""
+
+from __future__ import annotations
+
+from html import escape
+
+STYLE = """
+:root { color-scheme: light dark; font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif }
+body { margin: 0; min-height: 100vh; display: grid; place-items: center; background: Canvas; color: CanvasText }
+main { max-width: 30rem; padding: 2rem }
+h1 { font-size: 1.4rem; margin: 0 0 .5rem }
+p { margin: .5rem 0 }
+input, button, a.button { font: inherit; padding: .5rem .9rem; border-radius: .4rem; border: 1px solid GrayText }
+button, a.button { background: #1867c0; color: white; border-color: #1867c0; text-decoration: none; cursor: pointer }
+form { display: flex; gap: .5rem; margin-top: 1rem }
+input { flex: 1; min-width: 0 }
+.bar { height: 4px; border-radius: 2px; background: #1867c0; animation: wait 1.2s ease-in-out infinite alternate }
+@keyframes wait { from { width: 10%; margin-left: 0 } to { width: 40%; margin-left: 60% } }
+"""
+
+
+def page(title: str, body: str, *, refresh: int | None = None) -> str:
+    """Return a whole page around trusted HTML."""
+    again = "" if refresh is None else f'<meta http-equiv="refresh" content="{refresh}">'
+    return (
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8">{again}'
+        '<meta name="viewport" content="width=device-width, initial-scale=1"><link rel="icon" href="data:,">'
+        f"<title>{escape(title)} · pvfiblets</title><style>{STYLE}</style></head>"
+        f"<body><main><h1>{escape(title)}</h1>{body}</main></body></html>"
+    )
+
+
+def ask_token(wrong: bool) -> str:
+    """Return the page that asks for the token."""
+    hint = "<p><strong>That is not the token.</strong></p>" if wrong else ""
+    return page(
+        "A token is needed",
+        f"{hint}<p>Whoever started this server was shown an address with a token in it. Open that address, or enter the "
+        'token here.</p><form method="post" action="/token"><input name="token" type="password" autofocus '
+        'autocomplete="off" aria-label="Token"><button>Open</button></form>',
+    )
+
+
+def opening() -> str:
+    """Return the page that waits for a session, and asks again by itself."""
+    return page("Opening…", '<div class="bar"></div><p>The scene is being prepared.</p>', refresh=1)
+
+
+def full(limit: int) -> str:
+    """Return the page beyond the limit of sessions."""
+    many = "one session is" if limit == 1 else f"{limit} sessions are"
+    return page(
+        "All sessions are taken",
+        f"<p>{many.capitalize()} open, the most that this server allows at once. A place becomes free when somebody "
+        'closes a session.</p><p><a class="button" href="/">Try again</a></p>',
+    )
+
+
+def ended(reason: str | None) -> str:
+    """Return the page of a session that is over."""
+    why = "<p>The session was closed.</p>" if reason is None else f"<p>The session failed: {escape(reason)}</p>"
+    return page("Session ended", f'{why}<form method="post" action="/new"><button>Open a new one</button></form>')
+
+
+def refused(reason: str) -> str:
+    """Return the page of a refusal."""
+    return page("Refused", f"<p>{escape(reason.capitalize())}.</p>")
