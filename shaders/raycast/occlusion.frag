@@ -13,7 +13,7 @@
 //
 // Symbols
 //   mu           value of the surface that the pixel shows
-//   g            gradient by mm of the data; N, its normal on the viewer's side, in coordinates of the world
+//   g            gradient by mm of the data; N, its normal towards the open side, in coordinates of the world
 //   low, high    values between which all of the open side around the point is: what is beside them is behind a surface
 //   to_data      directions: world -> data coordinates
 //   radius       mm of the world
@@ -29,6 +29,7 @@
 #include "raycast/nodes.glsl"
 
 const float LIFT = {{ lift }};      // voxels
+const float BESIDE = 0.1;           // voxels
 const int FIRST_OWN_PLANE = 2;      // after near and far
 
 uniform usampler2D shown_depth;
@@ -122,12 +123,15 @@ void main() {
     vec3 p = on_surface(seen, shown.x, mu);
     vec3 g = gradient_at(p), way = seen.d.x * ray_to_mm[0].xyz + seen.d.y * ray_to_mm[1].xyz + seen.d.z * ray_to_mm[2].xyz;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
-    bool above = dot(g, way) < 0.0;
 #if FEATURE_RAYCAST_NEAREST
-    above = value_at(p) >= mu;
+    bool above = value_at(p) >= mu;
+#else
+    // By the field next to the surface: differences of two voxels pass over what is thinner than these.
+    vec3 little = seen.d * (BESIDE / length(seen.d));
+    bool above = value_at(p - little) > value_at(p + little);
 #endif
-    vec3 towards = size > 0.0 ? g / size : -way;
-    towards = dot(towards, way) > 0.0 ? -towards : towards;
+    // Not to the viewer: where a surface turns away, that of differences may be on the other side of it.
+    vec3 towards = size > 0.0 ? (above ? g : -g) / size : -way;
     // A gradient turns with the inverse's transpose.
     vec3 normal = normalize(transpose(to_data) * towards);
     float low = above ? mu : -3e38, high = above ? 3e38 : mu;
@@ -137,7 +141,9 @@ void main() {
         if (other < mu) low = max(low, other);
     }
     vec3 up = in_voxels(to_data * normal);
-    p += up * (LIFT / length(up));
+    vec3 lifted = p + up * (LIFT / length(up));
+    float there = value_at(lifted);
+    p = there < low || there >= high ? p - seen.d * (LIFT / length(seen.d)) : lifted;
     // A base around the normal without a seam (Duff et al. 2017).
     float side = normal.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (side + normal.z), b = normal.x * normal.y * a;
     vec3 right = vec3(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x);
