@@ -5,33 +5,18 @@ from __future__ import annotations
 import os
 import sys
 import time
-from itertools import product
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from pvfiblets import formats
 from pvfiblets.cli_files import plain, print_json
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of
 
-# Where the camera stands, and what is up in the picture (RAS+ mm).
-DIRECTIONS = {
-    "axial": ((0, 0, 1), (0, 1, 0)),
-    "inferior": ((0, 0, -1), (0, 1, 0)),
-    "coronal": ((0, 1, 0), (0, 0, 1)),
-    "posterior": ((0, -1, 0), (0, 0, 1)),
-    "sagittal": ((-1, 0, 0), (0, 0, 1)),
-    "right": ((1, 0, 0), (0, 0, 1)),
-    "oblique": ((-1, 0.8, 0.45), (0, 0, 1)),
-}
 # Where a scalar bar covers nothing of a brain.
 UPRIGHT = {"vertical": True, "height": 0.5, "position_x": 0.9, "position_y": 0.25}
 
 
-def screenshot(
-    paths: list[str], *, output: str, size: tuple[int, int], transparent: bool, **looks: Any
-) -> None:
+def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transparent: bool, **looks: Any) -> None:
     """Draw files into a picture file."""
     suffix = Path(output).suffix.lower()
     if suffix not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
@@ -78,6 +63,8 @@ def fill(
     no_lighting: bool,
 ) -> None:
     """Put files into a plotter's scene and point the camera."""
+    from pvfiblets.plotting.viewpoints import point_camera
+
     plotter.set_background(background)
     text = "black" if sum(plotter.background_color.float_rgb) > 1.5 else "white"
     for path in paths:
@@ -118,25 +105,6 @@ def is_mesh(path: str) -> bool:
     return not (isinstance(data, pyvista.PolyData) and data.n_lines)
 
 
-def point_camera(plotter: Any, view: str) -> None:
-    """Look at everything from one of the named directions, as near as the picture's edges allow."""
-    direction, up = DIRECTIONS[view]
-    plotter.view_vector(direction, viewup=up)
-    plotter.reset_camera()
-    camera, bounds = plotter.camera, plotter.bounds
-    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
-    # The middles of the box's edges: exact from the front, and from aslant nearer to a brain's
-    # outline than the box's corners are.
-    edges = np.array([c for c in product((0.0, 0.5, 1.0), repeat=3) if c.count(0.5) == 1])
-    points = np.column_stack([low + edges * (high - low), np.ones(len(edges))])
-    width, height = plotter.window_size
-    matrix = camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
-    seen = points @ np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]).T
-    reach = np.abs(seen[:, :2] / seen[:, 3:]).max()
-    if np.isfinite(reach) and reach > 0.0:
-        camera.zoom(0.92 / reach)
-
-
 def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -> None:
     """Make, compress, measure and draw a whole-brain-like tractogram."""
     from pvfiblets.codec.convert import compress_file
@@ -158,8 +126,10 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
 
     say("Drawing it ...")
     begin = time.perf_counter()
-    plotter = make_plotter(off_screen=True, size=(1600, 1200))
+    plotter = make_plotter(off_screen=True, size=(1600, 1200))  # before PyVista is imported by anything else
     try:
+        from pvfiblets.plotting.viewpoints import point_camera
+
         plotter.set_background("black")
         actor = plotter.add_fiblets(compressed, line_width=1.0, render=False)
         point_camera(plotter, "oblique")
@@ -194,8 +164,10 @@ def demo_table(result: dict[str, Any], original: Path, compressed: Path) -> str:
             row(str(compressed.name), result["bytes"]),
             "",
             f"  {'error of the points':<28} {'mm':>10} {'steps':>10}",
-            *(f"  {name:<28} {error[key]:>10.5f} {steps[key]:>10.4f}"
-              for name, key in (("mean", "mean"), ("99.9 % are below", "p999"), ("greatest", "max"))),
+            *(
+                f"  {name:<28} {error[key]:>10.5f} {steps[key]:>10.4f}"
+                for name, key in (("mean", "mean"), ("99.9 % are below", "p999"), ("greatest", "max"))
+            ),
             "",
             f"  compressed in {result['seconds']:.1f} s; drawn into {result['picture']} "
             f"in {result['picture_seconds']:.1f} s",

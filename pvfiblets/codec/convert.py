@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -39,7 +39,7 @@ def compress_file(
     order: Order = "input",
     per_point: Sequence[str] = (),
     per_point_bits: int = 8,
-    progress: bool = False,
+    progress: bool | Callable[[str, float], None] = False,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a ``.fiblets`` file.
 
@@ -55,8 +55,9 @@ def compress_file(
         As in :func:`pvfiblets.compress`.
     order : {'input'}
         Another order needs all streamlines at once, and is refused here.
-    progress : bool
-        Show a progress bar.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1 (0 while that
+        cannot be told). What it raises stops the work.
 
     Returns
     -------
@@ -162,7 +163,12 @@ def measure_file_error(
     return _compare(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
 
 
-def _compare(originals: Iterable[Streamlines], total: int, target: str | PathLike[str], progress: bool) -> CodingError:
+def _compare(
+    originals: Iterable[Streamlines],
+    total: int,
+    target: str | PathLike[str],
+    progress: bool | Callable[[str, float], None],
+) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = open_fiblets(target)
     tally = ErrorTally(coded.promise, coded.step, by_streamline=False)
@@ -199,7 +205,16 @@ def _plain(s: Streamlines, a: int, b: int) -> Streamlines:
     return Streamlines(s.points[offsets[a] : offsets[b]], offsets[a : b + 1] - offsets[a])
 
 
-def _shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress: bool) -> Iterator[Streamlines]:
+def _shown(
+    chunks: Iterable[Streamlines], total: int | None, what: str, progress: bool | Callable[[str, float], None]
+) -> Iterator[Streamlines]:
+    if callable(progress):
+        done = 0
+        for chunk in chunks:
+            progress(what, done / total if total else 0.0)
+            yield chunk
+            done += chunk.n_points
+        return
     with tqdm(total=total, desc=what, unit="points", unit_scale=True, disable=not progress) as bar:
         for chunk in chunks:
             yield chunk

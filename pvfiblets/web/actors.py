@@ -1,0 +1,186 @@
+"""Layers as actors of a plotter: made, brought in step with their documents, and taken away.
+
+An actor is told of the settings that differ and of nothing else; nothing is compressed or copied to the GPU anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer
+from pvfiblets.web.layers import looks
+from pvfiblets.web.shapes import make_predicate, make_region, planes_of
+
+if TYPE_CHECKING:
+    from pvfiblets.web.loading import Loaded
+    from pvfiblets.web.shapes import Load
+
+__all__ = ["MOST_PLANES", "add_actor", "check_planes", "cut", "filter_as", "look_as", "remove_actor", "select_as"]
+
+MOST_PLANES = 6
+"""That VTK cuts a mesh or tubes by."""
+
+_COLOURS = ("scalars", "color", "clim", "log_scale")
+_CONDITION = "regions"
+_STYLE = {"selection_color": "color", "selection_dim": "dim", "selection_as_tubes": "as_tubes",
+          "selection_radius": "radius"}  # fmt: skip
+
+
+def add_actor(plotter: Any, layer: Layer, loaded: Loaded) -> Any:
+    """Add what a layer draws, with its settings; filters, cuts and selection are not applied yet."""
+    common = {"name": layer.id, "show_scalar_bar": False, "reset_camera": False, "render": False}
+    wanted = looks(layer.kind, layer.settings)
+    if layer.kind == "mesh":
+        actor = plotter.add_mesh(loaded.data, **common, **wanted)
+    else:
+        add = {"tubes": plotter.add_spline_tubes, "volume": plotter.add_raycast_volume}.get(layer.kind)
+        actor = (add or plotter.add_fiblets)(loaded.data, **common)
+        try:
+            _set(actor, wanted)
+        except Exception:
+            remove_actor(plotter, actor)
+            raise
+    if layer.kind in LINES:
+        actor.selection_style(**_selection_style(layer.settings))
+    actor.visibility = layer.visible
+    return actor
+
+
+def remove_actor(plotter: Any, actor: Any) -> None:
+    """Take an actor away; its GPU memory goes with it."""
+    plotter.remove_actor(actor, reset_camera=False, render=False)
+
+
+def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) -> Any:
+    """Bring an actor's looks in step with its layer; return the actor, which of meshes is another one.
+
+    Raises
+    ------
+    ValueError
+        If the actor refuses a value; it looks as before.
+    """
+    before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
+    if before != after:
+        if new.kind == "mesh":
+            actor = add_actor(plotter, new, loaded)  # of the same name: it takes the other's place
+        else:
+            try:
+                _set(actor, {name: value for name, value in after.items() if before.get(name, _set) != value})
+            except Exception:
+                _set(actor, before)
+                raise
+    style = _selection_style(new.settings)
+    if new.kind in LINES and style != _selection_style(old.settings):
+        actor.selection_style(**style)
+    if new.visible != bool(actor.visibility):
+        actor.visibility = new.visible
+    return actor
+
+
+def _set(actor: Any, wanted: Mapping[str, Any]) -> None:
+    """Set attributes in their order; colours by way of what every scale and range allow."""
+    if "scalars" in wanted:
+        if getattr(actor, "log_scale", False):
+            actor.log_scale = False
+        actor.clim = None
+    for name, value in wanted.items():
+        if name == "color" and value is None and "scalars" in wanted:
+            continue
+        setattr(actor, name, value)
+
+
+def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
+    return {theirs: settings[ours] for ours, theirs in _STYLE.items() if ours in settings}
+
+
+# What is shown of lines -----------------------------------------------------------------------------
+
+
+def filter_as(actor: Any, old: Filters, new: Filters, load: Load) -> None:
+    """Bring what is shown of a tractogram in step with filters that were checked.
+
+    Raises
+    ------
+    ValueError, KeyError
+        If there are no such values or groups, or a region is none.
+    """
+    for name in old.criteria:
+        if name not in new.criteria:
+            actor.remove_criterion(name)
+    for name, limits in new.criteria.items():
+        if old.criteria.get(name) != limits:
+            actor.criterion(name, limits)
+    if old.groups != new.groups:
+        actor.groups_shown = new.groups
+    if old.subset != new.subset:
+        actor.subset(**(new.subset or {}))
+    if old.regions != new.regions:
+        if new.regions is not None:
+            actor.include(make_predicate(new.regions, load), name=_CONDITION)
+        elif _CONDITION in actor.conditions:
+            actor.remove_condition(_CONDITION)
+
+
+def select_as(actor: Any, selected: Ids | None) -> None:
+    """Select what a layer says."""
+    if selected is None:
+        actor.deselect()
+    else:
+        actor.select(selected.array())
+
+
+# Cuts -----------------------------------------------------------------------------------------------
+
+
+def check_planes(layer: Layer, clips: Sequence[Clip]) -> list[tuple[list[float], list[float]]]:
+    """Return normals and origins of the planes that cut tubes or a mesh.
+
+    Raises
+    ------
+    ValueError
+        If something else than planes would cut them, or too many planes.
+    """
+    found: list[tuple[list[float], list[float]]] = []
+    for clip in clips:
+        planes = planes_of(clip.shape, clip.inside)
+        if planes is None:
+            raise ValueError(
+                f"{clip.name!r} cannot cut {layer.name!r}: {layer.kind} are cut by planes, and by the inside of slabs "
+                "and boxes; choose other layers for it"
+            )
+        found += planes
+    if len(found) > MOST_PLANES:
+        raise ValueError(f"{len(found)} planes would cut {layer.name!r}; VTK allows {MOST_PLANES}: a box is six")
+    return found
+
+
+def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load) -> None:
+    """Cut an actor by those of the clips that are for its layer, and by nothing else."""
+    mine = [clip for clip in clips if clip.cuts(layer)]
+    if layer.kind not in (*LINES, "volume"):
+        from vtkmodules.vtkCommonDataModel import vtkPlane
+
+        planes = check_planes(layer, mine)
+        actor.mapper.RemoveAllClippingPlanes()
+        for normal, origin in planes:
+            plane = vtkPlane()
+            plane.SetNormal(normal)
+            plane.SetOrigin(origin)
+            actor.mapper.AddClippingPlane(plane)
+        return
+    regions = {clip.id: make_region(clip.shape, load) for clip in mine}
+    for name in list(actor.clips):
+        if name not in regions:
+            actor.unclip(name)
+    for clip in mine:
+        region = regions[clip.id] if clip.inside else ~regions[clip.id]
+        if clip.id not in actor.clips or actor.clips[clip.id] != region:
+            actor.clip(region, name=clip.id)
+
+
+def shown_streamlines(actor: Any) -> np.ndarray:
+    """``(n,)`` bool: streamlines that filters leave, as far as they are chosen as a whole."""
+    return np.asarray(actor.shown)

@@ -1,0 +1,243 @@
+"""What a scene's document is made of: immutable values, so that a state of it is kept by keeping a reference.
+
+A :class:`State` says all that a user may undo: layers, cuts, background. It holds no data and no actors; a
+:class:`Source` says where a layer's data comes from, and is the same as long as the data is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+__all__ = ["KINDS", "LINES", "Clip", "Filters", "Ids", "Layer", "Source", "State"]
+
+KINDS = ("tractogram", "tubes", "volume", "mesh", "selection")
+"""What a layer may be."""
+
+LINES = ("tractogram", "selection")
+"""Kinds that are drawn from fiblets: they can be filtered, cut and picked."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ids:
+    """Numbers of streamlines, each once and rising, as the runs that they are made of.
+
+    Parameters
+    ----------
+    runs : array_like
+        ``(n, 2)`` int64: first number of each run, and the number behind its last.
+
+    Raises
+    ------
+    ValueError
+        If runs are empty, negative, or not rising.
+    """
+
+    runs: np.ndarray
+
+    def __post_init__(self) -> None:
+        runs = np.array(self.runs, np.int64).reshape(-1, 2)
+        ends = runs.ravel()
+        if len(runs) and (runs[0, 0] < 0 or (np.diff(ends)[::2] <= 0).any() or (np.diff(ends)[1::2] <= 0).any()):
+            raise ValueError("runs of streamlines are not rising; give [[first, behind the last], ...] from 0 on")
+        runs.flags.writeable = False
+        object.__setattr__(self, "runs", runs)
+
+    @classmethod
+    def of(cls, ids: Any) -> Ids:
+        """Make them of numbers in any order."""
+        numbers = np.unique(np.asarray(ids, np.int64))
+        if not len(numbers):
+            return cls(np.zeros((0, 2), np.int64))
+        breaks = np.flatnonzero(np.diff(numbers) > 1)
+        first = numbers[np.concatenate([[0], breaks + 1])]
+        last = numbers[np.concatenate([breaks, [len(numbers) - 1]])]
+        return cls(np.stack([first, last + 1], axis=1))
+
+    def __len__(self) -> int:
+        return int((self.runs[:, 1] - self.runs[:, 0]).sum())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Ids) and self._bytes == other._bytes
+
+    def __hash__(self) -> int:
+        return hash(self._bytes)
+
+    @cached_property
+    def _bytes(self) -> bytes:
+        return self.runs.tobytes()
+
+    @property
+    def highest(self) -> int:
+        """The greatest number; -1 for none."""
+        return int(self.runs[-1, 1]) - 1 if len(self.runs) else -1
+
+    def array(self) -> np.ndarray:
+        """``(n,)`` int64: the numbers."""
+        lengths = self.runs[:, 1] - self.runs[:, 0]
+        ends = np.cumsum(lengths)
+        return np.arange(int(lengths.sum())) + np.repeat(self.runs[:, 0] - ends + lengths, lengths)
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where data comes from; one of ``path`` and ``demo``.
+
+    Attributes
+    ----------
+    path : str or None
+        A file: relative to the scene's root, with ``/``, or absolute.
+    demo : str or None
+        ``"tracts"`` or ``"head"``: made here (:mod:`pvfiblets.synthetic`).
+    size : int
+        Of a demo: streamlines, or voxels along a side.
+    ids : Ids or None
+        Only these streamlines of it.
+    """
+
+    path: str | None = None
+    demo: str | None = None
+    size: int = 0
+    ids: Ids | None = None
+
+
+@dataclass(frozen=True)
+class Filters:
+    """Which of a layer's streamlines are shown; all of this together.
+
+    Attributes
+    ----------
+    criteria : mapping of str to (float, float)
+        Least and greatest value that is shown, by the name of the values.
+    groups : tuple of str or None
+        Those shown; ``None`` for all streamlines.
+    subset : mapping or None
+        ``{"amount": share or number, "seed": int}`` or ``{"every": n}``.
+    regions : mapping or None
+        An expression of :mod:`pvfiblets.web.shapes`: ``{"how": "passes", "region": {...}}``, joined by
+        ``{"op": "and" | "or" | "not", "of": [...]}``.
+    """
+
+    criteria: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    groups: tuple[str, ...] | None = None
+    subset: Mapping[str, Any] | None = None
+    regions: Mapping[str, Any] | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether anything is left out."""
+        return bool(self.criteria) or any(part is not None for part in (self.groups, self.subset, self.regions))
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Something that a scene shows.
+
+    Attributes
+    ----------
+    id : str
+        Stays the same as long as the layer is there.
+    kind : str
+        Of `KINDS`.
+    name : str
+        For people.
+    source : Source
+        Where its data comes from.
+    visible : bool
+    settings : mapping of str to JSON values
+        All properties that can be set (:mod:`pvfiblets.web.layers`), those at their defaults included.
+    filters : Filters
+    selected : Ids or None
+        Streamlines that are selected.
+    """
+
+    id: str
+    kind: str
+    name: str
+    source: Source
+    visible: bool = True
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    filters: Filters = field(default_factory=Filters)
+    selected: Ids | None = None
+
+    @property
+    def path(self) -> str | None:
+        """The file, relative to the scene's root where it lies in it; None where there is none."""
+        return self.source.path
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A cut through layers.
+
+    Attributes
+    ----------
+    id, name : str
+    shape : mapping
+        Of :mod:`pvfiblets.web.shapes`, such as ``{"kind": "plane", "normal": [...], "origin": [...]}``.
+    inside : bool
+        Which side stays: of a plane, that which the normal points to.
+    enabled : bool
+    layers : tuple of str or None
+        Ids of those that are cut; ``None`` for all that are lines, be they added later.
+    """
+
+    id: str
+    name: str
+    shape: Mapping[str, Any]
+    inside: bool = True
+    enabled: bool = True
+    layers: tuple[str, ...] | None = None
+
+    def cuts(self, layer: Layer) -> bool:
+        """Whether it cuts a layer."""
+        if not self.enabled:
+            return False
+        return layer.kind in LINES if self.layers is None else layer.id in self.layers
+
+
+@dataclass(frozen=True)
+class State:
+    """A scene's document.
+
+    Attributes
+    ----------
+    layers : tuple of Layer
+    clips : tuple of Clip
+    background : str
+        ``#rrggbb``.
+    """
+
+    layers: tuple[Layer, ...] = ()
+    clips: tuple[Clip, ...] = ()
+    background: str = "#000000"
+
+    def layer(self, layer_id: str) -> Layer:
+        """Return a layer.
+
+        Raises
+        ------
+        KeyError
+            If there is none of that id.
+        """
+        return _named(self.layers, layer_id, "layer")
+
+    def clip(self, clip_id: str) -> Clip:
+        """Return a cut; errors as of :meth:`layer`."""
+        return _named(self.clips, clip_id, "cut")
+
+    def sources(self) -> set[tuple[str, Source]]:
+        """Kind and source of all layers."""
+        return {(layer.kind, layer.source) for layer in self.layers}
+
+
+def _named(things: Iterable[Any], wanted: str, what: str) -> Any:
+    found = next((thing for thing in things if thing.id == wanted), None)
+    if found is None:
+        there = ", ".join(thing.id for thing in things) or "none"
+        raise KeyError(f"there is no {what} {wanted!r}; there are: {there}")
+    return found

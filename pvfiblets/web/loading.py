@@ -1,0 +1,299 @@
+"""From files and demonstrations to what layers draw, with progress, and confined to a folder.
+
+Nothing here draws or knows a plotter: :meth:`Files.load` may run in a thread of its own.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pvfiblets import formats
+from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
+from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
+from pvfiblets.web.document import LINES, Source
+from pvfiblets.web.values import shown
+
+__all__ = ["MESHES", "Cancelled", "Files", "Loaded", "kind_of"]
+
+MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf")
+"""Suffixes of surfaces; those of VTK's formats may hold lines instead."""
+
+_EITHER = (".vtk", ".vtp")
+_RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
+LARGEST_AS_TUBES = 5_000_000  # points
+
+Progress = Callable[[str, float], None]
+"""Told what is being done, and which share of it is, from 0 to 1."""
+Cancel = Callable[[], bool]
+"""Whether to stop."""
+
+
+class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it
+    """A load was stopped by who asked for it; nothing has changed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """What a layer draws, and what is known of it.
+
+    Attributes
+    ----------
+    kind : str
+        Of the layers that it is for.
+    source : Source
+    name : str
+        For people.
+    data : FibletSet, SplineTubes, RaycastVolume or PolyData
+    facts : dict
+        Of the file, in JSON's types or nearly.
+    error : dict or None
+        ``error_mm`` and ``error_steps``, where compressing it here measured them.
+    kept : tuple of str
+        Per-point arrays that were asked to be kept, for scripts.
+    """
+
+    kind: str
+    source: Source
+    name: str
+    data: Any
+    facts: dict[str, Any] = field(default_factory=dict)
+    error: dict[str, Any] | None = None
+    kept: tuple[str, ...] = ()
+
+
+def kind_of(path: Path) -> str:
+    """Return the kind of layer that a file is for.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no format has its suffix.
+    """
+    name = path.name.lower()
+    if name.endswith(VOLUMES):
+        return "volume"
+    if name.endswith(_EITHER):
+        import pyvista as pv
+
+        data = pv.read(path)
+        if isinstance(data, pv.PolyData) and data.n_lines:
+            return "tubes" if any(radius in data.point_data for radius in _RADII) else "tractogram"
+        return "mesh"
+    if name.endswith(MESHES):
+        return "mesh"
+    try:
+        suffix_of(path)
+    except UnknownFormatError:
+        known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
+        raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
+    return "tractogram"
+
+
+class Files:
+    """Where a scene's files are, and what was made of them.
+
+    Parameters
+    ----------
+    root : Path, optional
+        Paths are relative to it, and lead out of it neither by ``..`` nor by links; any path is allowed without.
+    allowed : iterable of Path
+        Files and folders outside of the root that may be opened all the same.
+    """
+
+    def __init__(self, root: Path | None = None, allowed: Iterable[Path] = ()) -> None:
+        self.root = None if root is None else Path(root).resolve(strict=True)
+        self.allowed = [Path(path).resolve() for path in allowed]
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._made = 0
+
+    def resolve(self, path: Any, *, new: bool = False) -> Path:
+        """Return the place of a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            Relative to the root, or absolute.
+        new : bool
+            Whether it is to be written, and only its folder must be there.
+
+        Raises
+        ------
+        PermissionError
+            If it lies outside of the root.
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            If it is no path.
+        """
+        text = str(path) if isinstance(path, (str, Path)) else ""
+        if not text or not text.isprintable() or len(text) > 4096:
+            raise ValueError(f"path is {shown(path)}; give the name of a file")
+        found = (Path(text) if self.root is None else self.root / text).resolve()
+        inside = self.root is None or any(
+            found == place or found.is_relative_to(place) for place in (self.root, *self.allowed)
+        )
+        if not inside:
+            raise PermissionError(f"{text}: outside of the folder that is open to you; give a path in it")
+        if not (found.parent.is_dir() if new else found.is_file()):
+            raise FileNotFoundError(f"{text}: there is no such {'folder' if new else 'file'}")
+        return found
+
+    def name(self, place: Path) -> str:
+        """Return a place as documents hold it: relative to the root where it lies in it."""
+        if self.root is not None and place.is_relative_to(self.root):
+            return place.relative_to(self.root).as_posix()
+        return str(place)
+
+    def load(
+        self, source: Source, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
+    ) -> Loaded:
+        """Read, and where it must be, compress a source; it may take minutes.
+
+        Parameters
+        ----------
+        source : Source
+            Without ``ids``.
+        kind : str, optional
+            Of the layer; that which the file is for by default.
+        progress : callable, optional
+            Called with what is being done and the share of it that is, 0 to 1.
+        cancel : callable, optional
+            Asked from time to time whether to stop.
+
+        Raises
+        ------
+        Cancelled
+            If `cancel` said so.
+        FormatError, ValueError, OSError
+            If the file is damaged, of another kind, outside of the root or not there.
+        """
+        watch = _Watch(progress, cancel)
+        watch("reading", 0.0)
+        if source.demo is not None:
+            return _demo(source, kind)
+        place = self.resolve(source.path)
+        kind = kind_of(place) if kind is None else kind
+        source = Source(self.name(place))
+        name = place.name
+        if kind in LINES:
+            return self._lines(place, source, name, watch)
+        if kind == "tubes":
+            return _tubes(place, source, name, watch)
+        if kind == "volume":
+            from pvfiblets.raycast import as_raycast_volume
+
+            volume = as_raycast_volume(place)
+            watch("reading", 1.0)
+            return Loaded(kind, source, name, volume, _volume_facts(volume))
+        if kind == "labels":
+            import nibabel
+
+            return Loaded(kind, source, name, nibabel.load(place))
+        mesh = _mesh(place)
+        watch("reading", 1.0)
+        return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
+
+    def _lines(self, place: Path, source: Source, name: str, watch: _Watch) -> Loaded:
+        from pvfiblets.codec.convert import compress_file
+        from pvfiblets.codec.fibletset import FibletSet
+
+        facts = formats.info(place)
+        if suffix_of(place) == ".fiblets":
+            fiblets = FibletSet.open(place)
+            watch("reading", 1.0)
+            return Loaded("tractogram", source, name, fiblets, facts)
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
+        self._made += 1
+        target = Path(self._folder.name) / f"{self._made}.fiblets"
+        kept = tuple(facts.get("per_point") or ())
+        try:
+            result = compress_file(place, target, per_point=kept, progress=watch)
+        except BaseException:
+            target.unlink(missing_ok=True)
+            raise
+        error = {key: result[key] for key in ("error_mm", "error_steps")}
+        facts = {**facts, "dropped": result["dropped"]}
+        return Loaded("tractogram", source, name, FibletSet.open(target), facts, error, kept)
+
+    def close(self) -> None:
+        """Remove what was made of files; twice is harmless."""
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+
+class _Watch:
+    """Passes progress on, and stops where that is wanted."""
+
+    def __init__(self, progress: Progress | None, cancel: Cancel | None) -> None:
+        self._progress, self._cancel = progress, cancel
+
+    def __call__(self, what: str, share: float) -> None:
+        if self._cancel is not None and self._cancel():
+            raise Cancelled("stopped; nothing was opened")
+        if self._progress is not None:
+            self._progress(what, min(max(share, 0.0), 1.0))
+
+
+def _tubes(place: Path, source: Source, name: str, watch: _Watch) -> Loaded:
+    from pvfiblets.plotting.spline_scalars import as_tubes
+
+    if place.suffix.lower() not in _EITHER:
+        points = formats.info(place).get("points")
+        if points is not None and points > LARGEST_AS_TUBES:
+            raise ValueError(
+                f"{name} has {points:,} points, more than the {LARGEST_AS_TUBES:,} that spline tubes are made of here; "
+                "open it as a tractogram, and give that a tube radius"
+            )
+    tubes, _ = as_tubes(place)
+    watch("reading", 1.0)
+    return Loaded("tubes", source, name, tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments})
+
+
+def _mesh(place: Path) -> Any:
+    import pyvista as pv
+
+    data = pv.read(place)
+    if isinstance(data, pv.MultiBlock):
+        data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()
+    if not isinstance(data, pv.PolyData) and hasattr(data, "extract_surface"):
+        data = data.extract_surface()
+    if not isinstance(data, pv.PolyData) or not data.n_points:
+        raise ValueError(f"{place.name}: there is no surface in it")
+    return data
+
+
+def _volume_facts(volume: Any) -> dict[str, Any]:
+    return {
+        "voxels": list(volume.shape),
+        "spacing_mm": volume.spacing,
+        "affine": volume.affine,
+        "values": list(volume.value_range),
+        "dtype": str(volume.values.dtype),
+        "missing": volume.n_missing,
+    }
+
+
+def _demo(source: Source, kind: str | None) -> Loaded:
+    from pvfiblets import synthetic
+
+    if source.demo == "tracts" and kind in (None, *LINES):
+        from pvfiblets.codec.compress import compress
+        from pvfiblets.codec.error import measure_error
+
+        lines = synthetic.brain_streamlines(source.size, 0.5)
+        fiblets = compress(lines)
+        error = measure_error(lines, fiblets).summary()
+        facts = {"streamlines": len(lines), "points": lines.n_points, "format": "made here"}
+        return Loaded("tractogram", source, "demo tracts", fiblets, facts, error)
+    if source.demo == "head" and kind in (None, "volume"):
+        from pvfiblets.synthetic.vessels import brain_like
+
+        volume = brain_like(source.size)
+        return Loaded("volume", source, "demo head", volume, _volume_facts(volume))
+    raise ValueError(f"there is no demonstration {source.demo!r} for a layer of kind {kind!r}; there are tracts, head")

@@ -1,0 +1,391 @@
+"""The scene of one session: a document, and the plotter that is kept in step with it.
+
+Whatever changes the document goes through :meth:`Scene.become`: actors are told what differs, and if one of them
+refuses, all is as it was. So undo, sessions and single settings are the same thing, a :class:`.State` to become.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.web import layers
+from pvfiblets.web.actors import add_actor, check_planes, cut, filter_as, look_as, remove_actor, select_as
+from pvfiblets.web.bars import Bars
+from pvfiblets.web.cameras import Cameras
+from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State
+from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
+from pvfiblets.web.questions import Questions
+from pvfiblets.web.selecting import Selecting
+from pvfiblets.web.showing import Showing
+from pvfiblets.web.values import colour, text
+
+__all__ = ["Change", "Scene"]
+
+MOST_LAYERS = 64
+
+
+@dataclass(frozen=True)
+class Change:
+    """What listeners are told.
+
+    Attributes
+    ----------
+    what : str
+        What was done, for a list of things to undo.
+    key : tuple or None
+        Changes of one key that follow each other at once are one, as a slider's are.
+    """
+
+    what: str
+    key: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """An actor, and what it is in step with."""
+
+    actor: Any
+    layer: Layer
+    clips: tuple[Clip, ...]
+
+
+class Scene(Showing, Selecting, Questions, Cameras):
+    """What a session shows.
+
+    All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Drawn into; it is the scene's own.
+    root : Path, optional
+        Folder that paths are relative to and confined to; any path is allowed without.
+    allowed : iterable of Path
+        Files and folders outside of the root that may be opened all the same.
+    """
+
+    def __init__(self, plotter: Any, root: Path | None = None, *, allowed: Any = ()) -> None:
+        self.plotter = plotter
+        self.files = Files(root, allowed)
+        self._state = State(background=plotter.background_color.hex_rgb)
+        self._drawn: dict[str, _Drawn] = {}
+        self._data: dict[tuple[str, Source], Loaded] = {}
+        self._shapes: dict[tuple[str, str], Any] = {}
+        self._bars = Bars(plotter)
+        self._listeners: list[Callable[[Change], None]] = []
+        self._used = 0
+
+    # The document -------------------------------------------------------------------------------
+
+    @property
+    def root(self) -> Path | None:
+        """Folder that paths are relative to."""
+        return self.files.root
+
+    @property
+    def state(self) -> State:
+        """The document as it is; it never changes, another one takes its place."""
+        return self._state
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """All layers, in their order."""
+        return self._state.layers
+
+    def layer(self, layer_id: str) -> Layer:
+        """Return a layer; KeyError if there is none of that id."""
+        return self._state.layer(layer_id)
+
+    def actor(self, layer_id: str) -> Any:
+        """Return the actor that draws a layer; KeyError if there is none of that id. That of a mesh may change."""
+        self._state.layer(layer_id)
+        return self._drawn[layer_id].actor
+
+    def watch(self, listener: Callable[[Change], None]) -> Callable[[], None]:
+        """Call ``listener`` after every change of the document; return what ends that."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener) if listener in self._listeners else None
+
+    def become(self, state: State, what: str = "", key: tuple[str, ...] | None = None) -> None:
+        """Bring everything in step with another document.
+
+        Parameters
+        ----------
+        state : State
+            That was checked.
+        what : str
+            What is done, for listeners; they are told nothing if it is empty.
+        key : tuple of str, optional
+            Of the :class:`Change`.
+
+        Raises
+        ------
+        Exception
+            What an actor or file refused; the scene is as it was.
+        """
+        if state == self._state:
+            return
+        try:
+            self._step(state)
+        except BaseException:
+            self._step(self._state)
+            raise
+        self._state = state
+        if what:
+            for listener in tuple(self._listeners):
+                listener(Change(what, key))
+
+    def _step(self, state: State) -> None:
+        wanted = {layer.id: layer for layer in state.layers}
+        for layer in state.layers:  # before anything changes
+            self.data(layer)
+            if layer.kind not in (*LINES, "volume"):
+                check_planes(layer, [clip for clip in state.clips if clip.cuts(layer)])
+        for layer_id, drawn in list(self._drawn.items()):
+            new = wanted.get(layer_id)
+            if new is None or (new.kind, new.source) != (drawn.layer.kind, drawn.layer.source):
+                remove_actor(self.plotter, drawn.actor)
+                del self._drawn[layer_id]
+        for layer in state.layers:
+            self._draw(layer, state.clips)
+        if state.background != self.plotter.background_color.hex_rgb:
+            self.plotter.set_background(state.background)
+        self._bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
+
+    def _draw(self, layer: Layer, clips: tuple[Clip, ...]) -> None:
+        """Bring one actor in step with its layer."""
+        drawn = self._drawn.get(layer.id)
+        if drawn is None:
+            actor = add_actor(self.plotter, layer, self.data(layer))
+            drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), ())
+        elif drawn.layer is layer and drawn.clips is clips:
+            return
+        else:
+            actor = look_as(self.plotter, drawn.actor, drawn.layer, layer, self.data(layer))
+            before = () if actor is not drawn.actor else drawn.clips
+            drawn = _Drawn(actor, replace(layer, filters=drawn.layer.filters, selected=drawn.layer.selected), before)
+        self._drawn[layer.id] = drawn
+        if layer.kind in LINES:
+            self._filter(drawn, layer)
+            if drawn.layer.selected != layer.selected:
+                select_as(actor, layer.selected)
+        if drawn.clips != clips:
+            cut(actor, layer, clips, self._shape)
+        self._drawn[layer.id] = _Drawn(actor, layer, clips)
+
+    def _filter(self, drawn: _Drawn, layer: Layer) -> None:
+        try:
+            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self._shape)
+        except BaseException:  # some of it may be in force already
+            drawn.actor.show_all()
+            filter_as(drawn.actor, Filters(), drawn.layer.filters, self._shape)
+            cut(drawn.actor, drawn.layer, drawn.clips, self._shape)
+            raise
+
+    # Data ---------------------------------------------------------------------------------------
+
+    def data(self, layer: Layer) -> Loaded:
+        """Return what a layer draws; it is read if it must be."""
+        kind = "tractogram" if layer.kind in LINES else layer.kind
+        key = kind, layer.source
+        if key not in self._data:
+            whole = replace(layer.source, ids=None)
+            if (kind, whole) not in self._data:
+                self._data[kind, whole] = self.files.load(whole, kind)
+            loaded = self._data[kind, whole]
+            if layer.source.ids is not None:
+                ids, total = layer.source.ids, loaded.data.n_streamlines
+                if ids.highest >= total:
+                    raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
+                part = loaded.data.extract(ids.array())
+                loaded = replace(loaded, source=layer.source, data=part)
+            self._data[key] = loaded
+        return self._data[key]
+
+    def forget_unused(self, states: Iterable[State] = ()) -> None:
+        """Let go of data that neither the document nor any of some other states needs."""
+        needed = set()
+        for state in (self._state, *states):
+            for kind, source in state.sources():
+                family = "tractogram" if kind in LINES else kind
+                needed |= {(family, source), (family, replace(source, ids=None))}
+        self._data = {key: loaded for key, loaded in self._data.items() if key in needed}
+
+    def _shape(self, kind: str, path: str) -> Any:
+        """Return what a region is made of: the region of a mesh, or an image of labels."""
+        if (kind, path) not in self._shapes:
+            from pvfiblets.plotting.cutting import as_region
+
+            data = self.files.load(Source(path), kind).data
+            self._shapes[kind, path] = as_region(data) if kind == "mesh" else data
+        return self._shapes[kind, path]
+
+    # Layers -------------------------------------------------------------------------------------
+
+    def load(
+        self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
+    ) -> Loaded:
+        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own.
+
+        Parameters
+        ----------
+        path : str or Path
+            Relative to the root, or absolute.
+        kind : str, optional
+            Of the layer; that which the file is for by default.
+        progress, cancel : callable, optional
+            See :meth:`.Files.load`.
+        """
+        if kind == "selection" or (kind is not None and kind not in layers.KINDS):
+            raise ValueError(
+                f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
+            )
+        place = self.files.resolve(path)
+        return self.files.load(Source(self.files.name(place)), kind, progress, cancel)
+
+    def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
+        """Add a layer of what :meth:`load` returned."""
+        self._data[loaded.kind, loaded.source] = loaded
+        layer = Layer(
+            self._fresh_id(),
+            loaded.kind,
+            self._free_name(loaded.name if name is None else text(name, "name")),
+            loaded.source,
+            settings=layers.defaults(loaded.kind),
+        )
+        return self._add(layer, f"open {layer.name}")
+
+    def open(
+        self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
+    ) -> Layer:
+        """Read a file and add a layer of it; see :meth:`load`."""
+        return self.add(self.load(path, kind, progress, cancel))
+
+    def add_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Layer]:
+        """Add made-up tracts, and a made-up head around them that is not visible at first."""
+        tracts = self.add(self.files.load(Source(demo="tracts", size=int(streamlines))))
+        head = self.add(self.files.load(Source(demo="head", size=int(voxels))))
+        self.show(head.id, False)
+        return [tracts, self.layer(head.id)]
+
+    def remove(self, layer_id: str) -> None:
+        """Take a layer away."""
+        layer = self.layer(layer_id)
+        kept = tuple(other for other in self.layers if other is not layer)
+        clips = tuple(
+            replace(clip, layers=tuple(i for i in clip.layers if i != layer_id))
+            if clip.layers is not None and layer_id in clip.layers
+            else clip
+            for clip in self._state.clips
+        )
+        self.become(replace(self._state, layers=kept, clips=clips), f"remove {layer.name}")
+
+    def duplicate(self, layer_id: str) -> Layer:
+        """Add a layer like another, with the same settings and filters."""
+        layer = self.layer(layer_id)
+        twin = replace(layer, id=self._fresh_id(), name=self._free_name(layer.name))
+        return self._add(twin, f"duplicate {layer.name}")
+
+    def rename(self, layer_id: str, name: str) -> None:
+        """Give a layer another name."""
+        layer = self.layer(layer_id)
+        self._change(replace(layer, name=text(name, "name")), f"rename {layer.name}")
+
+    def show(self, layer_id: str, visible: bool) -> None:
+        """Show or hide a layer."""
+        layer = self.layer(layer_id)
+        self._change(replace(layer, visible=bool(visible)), f"{'show' if visible else 'hide'} {layer.name}")
+
+    def set(self, layer_id: str, name: str, value: Any) -> None:
+        """Set a property of a layer.
+
+        Parameters
+        ----------
+        layer_id : str
+        name : str
+            Of :data:`pvfiblets.web.layers.TABLES`.
+        value : JSON value
+            As a browser sent it.
+
+        Raises
+        ------
+        KeyError
+            If there is no such layer.
+        ValueError
+            If there is no such property, or it cannot be that; nothing has changed.
+        """
+        layer = self.layer(layer_id)
+        checked = layers.check(layer.kind, name, value, self.data(layer).data)
+        settings = layers.changed(layer.kind, layer.settings, name, checked)
+        self._change(replace(layer, settings=settings), f"{name} of {layer.name}", ("set", layer_id, name))
+
+    def set_background(self, value: str) -> None:
+        """Set the colour behind everything."""
+        background = colour(value, "background")
+        self.become(replace(self._state, background=background), "background", ("background",))
+
+    def keep_selection(self, layer_id: str) -> Layer:
+        """Add a layer of what is selected of another, drawn on its own.
+
+        Raises
+        ------
+        ValueError
+            If nothing is selected.
+        """
+        layer = self._lines(layer_id)
+        if layer.selected is None:
+            raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
+        chosen = layer.selected.array()
+        if layer.source.ids is not None:
+            chosen = layer.source.ids.array()[chosen]
+        source = replace(layer.source, ids=Ids.of(chosen))
+        settings = {**layer.settings, "tube_radius": None, "opacity": 1.0}
+        name = self._free_name(f"{len(layer.selected):,} of {layer.name}")
+        return self._add(Layer(self._fresh_id(), "selection", name, source, settings=settings), f"keep {name}")
+
+    def close(self) -> None:
+        """Take all layers away and remove what was made of files; twice is harmless."""
+        self._listeners.clear()
+        self.become(State(background=self._state.background))
+        self._data.clear()
+        self._shapes.clear()
+        self.files.close()
+
+    # Inside -------------------------------------------------------------------------------------
+
+    def _add(self, layer: Layer, what: str) -> Layer:
+        if len(self.layers) >= MOST_LAYERS:
+            raise ValueError(f"there are {MOST_LAYERS} layers, which is the most; remove one first")
+        first = not self.layers
+        self.become(replace(self._state, layers=(*self.layers, layer)), what)
+        if first:
+            self.view("oblique")
+        return layer
+
+    def _change(self, layer: Layer, what: str, key: tuple[str, ...] | None = None) -> None:
+        """Put a layer in the place of the one of the same id."""
+        changed = tuple(layer if other.id == layer.id else other for other in self.layers)
+        self.become(replace(self._state, layers=changed), what, key)
+
+    def _lines(self, layer_id: str) -> Layer:
+        """Return a layer that is made of streamlines."""
+        layer = self.layer(layer_id)
+        if layer.kind not in LINES:
+            raise ValueError(f"{layer.name!r} is of kind {layer.kind}; only tractograms have streamlines to choose")
+        return layer
+
+    def _fresh_id(self) -> str:
+        taken = {layer.id for layer in self.layers} | {clip.id for clip in self._state.clips}
+        while True:
+            self._used += 1
+            if (found := f"layer{self._used}") not in taken:
+                return found
+
+    def _free_name(self, name: str) -> str:
+        taken = {layer.name for layer in self.layers}
+        if name not in taken:
+            return name
+        return next(found for i in range(2, len(taken) + 3) if (found := f"{name} {i}") not in taken)
