@@ -124,11 +124,20 @@ def _of_object(source: Any, scalars: Any) -> Found:
         return _of_nibabel(source, "the image", "values")
     if hasattr(source, "values") and hasattr(source, "affine"):
         return np.asarray(source.values), source.affine, str(getattr(source, "name", "values"))
-    if isinstance(source, tuple) and len(source) == 2 and np.ndim(source[1]) == 2:
-        return _of_array(source[0]), np.asarray(source[1]), "values"
+    if isinstance(source, tuple) and len(source) == 2 and _is_pair(*source):
+        return _of_array(source[0]), _floats("affine", source[1], "a (4, 4) matrix from voxels to mm"), "values"
     if isinstance(source, np.ndarray) or hasattr(source, "__array__") or isinstance(source, (list, tuple)):
         return _of_array(source), np.eye(4), "values"
     raise TypeError(f"rays cannot be cast through a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _is_pair(values: Any, affine: Any) -> bool:
+    """Whether two things are a volume and its affine, right or wrong, and not two slices of a volume."""
+    whole = [isinstance(each, np.ndarray) and each.ndim >= 3 for each in (values, affine)]
+    try:
+        return whole == [True, False] or np.shape(affine) == (4, 4)
+    except ValueError:  # rows of unlike lengths
+        return False
 
 
 def _of_array(given: Any) -> npt.NDArray[Any]:
@@ -316,18 +325,18 @@ def _placed(own: Any, spacing: Any, origin: Any, direction: Any, affine: Any) ->
     if affine is not None:
         if not (spacing is None and origin is None and direction is None):
             raise ValueError("affine says spacing, origin and direction too; give either it or those")
-        return np.asarray(affine, np.float64)
+        return _floats("affine", affine, "a (4, 4) matrix from voxels to mm")
     if spacing is None and origin is None and direction is None:
         return np.asarray(own, np.float64)
     place = np.array(own, np.float64)
     lengths = np.linalg.norm(place[:3, :3], axis=0)
     axes = np.divide(place[:3, :3], lengths, out=np.eye(3), where=lengths > 0.0)
     if spacing is not None:
-        lengths = np.asarray(spacing, np.float64)
+        lengths = _floats("spacing", spacing, "one or three finite lengths above 0, mm")
         if lengths.shape not in ((), (3,)) or not np.isfinite(lengths).all() or not (lengths > 0.0).all():
             raise ValueError(f"spacing={spacing!r}; expected one or three finite lengths above 0, mm")
     if direction is not None:
-        axes = np.asarray(direction, np.float64)
+        axes = _floats("direction", direction, "a finite (3, 3) matrix or 9 numbers, row by row")
         axes = axes.reshape(3, 3) if axes.shape == (9,) else axes
         if axes.shape != (3, 3) or not np.isfinite(axes).all():
             raise ValueError(f"direction={direction!r}; expected a finite (3, 3) matrix or 9 numbers, row by row")
@@ -342,8 +351,16 @@ def _placed(own: Any, spacing: Any, origin: Any, direction: Any, affine: Any) ->
     return place
 
 
+def _floats(name: str, given: Any, expected: str) -> Array:
+    """An argument as numbers."""
+    try:
+        return np.asarray(given, np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}={given!r}; expected {expected}") from None
+
+
 def _point(origin: Any) -> Array:
-    point = np.asarray(origin, np.float64)
+    point = _floats("origin", origin, "three finite coordinates, mm")
     if point.shape != (3,) or not np.isfinite(point).all():
         raise ValueError(f"origin={origin!r}; expected three finite coordinates, mm")
     return point

@@ -19,6 +19,9 @@ KEPT = (np.uint8, np.uint16, np.int16, np.float32)
 WIDENED = {"b1": np.uint8, "i1": np.int16, "f2": np.float32}
 SINGULAR = 1e-12
 """An affine whose columns span less than this part of their lengths' product flattens space."""
+SPAN = (1e-28, 1e38)
+"""Between which the values' range must lie: differences of values, and products with them, are taken in float32, which
+ends at 3.4e38 and has few digits, or none on GPUs, below 1.2e-38."""
 
 Array = npt.NDArray[np.float64]
 
@@ -50,7 +53,8 @@ class RaycastVolume:
     ------
     ValueError
         If there are other than three axes or one has fewer than two voxels, if the numbers are complex or structured or
-        do not fit float32, or if the affine is not a finite, invertible ``(4, 4)`` matrix that ends in (0, 0, 0, 1).
+        they or their range do not fit float32, or if the affine is not a finite, invertible ``(4, 4)`` matrix that ends
+        in (0, 0, 0, 1).
     """
 
     values: npt.NDArray[Any]
@@ -167,10 +171,22 @@ def _as_floats(values: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
 
 def _finite(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[np.bool_] | None]:
     """The values with all that are not finite replaced, and where NaN was; unchanged where all are finite."""
-    if values.dtype.kind != "f" or all(np.isfinite(slab).all() for slab in _slabs(values)):
+    if values.dtype.kind != "f":
+        return values, None
+    with np.errstate(invalid="ignore"):
+        ends = [(float(slab.min()), float(slab.max())) for slab in _slabs(values)]  # NaN where there is any
+    whole = bool(np.isfinite(ends).all())
+    low, high = np.min(ends), np.max(ends)
+    if not whole:
+        low, high = _range(values)
+    if low < high and not SPAN[0] <= high - low <= SPAN[1]:
+        raise ValueError(
+            f"the volume's values run from {low:g} to {high:g}, a range that float32, in which rays are cast, cannot "
+            f"compute with: scale them to one between {SPAN[0]:g} and {SPAN[1]:g}"
+        )
+    if whole:
         return values, None
     missing = np.isnan(values)
-    low, high = _range(values)
     return np.nan_to_num(values, copy=True, nan=low, posinf=high, neginf=low), missing if missing.any() else None
 
 

@@ -90,10 +90,12 @@ class RayBlock:
         block["depth"] = (w - z) / 2.0, w
         planes = [w + z, w - z, *(np.asarray(view.clip_planes, np.float64).reshape(-1, 4) @ volume.affine)]
         planes = [plane / (np.abs(plane[:3]).max() or 1.0) for plane in planes]
-        block["planes"][: len(planes)] = np.clip(planes, -_LARGEST, _LARGEST)
         box = np.array(casting.box if casting.box is not None else (-np.inf, np.inf) * 3).reshape(3, 2)
-        block["low"][:3] = np.maximum(box[:, 0], 0.0)
-        block["high"][:3] = np.minimum(box[:, 1], size - 1.0)
+        low, high = np.maximum(box[:, 0], 0.0), np.minimum(box[:, 1], size - 1.0)
+        if (low > high).any() or not way.any():  # the box is beside the volume, or there is no depth: nothing is there
+            planes = [np.array([0.0, 0.0, 0.0, -1.0])]
+        block["planes"][: len(planes)] = np.clip(planes, -_LARGEST, _LARGEST)
+        block["low"][:3], block["high"][:3] = low, high
         block["low"][3], block["high"][3] = self.step_mm(casting), casting.stop
         block["size"] = *size, view.size[0] / 2.0
         least, greatest = max(casting.low, -_LARGEST), min(casting.high, _LARGEST)
