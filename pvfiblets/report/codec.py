@@ -1,0 +1,225 @@
+"""The study of the codec: bytes, errors and speed of fiblets and of other ways of keeping streamlines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.streamlines import Streamlines
+
+from .data import DataSet, data_sets
+from .measure import distances, error_figures, median_step, timed
+from .record import Axes, Figure, LeftOut, Record
+from .rivals.directions import PaperFiblets, QFib
+from .rivals.linearised import linearised
+from .rivals.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
+from .study import Options
+
+__all__ = ["STUDY", "CodecStudy", "Way", "ways"]
+
+PROMISES = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
+QUICK_PROMISES = (0.05, 0.1, 0.2)
+DEFAULT_PROMISE = 0.1
+RECORD_POINTS = (15, 30)  # besides 60
+QUICK_POINTS = 20_000
+
+Points = npt.NDArray[np.floating]
+Offsets = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way of packing. ``make(step)`` gives the function that packs points and offsets, for data of that step."""
+
+    name: str
+    setting: str
+    make: Callable[[float], Callable[[Points, Offsets], Any]]
+    ours: bool = False
+    default: bool = False
+
+
+@dataclass
+class _Fiblets:
+    """A set of fiblets as the rivals are."""
+
+    fiblets: Any
+    nbytes: int
+
+    def points(self) -> Points:
+        points: Points = self.fiblets.decompress().points
+        return points
+
+
+def _fiblets(promise: float, effort: Any, record: int | None = None) -> Callable[[float], Any]:
+    def make(step: float) -> Callable[[Points, Offsets], _Fiblets]:
+        from pvfiblets.codec.compress import compress
+
+        def pack(points: Points, offsets: Offsets) -> _Fiblets:
+            cut = offsets if record is None else recut(offsets, record)
+            max_error = promise * step if step > 0.0 else None
+            made = compress(Streamlines(points, cut), max_error=max_error, effort=effort)
+            # Only the last fiblet of a streamline has an end vector. Cut streamlines have too many.
+            return _Fiblets(made, made.nbytes - made.ends.itemsize * (len(cut) - len(offsets)))
+
+        return pack
+
+    return make
+
+
+def recut(offsets: Offsets, record: int) -> Offsets:
+    """Cut streamlines every ``record`` points, so that no fiblet has more."""
+    counts = np.diff(offsets)
+    pieces = np.maximum(-(-counts // record), 1)
+    nth = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    cut: Offsets = np.append(np.repeat(offsets[:-1], pieces) + record * nth, offsets[-1])
+    return cut
+
+
+def ways(quick: bool) -> list[Way]:
+    """Return all ways, the most important first: where time runs out, the last are left out."""
+    found = [
+        Way("fiblets", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "fast"), ours=True, default=True),
+        Way("fiblets, look-ahead", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "high"), ours=True),
+        Way("QFib", "8 bits", lambda _: QFib(8)),
+        Way("QFib", "16 bits", lambda _: QFib(16)),
+        Way("paper's fiblets", "", lambda _: PaperFiblets()),
+        Way("float16", "", lambda _: float16),
+        Way("int16 over bounds", "", lambda _: int16),
+        Way("zlib of float32", "", lambda _: squeezed_by_zlib(6)),
+        Way("zstd of float32", "", lambda _: squeezed_by_zstd(3)),
+    ]
+    found += [
+        Way("fiblets", f"{promise} steps", _fiblets(promise, "fast"), ours=True)
+        for promise in (QUICK_PROMISES if quick else PROMISES)
+        if promise != DEFAULT_PROMISE
+    ]
+    found += [
+        Way("dipy linearised", f"{tolerance} steps", _dipy(tolerance))
+        for tolerance in ((0.1,) if quick else (0.02, 0.1, 0.5))
+    ]
+    found += [
+        Way(f"fiblets of {record} points", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "fast", record), True)
+        for record in ((30,) if quick else RECORD_POINTS)
+    ]
+    if not quick:
+        found += [
+            Way("fiblets, look-ahead", f"{promise} steps", _fiblets(promise, "high"), ours=True)
+            for promise in PROMISES
+            if promise != DEFAULT_PROMISE
+        ]
+    return found
+
+
+def _dipy(tolerance: float) -> Callable[[float], Any]:
+    return lambda step: linearised(tolerance * step)
+
+
+class CodecStudy:
+    """Fiblets beside other ways of keeping streamlines."""
+
+    name = "codec"
+    title = "Compressed streamlines"
+    approximates = "Points of streamlines kept in fewer bytes: fiblets, beside other ways of keeping them."
+    axes = (
+        Axes("size-max", "costs/size", "errors/max in steps", "bytes per point", "largest error, steps"),
+        Axes("size-mean", "costs/size", "errors/mean in steps", "bytes per point", "mean error, steps"),
+        Axes("compress", "times/compress", "errors/max in steps", "compress, ns per point", "largest error, steps"),
+        Axes(
+            "decompress", "times/decompress", "errors/max in steps", "decompress, ns per point", "largest error, steps"
+        ),
+    )
+    notes = (
+        "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
+        "distance between consecutive points. Raw points are float32: 12 bytes each. All ways count 4 bytes a streamline "
+        "for its number of points where decoding needs it. Times are of one thread, in memory: no file is read or written.",
+        "*fiblets*: greedy encoder, with the promise as the setting; *look-ahead*: effort high; *fiblets of 30 points*: "
+        "records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description in Schertzer "
+        "et al. 2022 (pvfiblets/report/rivals/directions.py says what it leaves open), with the file's median step: what "
+        "steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the setting; its points "
+        "cannot be had back, so its error is the distance from the line that is left, and there is nothing to "
+        "decompress. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
+        "Made-up sets: whole-brain-like tracking of constant step (pvfiblets.synthetic); *noisy* ones turn by an "
+        "independent random angle at every step as well, 4° per axis at 0.2 mm and in proportion to the step's root "
+        "otherwise, much as iFOD1 does.",
+    )
+
+    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+        """Yield a record for every data set and way."""
+        if options.quick:
+            options.points = min(options.points, QUICK_POINTS)
+        chosen = ways(options.quick)
+        missing: set[str] = set()
+        with one_thread():
+            for data in data_sets(options, left_out):
+                yield from self._measured(data, chosen, missing, options, left_out)
+
+    def _measured(
+        self, data: DataSet, chosen: list[Way], missing: set[str], options: Options, left_out: list[LeftOut]
+    ) -> Iterator[Record]:
+        points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
+        step = median_step(points, offsets)
+        done, late = 0, []
+        for way in chosen:
+            if way.name in missing:
+                continue
+            if not options.budget.allows():
+                late.append(f"{way.name} {way.setting}".strip())
+                continue
+            try:
+                yield measured(data, way, points, offsets, step, options)
+                done += 1
+            except ImportError as error:
+                missing.add(way.name)
+                left_out.append(LeftOut(way.name, f"{error.name or error} is not installed"))
+            except ValueError as error:
+                left_out.append(LeftOut(f"{data.name}: {way.name} {way.setting}".strip(), str(error)))
+        if late:
+            what = "everything" if not done else ", ".join(late)
+            left_out.append(LeftOut(f"{data.name}: {what}", "the time given was used up"))
+        options.log(f"codec: {data.name}: {done} ways")
+
+
+def measured(data: DataSet, way: Way, points: Points, offsets: Offsets, step: float, options: Options) -> Record:
+    """Pack, unpack, and measure one way on one data set."""
+    pack = way.make(step)
+    packed, compressing = timed(lambda: pack(points, offsets), options.repeats, len(points))
+    times = {"compress": compressing}
+    if hasattr(packed, "points"):
+        decoded, times["decompress"] = timed(packed.points, options.repeats, len(points))
+        apart = distances(points, decoded)
+    else:
+        apart = packed.distances(points, offsets)
+    return Record(
+        data=data.name,
+        group=data.group,
+        approximation="points of streamlines",
+        way=way.name,
+        setting=way.setting,
+        errors=error_figures(apart, step),
+        costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
+        times=times,
+        ours=way.ours,
+        default=way.default,
+        machine=options.machine,
+    )
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Run compiled loops on one thread: speeds are then of one core, as those of ways that know of no threads are."""
+    import numba
+
+    before = numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)
+
+
+STUDY = CodecStudy()

@@ -1,0 +1,178 @@
+"""The Markdown page of a report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .record import Record, Report, StudyResult, Timing
+
+__all__ = ["page"]
+
+Pictures = Mapping[str, Sequence[tuple[str, str]]]
+
+
+def page(report: Report, pictures: Pictures) -> str:
+    """Write a report as Markdown.
+
+    Parameters
+    ----------
+    report : Report
+    pictures : mapping of str to sequence of (str, str)
+        By study: file names beside the page, and what they show.
+
+    Returns
+    -------
+    str
+    """
+    lines = ["# Error against run time", "", *_about(report.about), "", *_overview(report.studies)]
+    for study in report.studies:
+        if not study.unavailable:
+            lines += ["", *_study(study, pictures.get(study.name, ()))]
+    return "\n".join(lines) + "\n"
+
+
+def _about(about: Mapping[str, Any]) -> list[str]:
+    versions = ", ".join(f"{name} {version}" for name, version in about["versions"].items())
+    lines = [
+        f"{about['processor']}, {about['cores']} cores; {about['system']}; Python {about['python']}; OpenGL: "
+        f"{about['driver']}. {about['date']}, seed {about['seed']}{', quick' if about['quick'] else ''}.",
+        "",
+        f"{versions}.",
+        "",
+        "Times are medians of repeats in one run, least and greatest in brackets, read from the processor time of one "
+        "process unless said otherwise; compare ratios rather than seconds between machines. *front*: no other way of "
+        "the table is at least as good in both figures and better in one.",
+    ]
+    if about.get("load", 0.0) > 0.5 * (about["cores"] or 1):
+        lines += [
+            "",
+            f"Other programs ran beside this: {about['load']:g} wanted to when it began, on {about['cores']} cores.",
+        ]
+    return lines
+
+
+def _overview(studies: Sequence[StudyResult]) -> list[str]:
+    lines = ["| study | measured | |", "|---|---|---|"]
+    for study in studies:
+        if study.unavailable:
+            lines.append(f"| {study.name} | not available | {_cell(study.unavailable)} |")
+            continue
+        sets = len({record.data for record in study.records})
+        found = f"{len(study.records)} records on {sets} data sets, {study.seconds:.0f} s"
+        more = f"{len(study.left_out)} left out, named below" if study.left_out else ""
+        lines.append(f"| [{study.name}](#{_anchor(study.title)}) | {found} | {more} |")
+    return lines
+
+
+def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]:
+    lines = [f"## {study.title}", "", study.approximates]
+    for note in study.notes:
+        lines += ["", note]
+    if any(record.default for record in study.records):
+        lines += ["", "### The default", "", *_defaults(study)]
+    for name, shows in pictures:
+        lines += ["", f"![{shows}]({name})"]
+    if study.left_out:
+        lines += ["", "### Left out", "", "| what | why |", "|---|---|"]
+        lines += [f"| {_cell(item.what)} | {_cell(item.reason)} |" for item in study.left_out]
+    lines += ["", "### All figures"]
+    for data in dict.fromkeys(record.data for record in study.records):
+        records = [record for record in study.records if record.data == data]
+        lines += ["", "<details>", f"<summary>{data}</summary>", "", *_table(study, records), "", "</details>"]
+    return lines
+
+
+def _defaults(study: StudyResult) -> list[str]:
+    """The default on every data set, and what beats it."""
+    pairs = [pair for pair in study.axes if not pair.series]
+    heads = [f"{pair.y_label} / {pair.x_label}" for pair in pairs]
+    label = next(record.label for record in study.records if record.default)
+    lines = [
+        f"By default: **{label}**. At each pair of figures: its own two, and the ways that beat it in both.",
+        "",
+        "| data | " + " | ".join(heads) + " |",
+        "|---|" + "---|" * len(heads),
+    ]
+    for record in study.records:
+        if not record.default:
+            continue
+        cells = []
+        for pair in pairs:
+            x, y = record.value(pair.x), record.value(pair.y)
+            scale = 1e9 if pair.x.startswith("times/") else 1.0
+            beaten = [
+                other.label
+                for other in study.records
+                if (other.data, other.machine) == (record.data, record.machine)
+                and other is not record
+                and other.value(pair.x) < x
+                and other.value(pair.y) < y
+            ]
+            cells.append(f"{_number(y)} / {_number(scale * x)}" + (f"; {', '.join(beaten)}" if beaten else ""))
+        lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
+    return lines
+
+
+def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
+    series = [pair.y.partition("/")[2] for pair in study.axes if pair.series]
+    costs = _names(records, "costs")
+    errors = [name for name in _names(records, "errors") if not any(name.startswith(prefix) for prefix in series)]
+    times = _names(records, "times")
+    default = next((record for record in records if record.default), None)
+    units = {name: _unit(records, "costs", name) for name in costs} | {
+        name: _unit(records, "errors", name) for name in errors
+    }
+    heads = ["way", "setting", *(f"{name}, {units[name]}" for name in costs)]
+    heads += [name if name.endswith(units[name]) else f"{name}, {units[name]}" for name in errors]
+    for name in times:
+        item = next(record.times[name].item for record in records if name in record.times)
+        heads += [f"{name}, M {item}s/s", "× default"] if default else [f"{name}, M {item}s/s"]
+    heads.append("front")
+    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+    for record in records:
+        bold = "**" if record.default else ""
+        cells = [f"{bold}{record.way}{bold}", record.setting]
+        cells += [_number(record.value(f"costs/{name}")) for name in costs]
+        cells += [_number(record.value(f"errors/{name}")) for name in errors]
+        for name in times:
+            timing = record.times.get(name)
+            cells.append(_rate(timing))
+            if default:
+                base = default.times.get(name)
+                cells.append(_number(timing.rate / base.rate) if timing and base else "")
+        cells.append(", ".join(record.front))
+        lines.append("| " + " | ".join(map(_cell, cells)) + " |")
+    return lines
+
+
+def _names(records: Sequence[Record], kind: str) -> list[str]:
+    return list(dict.fromkeys(name for record in records for name in getattr(record, kind)))
+
+
+def _unit(records: Sequence[Record], kind: str, name: str) -> str:
+    unit: str = next(getattr(record, kind)[name].unit for record in records if name in getattr(record, kind))
+    return unit
+
+
+def _rate(timing: Timing | None) -> str:
+    if timing is None or not math.isfinite(timing.rate):
+        return ""
+    low = timing.items / timing.high if timing.high > 0.0 else math.nan
+    high = timing.items / timing.low if timing.low > 0.0 else math.nan
+    return f"{_number(timing.rate / 1e6)} ({_number(low / 1e6)}–{_number(high / 1e6)})"
+
+
+def _number(value: float) -> str:
+    if not math.isfinite(value):
+        return ""
+    return "0" if value == 0.0 else f"{value:.3g}"
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def _anchor(title: str) -> str:
+    return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")

@@ -1,0 +1,162 @@
+"""Plots of a report: one picture for each pair of axes and group of data sets, made from the records alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure as Picture
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from .record import Axes, Record, Report, StudyResult
+
+__all__ = ["draw"]
+
+COLUMNS = 3
+# Told apart by those who see no red and green as well (Okabe and Ito), then some more.
+COLOURS = (
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+    "#8c564b", "#7f7f7f", "#999933", "#882255", "#44aa99",
+)  # fmt: skip
+MARKERS = "osD^vP*X<>ph8"
+ZERO_BELOW = 10.0  # errors of 0 are drawn so far under the least other one
+
+
+def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
+    """Draw all pictures.
+
+    Parameters
+    ----------
+    report : Report
+    folder : Path
+        Where PNG files go, ``STUDY-AXES-GROUP.png``.
+
+    Returns
+    -------
+    dict of str to list of (str, str)
+        By study: file name and what it shows.
+    """
+    made: dict[str, list[tuple[str, str]]] = {}
+    for study in report.studies:
+        shown = [record for record in study.records if record.group]
+        for pair in study.axes:
+            for group in dict.fromkeys(record.group for record in shown):
+                records = [record for record in shown if record.group == group]
+                name = f"{study.name}-{pair.key}-{group}.png"
+                if not _drawable(records, pair):
+                    continue
+                _picture(study, records, pair).savefig(folder / name, dpi=90)
+                made.setdefault(study.name, []).append((name, f"{pair.y_label} against {pair.x_label}: {group}"))
+    return made
+
+
+def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
+    """Where a record is drawn: one place, or those of a series; times in ns."""
+    if pair.series:
+        prefix = pair.y.partition("/")[2]
+        numbers = [(name, figure.value) for name, figure in record.errors.items() if name.startswith(prefix)]
+        return sorted((float(name[len(prefix) :]), value) for name, value in numbers if math.isfinite(value))
+    x, y = (_shown(record, path) for path in (pair.x, pair.y))
+    return [(x, y)] if math.isfinite(x) and math.isfinite(y) and x > 0.0 else []
+
+
+def _shown(record: Record, path: str) -> float:
+    return record.value(path) * (1e9 if path.startswith("times/") else 1.0)
+
+
+def _drawable(records: Sequence[Record], pair: Axes) -> bool:
+    return any(_points(record, pair) for record in records)
+
+
+def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
+    sets = list(dict.fromkeys(record.data for record in records))
+    ways = list(dict.fromkeys(record.way for record in study.records))
+    settings = list(dict.fromkeys(record.setting for record in study.records))
+    colours = {way: COLOURS[i % len(COLOURS)] for i, way in enumerate(ways)}
+    markers = {setting: MARKERS[i % len(MARKERS)] for i, setting in enumerate(settings)}
+    rows = -(-len(sets) // COLUMNS)
+    here = {record.way for record in records}, {record.setting for record in records}
+    handles = _legend([w for w in ways if w in here[0]], [s for s in settings if s in here[1]], colours, markers, pair)
+    below = 0.3 + 0.2 * -(-len(handles) // 4)  # inches for the legend
+    height = 3.1 * rows + below + 0.5
+    picture = Picture(figsize=(4.3 * min(COLUMNS, len(sets)) + 0.4, height), layout="constrained")
+    panels = picture.subplots(rows, min(COLUMNS, len(sets)), sharex=True, sharey=True, squeeze=False)
+    ys = [y for record in records for _, y in _points(record, pair)]
+    least = min((y for y in ys if y > 0.0), default=1.0)
+    floor = least / ZERO_BELOW
+    for panel, name in zip(panels.flat, sets, strict=False):
+        members = [record for record in records if record.data == name]
+        for record in members:
+            _mark(panel, record, pair, colours[record.way], markers[record.setting], floor)
+        if not pair.series:
+            front = sorted(
+                (x, max(y, floor)) for record in members if pair.key in record.front for x, y in _points(record, pair)
+            )
+            panel.plot(*zip(*front, strict=True), color="black", lw=1.0, zorder=1) if front else None
+        panel.set_title(name, fontsize=9)
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        panel.grid(color="#e0e0e0", lw=0.5)
+    for panel in panels.flat[len(sets) :]:
+        panel.set_visible(False)
+    _ticks(panels[0, 0], pair, [x for record in records for x, _ in _points(record, pair)], ys, floor)
+    for place, panel in enumerate(panels.flat):
+        if place < len(sets) <= place + panels.shape[1]:
+            panel.tick_params(labelbottom=True)
+            panel.set_xlabel(pair.x_label, fontsize=9)
+    for panel in panels[:, 0]:
+        panel.set_ylabel(pair.y_label, fontsize=9)
+    picture.suptitle(study.title, fontsize=11)
+    columns = min(4, max(2, 2 * panels.shape[1]))
+    picture.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=8, frameon=False)
+    return picture
+
+
+def _mark(panel: Any, record: Record, pair: Axes, colour: str, marker: str, floor: float) -> None:
+    places = [(x, max(y, floor)) for x, y in _points(record, pair)]
+    if not places:
+        return
+    size = 9.0 if record.default else 6.5 if record.ours else 5.5
+    panel.plot(
+        *zip(*places, strict=True),
+        color=colour,
+        marker=marker,
+        markersize=size,
+        markerfacecolor=colour if record.ours else "white",
+        markeredgecolor="black" if record.default else colour,
+        ls="-" if pair.series else "none",
+        lw=1.4 if record.ours else 0.7,
+        zorder=4 if record.default else 3 if record.ours else 2,
+    )
+
+
+def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], floor: float) -> None:
+    """Plain numbers on x, where powers of ten alone would leave one or none; a tick for errors of 0."""
+    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if max(xs) < 300.0 * min(xs) else (1.0,)))
+    panel.xaxis.set_minor_locator(NullLocator())
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    panel.set_xlim(min(xs) / 1.25, max(xs) * 1.25)
+    if not pair.series and min(ys) <= 0.0:
+        decades = range(math.floor(math.log10(floor * ZERO_BELOW)), math.ceil(math.log10(max(max(ys), floor))) + 1)
+        every = max(1, len(decades) // 8)
+        ticks = [10.0**k for k in decades[::every] if 10.0**k > floor * 1.5]
+        panel.set_yticks([floor, *ticks], ["0", *(f"$10^{{{k}}}$" for k in decades[::every] if 10.0**k > floor * 1.5)])
+        panel.yaxis.set_minor_locator(NullLocator())
+
+
+def _legend(
+    ways: Sequence[str], settings: Sequence[str], colours: dict[str, str], markers: dict[str, str], pair: Axes
+) -> list[Line2D]:
+    handles = [Line2D([], [], color=colours[way], lw=4, label=way) for way in ways]
+    handles += [
+        Line2D([], [], color="#606060", marker=markers[s], ls="none", label=s or "no setting") for s in settings
+    ]
+    if not pair.series:
+        handles.append(Line2D([], [], color="black", lw=1.0, label="Pareto front"))
+    handles.append(
+        Line2D([], [], color="#606060", marker="o", ls="none", label="filled: this program (edged: its default)")
+    )
+    return handles

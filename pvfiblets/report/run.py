@@ -1,0 +1,123 @@
+"""From studies to ``report.json``, the page and the plots."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from . import machine, studies
+from .data import files_of
+from .front import mark_fronts
+from .record import Report, StudyResult
+from .study import Budget, Options, Unavailable
+
+__all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
+
+QUICK_SECONDS = 120.0  # of a quick report, plots included
+PLOT_SECONDS = 25.0  # of these, kept for the page and the plots
+QUICK_REPEATS = 3
+
+Log = Callable[[str], None]
+
+
+def to_stderr(line: str) -> None:
+    """Say how far it is."""
+    print(line, file=sys.stderr, flush=True)
+
+
+def make_report(
+    folder: Path,
+    *,
+    only: Sequence[str] | None = None,
+    data: Sequence[Path] = (),
+    quick: bool = False,
+    seed: int = 0,
+    log: Log = to_stderr,
+    clock: Callable[[], float] = time.monotonic,
+) -> Report:
+    """Run studies and keep what they find.
+
+    Parameters
+    ----------
+    folder : Path
+        ``report.json`` is written into it after every study, so that an interruption costs one study.
+    only : sequence of str, optional
+        Names of studies; all by default.
+    data : sequence of Path
+        Real files, and folders of such.
+    quick : bool
+        A little of each, in two minutes at most on two cores, plots included. What does not fit is named in the report.
+    seed : int
+        Of made-up data.
+    log : callable
+        Takes lines of progress.
+    clock : callable
+        Seconds, for the budget.
+
+    Raises
+    ------
+    ValueError
+        For a name that is no study's.
+    FileNotFoundError
+        If a file of ``data`` is not there.
+    """
+    names = studies.chosen_names(only)
+    files_of(data)  # a wrong name is told before any measurement
+    report = Report(machine.about(seed, quick))
+    # The studies that cannot be run cost nothing, and take no share.
+    left = sum(name in studies.MODULES for name in names)
+    whole = Budget(QUICK_SECONDS - PLOT_SECONDS if quick else float("inf"), clock)
+    for name in names:
+        share = whole.left / left if quick and left else float("inf")
+        options = Options(
+            quick=quick,
+            budget=Budget(share, clock),
+            files=tuple(data),
+            seed=seed,
+            machine=report.about["name"],
+            log=log,
+        )
+        if quick:
+            options.repeats = QUICK_REPEATS
+        report.studies.append(one_study(name, options))
+        left -= name in studies.MODULES
+        report.save(folder)
+    return report
+
+
+def one_study(name: str, options: Options) -> StudyResult:
+    """Run one study; where it cannot be done, return the reason."""
+    if name not in studies.MODULES:
+        where = studies.PLANNED[name]
+        reason = f"not part of the report yet; {where} measures it" if where else "not part of the report yet"
+        return StudyResult(name, name.capitalize(), "", unavailable=reason)
+    study = studies.find(name)
+    result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
+    options.log(f"{name}: {study.title}")
+    try:
+        result.records = list(study.run(options, result.left_out))
+    except Unavailable as error:
+        result.unavailable = str(error)
+        options.log(f"{name}: {error}")
+    mark_fronts(result.records, result.axes)
+    result.seconds = round(options.budget.spent, 1)
+    return result
+
+
+def write_pages(report: Report, folder: Path, log: Log = to_stderr) -> Path:
+    """Make the plots and the page of a report, from its numbers alone, and return the page's path."""
+    from .page import page
+
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        from .plots import draw
+    except ImportError as error:
+        log(f"no plots: {error.name} is not installed")
+        pictures = {}
+    else:
+        pictures = draw(report, folder)
+    path = folder / "report.md"
+    path.write_text(page(report, pictures), encoding="utf-8")
+    return path

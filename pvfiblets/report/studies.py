@@ -1,0 +1,51 @@
+"""The studies by name. Their modules are imported when they are run.
+
+To add one, such as ``culling``: write ``pvfiblets/report/culling.py`` with an object ``STUDY`` that is a
+:class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.culling"`` into ``MODULES``. Nothing else
+knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a quick run's time, asks
+``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
+study: where no OpenGL context can be made). ``benchmarks/tube_errors.py``, ``halo_errors.py`` and ``culling.py``
+measure tubes, halos and culling so far, each in a form of its own; names are kept for them in ``PLANNED``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+
+from .study import Study
+
+__all__ = ["MODULES", "PLANNED", "chosen_names", "find"]
+
+MODULES = {
+    "codec": "pvfiblets.report.codec",
+    "decode": "pvfiblets.report.decode",
+}
+PLANNED = {
+    "culling": "benchmarks/culling.py",
+    "tubes": "benchmarks/tube_errors.py",
+    "volume": "",
+    "halos": "benchmarks/halo_errors.py",
+}
+
+
+def chosen_names(only: Sequence[str] | None = None) -> list[str]:
+    """Return the names of the studies asked for, all if none are named.
+
+    Raises
+    ------
+    ValueError
+        For a name that is no study's; the error lists those there are.
+    """
+    names = list(dict.fromkeys(only or [*MODULES, *(name for name in PLANNED if name not in MODULES)]))
+    for name in names:
+        if name not in MODULES and name not in PLANNED:
+            known = ", ".join([*MODULES, *(planned for planned in PLANNED if planned not in MODULES)])
+            raise ValueError(f"there is no study {name!r}; choose among {known}")
+    return names
+
+
+def find(name: str) -> Study:
+    """Import a study's module and return its ``STUDY``."""
+    study: Study = import_module(MODULES[name]).STUDY
+    return study

@@ -1,0 +1,110 @@
+"""What a study is, and what it is given: options, and a budget of time that it keeps to.
+
+A study is an object with ``name``, ``title``, ``approximates`` (one sentence: what is approximated, beside what),
+``axes`` (what is drawn against what), ``notes``, and ``run(options, left_out)``, which yields records as they are
+measured. What it cannot measure it puts into ``left_out`` with the reason; if it cannot measure anything (no GPU, no
+data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from .record import Axes, LeftOut, Record
+
+__all__ = ["Budget", "Options", "Study", "Unavailable"]
+
+
+class Unavailable(Exception):  # noqa: N818 - it is a state to be reported, not an error
+    """A study that cannot be done here; the message is the reason, for the reader of the report."""
+
+
+class Budget:
+    """Seconds that may be spent.
+
+    Before anything is measured, :meth:`allows` is asked. It takes the longest measurement so far as what the next one
+    may cost, so that a budget is overrun by no more than one measurement that is longer than all before it.
+
+    Parameters
+    ----------
+    seconds : float
+        ``inf`` for no limit.
+    clock : callable
+        Returns seconds.
+    """
+
+    def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._seconds = seconds
+        self._begun = self._last = clock()
+        self._longest = 0.0
+
+    @property
+    def spent(self) -> float:
+        """Seconds since it was made."""
+        return self._clock() - self._begun
+
+    @property
+    def left(self) -> float:
+        """Seconds that are left, 0 at least."""
+        return max(self._seconds - self.spent, 0.0)
+
+    def allows(self, factor: float = 1.0) -> bool:
+        """Say whether another measurement fits, ``factor`` times as long as the longest so far."""
+        now = self._clock()
+        self._longest = max(self._longest, now - self._last)
+        self._last = now
+        return self.left > 0.0 and self._longest * factor <= self.left
+
+
+@dataclass
+class Options:
+    """What a study is asked for.
+
+    Attributes
+    ----------
+    quick : bool
+        A little of each.
+    budget : Budget
+        This study's share of time.
+    files : tuple of Path
+        Real data: files, and folders whose files are taken.
+    seed : int
+        Of all made-up data.
+    repeats : int
+        Timed calls of each way, after one to warm up.
+    points : int
+        To which data sets are cut.
+    machine : str
+        Name of the machine for the records.
+    log : callable
+        Takes lines that say how far the study is.
+    """
+
+    quick: bool = False
+    budget: Budget = field(default_factory=lambda: Budget(float("inf")))
+    files: tuple[Path, ...] = ()
+    seed: int = 0
+    repeats: int = 5
+    points: int = 200_000
+    machine: str = ""
+    log: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
+
+
+class Study(Protocol):
+    """One approximation, measured beside its rivals."""
+
+    name: str
+    title: str
+    approximates: str
+    axes: Sequence[Axes]
+    notes: Sequence[str]
+
+    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+        """Yield records as they are measured."""
+        ...
