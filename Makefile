@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo test lint fuzz bench wheel environment gl shaders clean
+.PHONY: demo test lint fuzz bench docs wheel environment gl shaders clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -29,6 +29,10 @@ fuzz: environment
 
 bench: environment gl
 	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json
+
+docs: environment gl
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
 wheel: environment
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .

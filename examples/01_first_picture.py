@@ -1,4 +1,8 @@
-"""A whole-brain-like tractogram in an ordinary PyVista scene.
+"""
+A first picture
+===============
+
+A whole-brain-like tractogram in an ordinary PyVista scene.
 
 Run it as ``python examples/01_first_picture.py [FOLDER]``.
 """

@@ -1,4 +1,8 @@
-"""Compress a tractogram, look at what that costs, store it and open it again.
+"""
+Compress and check
+==================
+
+Compress a tractogram, look at what that costs, store it and open it again.
 
 Run it as ``python examples/02_compress_and_check.py [FOLDER]``.
 """

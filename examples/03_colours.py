@@ -1,4 +1,8 @@
-"""Four ways to colour the same streamlines.
+"""
+Colours
+=======
+
+Four ways to colour the same streamlines.
 
 Run it as ``python examples/03_colours.py [FOLDER]``.
 """

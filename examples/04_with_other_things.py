@@ -1,4 +1,8 @@
-"""Streamlines among other things: a translucent surface around them, an opaque one within.
+"""
+With other things
+=================
+
+Streamlines among other things: a translucent surface around them, an opaque one within.
 
 Run it as ``python examples/04_with_other_things.py [FOLDER]``.
 """

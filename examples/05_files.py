@@ -1,4 +1,8 @@
-"""Tractogram files with PyVista alone: read, save, convert.
+"""
+Files
+=====
+
+Tractogram files with PyVista alone: read, save, convert.
 
 Run it as ``python examples/05_files.py [FOLDER]``.
 """

@@ -1,4 +1,8 @@
-"""An actor's properties change at any time, and the next render shows it.
+"""
+Change it live
+==============
+
+An actor's properties change at any time, and the next render shows it.
 
 Run it as ``python examples/06_change_it_live.py [FOLDER]``.
 """

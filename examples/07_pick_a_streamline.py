@@ -1,4 +1,8 @@
-"""Ask which streamline a pixel shows, and draw that one thick.
+"""
+Pick a streamline
+=================
+
+Ask which streamline a pixel shows, and draw that one thick.
 
 Run it as ``python examples/07_pick_a_streamline.py [FOLDER]``.
 """

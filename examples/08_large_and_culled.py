@@ -1,4 +1,8 @@
-"""Many lines: what this machine's OpenGL can draw with, what culling leaves out, and that it loses nothing.
+"""
+Large and culled
+================
+
+Many lines: what this machine's OpenGL can draw with, what culling leaves out, and that it loses nothing.
 
 Run it as ``python examples/08_large_and_culled.py [FOLDER]``.
 """

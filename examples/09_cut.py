@@ -1,4 +1,8 @@
-"""Cut a tractogram: by a plane, a box without a ball, a mesh with a hole, and a slab with the anatomy in it.
+"""
+Cut
+===
+
+Cut a tractogram: by a plane, a box without a ball, a mesh with a hole, and a slab with the anatomy in it.
 
 Run it as ``python examples/09_cut.py [FOLDER]``. In a window, ``plotter.fiblets.add_clip_plane_widget()`` and its
 kin let you drag the same cuts.

@@ -1,4 +1,8 @@
-"""Choose streamlines: by numbers, by regions they pass through or end in, by group, at random; and save what is left.
+"""
+Filter
+======
+
+Choose streamlines: by numbers, by regions they pass through or end in, by group, at random; and save what is left.
 
 Run it as ``python examples/10_filter.py [FOLDER]``.
 """

@@ -1,4 +1,8 @@
-"""Pick and select: what lies in an area of the picture, more of the same, drawn as tubes, measured along the way.
+"""
+Select
+======
+
+Pick and select: what lies in an area of the picture, more of the same, drawn as tubes, measured along the way.
 
 Run it as ``python examples/11_select.py [FOLDER]``. In a window, ``plotter.fiblets.enable_picking(mode="lasso")`` does
 with the mouse what ``pick_box`` does here.

@@ -1,4 +1,8 @@
-"""Shade lines: by the scene's lights, as illuminated lines, with ambient occlusion, depth cueing, halos; as tubes.
+"""
+Shading
+=======
+
+Shade lines: by the scene's lights, as illuminated lines, with ambient occlusion, depth cueing, halos; as tubes.
 
 Run it as ``python examples/12_shading.py [FOLDER]``. Each of these is off, and costs nothing, until it is set.
 """

@@ -1,4 +1,8 @@
-"""Colour by what lies around: a volume sampled on the GPU, a distance, the coding error; and look through layers.
+"""
+More colours
+============
+
+Colour by what lies around: a volume sampled on the GPU, a distance, the coding error; and look through layers.
 
 Run it as ``python examples/13_more_colours.py [FOLDER]``.
 """

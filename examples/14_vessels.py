@@ -1,4 +1,8 @@
-"""A tree of vessels as spline tubes: radii by Murray's law, branches that share their nodes, a cut, a look inside.
+"""
+Vessels
+=======
+
+A tree of vessels as spline tubes: radii by Murray's law, branches that share their nodes, a cut, a look inside.
 
 Run it as ``python examples/14_vessels.py [FOLDER]``. The tree is made up; a centre line of VMTK with its
 ``MaximumInscribedSphereRadius`` is drawn just so.

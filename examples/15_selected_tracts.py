@@ -1,4 +1,8 @@
-"""Selected streamlines as smooth tubes among compressed ones, and a few tubes with a radius and values of their own.
+"""
+Selected tracts
+===============
+
+Selected streamlines as smooth tubes among compressed ones, and a few tubes with a radius and values of their own.
 
 Run it as ``python examples/15_selected_tracts.py [FOLDER]``.
 """

@@ -1,4 +1,8 @@
-"""The paper's largest set made anew, 787,327 segments, and which one of them a pixel shows.
+"""
+A furball
+=========
+
+The paper's largest set made anew, 787,327 segments, and which one of them a pixel shows.
 
 Run it as ``python examples/16_furball.py [FOLDER]``.
 """

@@ -1,4 +1,8 @@
-"""Fibre tracts as ink on paper: bundles show as dark strands, and gaps where one passes behind another.
+"""
+Halos of fibres
+===============
+
+Fibre tracts as ink on paper: bundles show as dark strands, and gaps where one passes behind another.
 
 Run it as ``python examples/17_halos_of_fibres.py [FOLDER]``. Pictures like figures 1, 7 and 10 of Everts et al. 2009.
 """

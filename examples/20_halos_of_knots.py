@@ -1,4 +1,8 @@
-"""Knots as in a book of mathematics, the three displacement functions side by side, and a page for the printer.
+"""
+Halos of knots
+==============
+
+Knots as in a book of mathematics, the three displacement functions side by side, and a page for the printer.
 
 Run it as ``python examples/20_halos_of_knots.py [FOLDER]``. Pictures like figures 16 and 17 of Everts et al. 2009.
 """

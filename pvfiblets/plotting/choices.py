@@ -139,8 +139,11 @@ def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
     return mask
 
 
+OPEN = (-math.inf, math.inf)
+
+
 def checked_range(limits: Any) -> tuple[float, float]:
-    """Return both ends of a range.
+    """Return both ends of a range; an end that is None is open.
 
     Raises
     ------
@@ -148,9 +151,9 @@ def checked_range(limits: Any) -> tuple[float, float]:
         If these are not two numbers in rising order; infinite ones will do.
     """
     try:
-        low, high = (float(end) for end in limits)
+        low, high = (end if given is None else float(given) for given, end in zip(limits, OPEN, strict=True))
     except (TypeError, ValueError) as error:
-        raise ValueError(f"range is {limits!r}; give two numbers, (low, high)") from error
+        raise ValueError(f"range is {limits!r}; give two numbers, (low, high), None for an open end") from error
     if math.isnan(low) or math.isnan(high) or low > high:
         raise ValueError(f"range is ({low:g}, {high:g}); give two numbers, the low one first")
     return low, high

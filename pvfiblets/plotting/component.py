@@ -8,6 +8,7 @@ either name. :class:`FibletsComponent` lives as long as its plotter; its life cy
 from __future__ import annotations
 
 import functools
+import inspect
 import weakref
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.codec.compress import compress
 from pvfiblets.engine.capabilities import PipelineTable, pipelines
 from pvfiblets.mappers import EngineOptions
 from pvfiblets.mappers.windows import borrowed_context
@@ -193,6 +195,7 @@ class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
         >>> actor = pl.add_fiblets(brain_streamlines(1000), scalars="length", cmap="plasma")
         >>> actor.line_width = 2
         """
+        _check_options(options)
         theme = self._plotter.theme
         engine = EngineOptions(pipeline=pipeline, culling=culling, fit=fit)  # before the slow part
         fiblets, scalars = as_fiblets(
@@ -284,3 +287,14 @@ class AddFiblets:
     def __call__(self, source: Source, **arguments: Any) -> FibletActor:
         """Add streamlines; see :meth:`FibletsComponent.add`."""
         return self._plotter.fiblets.add(source, **arguments)
+
+
+def _check_options(options: dict[str, Any]) -> None:
+    """Refuse what compressing does not know, before it is said of a function that nobody called."""
+    unknown = sorted(set(options) - set(inspect.signature(compress).parameters))
+    live = [name for name in unknown if isinstance(getattr(FibletActor, name, None), property)]
+    if live:
+        sets = "; ".join(f"actor.{name} = ..." for name in live)
+        raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
+    if unknown:
+        raise TypeError(f"add_fiblets() got an unexpected keyword argument {unknown[0]!r}")

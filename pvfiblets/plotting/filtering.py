@@ -67,7 +67,7 @@ class Filtering(Clipping):
             :class:`pvfiblets.regions.Distance` to a region or a point (mm). The name of a
             criterion that there is changes that one's range.
         range : (float, float)
-            Least and greatest value that is shown; infinite ends are open.
+            Least and greatest value that is shown; infinite ends, and None, are open.
         keep_nan : bool, default: False
             Whether to show what has no value.
         name : str, optional

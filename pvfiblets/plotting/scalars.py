@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ORIENTATION = "orientation"
 GROUP = "group"
-BUILT_IN = (ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)
+BUILT_IN = tuple(dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)))
 UNITS = {
     "length": "length [mm]",
     "radius": "radius [mm]",

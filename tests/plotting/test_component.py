@@ -94,6 +94,13 @@ def test_compressing_options_on_compressed_data_are_refused(plotter, three_lines
         plotter.add_fiblets(compress(three_lines), max_error=0.1)
 
 
+def test_unknown_arguments_are_told_of_the_function_that_was_called(plotter, three_lines):
+    with pytest.raises(TypeError, match=r"add_fiblets\(\) takes no halos: .*actor.halos = "):
+        plotter.add_fiblets(compress(three_lines), halos=True)
+    with pytest.raises(TypeError, match=r"add_fiblets\(\) got an unexpected keyword argument 'colour'"):
+        plotter.add_fiblets(three_lines, colour="red")
+
+
 def test_the_same_name_replaces(plotter, three_lines):
     first = plotter.add_fiblets(three_lines, name="lines")
     second = plotter.add_fiblets(three_lines, name="lines", color="red")

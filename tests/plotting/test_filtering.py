@@ -46,7 +46,7 @@ def test_numbers_per_streamline(shown, tract):
     assert actor.criterion("length", (50.0, 100.0)) == "length"
     long = (lengths >= 50.0) & (lengths <= 100.0)
     np.testing.assert_array_equal(actor.shown, long)
-    assert actor.criterion("weight", (-np.inf, 0.5)) == "weight"
+    assert actor.criterion("weight", (None, 0.5)) == "weight"
     with np.errstate(invalid="ignore"):
         np.testing.assert_array_equal(actor.shown, long & (weights <= 0.5))
     here = seen(plotter, actor)

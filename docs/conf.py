@@ -1,0 +1,78 @@
+"""How Sphinx builds the site: ``make docs``, without warnings and without the network."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pyvista
+
+import pvfiblets
+from pvfiblets.cli import make_parser
+
+# The gallery's examples run here, one after the other, and draw off screen.
+os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+pyvista.OFF_SCREEN = True
+
+project = "pvfiblets"
+author = "the pvfiblets maintainers"
+copyright = "the pvfiblets maintainers"  # noqa: A001 - Sphinx's name
+release = version = pvfiblets.__version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
+]
+myst_heading_anchors = 4
+exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.py", "gallery/*.py.md5", "gallery/*.zip"]
+default_role = "py:obj"
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # numpydoc's sections say them in words
+numpydoc_show_class_members = False
+
+html_theme = "pydata_sphinx_theme"
+html_theme_options = {"show_prev_next": False, "secondary_sidebar_items": ["page-toc"]}
+html_show_sourcelink = False
+
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from gallery_pictures import Pictures  # noqa: E402 - of this folder
+
+# Examples write into the folder that they lie in, so that copies of them run.
+COPIES = HERE / "_build" / "examples"
+shutil.rmtree(COPIES, ignore_errors=True)
+shutil.copytree(HERE.parent / "examples", COPIES, ignore=shutil.ignore_patterns("__pycache__"))
+
+
+def commands() -> str:
+    """Return what ``pvfiblets --help`` says of each command, as a page."""
+    parser = make_parser()
+    choices = next(action.choices for action in parser._actions if isinstance(action.choices, dict))  # noqa: SLF001
+    parts = [f"## pvfiblets {name}\n\n```text\n{choices[name].format_help()}```\n" for name in choices]
+    return "\n".join(parts)
+
+
+os.environ["COLUMNS"] = "100"
+(HERE / "_build" / "commands.md").write_text(commands())
+
+sphinx_gallery_conf = {
+    "examples_dirs": str(COPIES),
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"/\d\d_",
+    "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": (Pictures(),),
+    "reset_modules": (),
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "min_reported_time": 0,
+}

@@ -1,0 +1,71 @@
+"""Every command and every piece of Python on these pages runs, in their order, as a reader would run them."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+INSTALLS = re.compile(r"\b(sudo|pip|source|make)\b")
+
+BRAIN = """
+import pyvista as pv
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
+"""
+
+# What a page takes for granted: the reader's own files and objects.
+GIVEN = {
+    "docs/tutorial.md": "",
+    "docs/howto.md": BRAIN + """
+pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))
+import nibabel, numpy as np
+pvfiblets.compress_file("big.tck", "brain.fiblets")
+image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
+""",
+}  # fmt: skip
+SMALLER = {"brain_streamlines(20_000, seed=1, fa=True)": "brain_streamlines(400, seed=1, fa=True)"}
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Return (language, text) of each block of a page that is to be run."""
+    return re.findall(r"^```(python|console)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def program(page: str) -> str:
+    """Return one program of all blocks of a page."""
+    parts = ["import subprocess", GIVEN[page]]
+    for language, text in blocks(ROOT / page):
+        if language == "console":
+            if INSTALLS.search(text):  # of an install only what comes after it
+                text = "\n".join(line for line in text.splitlines() if line.startswith("pvfiblets"))
+            parts.append(f"subprocess.run(['bash', '-e', '-c', {text!r}], check=True)")
+        else:
+            for long, short in SMALLER.items():
+                text = text.replace(long, short)
+            parts.append(text)
+    return "\n".join(parts)
+
+
+@pytest.mark.parametrize("page", GIVEN)
+def test_a_page_runs(page, tmp_path):
+    script = tmp_path / "page.py"
+    script.write_text(program(page))
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "PYVISTA_OFF_SCREEN": "true",
+        "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow",
+        "MPLBACKEND": "Agg",
+    }
+    command = [sys.executable, "-W", "error", str(script)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)
+    assert done.returncode == 0, done.stderr
+    named = set(re.findall(r'screenshot\("([^"]+)"', program(page)))
+    assert named <= {path.name for path in tmp_path.iterdir()}
