@@ -30,7 +30,7 @@ class RayOcclusion:
     Parameters
     ----------
     samples : int, default 32
-        Rays of each pixel, 1 to 4096: the error falls faster than the inverse of their number's square root.
+        Rays of each pixel, 1 to 2048: the error falls faster than the inverse of their number's square root.
     radius : float, optional
         mm: what is farther away does not count. By default a 20th of the diagonal of the data's bounds.
     strength : float, default 1.0
@@ -84,4 +84,4 @@ class RayOcclusion:
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
         """Set the strength, which changes without any ray cast anew."""
-        program.SetUniformf("fibletRayOcclusion", self.strength)
+        program.SetUniform2f("fibletRayOcclusion", (self.strength, self.strength / self.samples))

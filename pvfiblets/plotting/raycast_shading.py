@@ -32,7 +32,7 @@ class RaycastShading(SurfaceShading):
         Unlike ``ambient_occlusion``, which knows the pixels alone, it sees what is hidden or beside
         the picture, and does not change as the camera turns; it costs ``samples`` rays a pixel.
 
-        ``samples`` (32): rays of each pixel, 1 to 4096. ``radius`` (mm): what is farther does not
+        ``samples`` (32): rays of each pixel, 1 to 2048. ``radius`` (mm): what is farther does not
         darken; ``None``, the default, is a 20th of the data's diagonal. ``strength`` (1.0): 0 to 1.
         ``seed`` (0): the same picture with the same seed is the same to the last bit.
         """

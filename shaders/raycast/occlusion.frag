@@ -20,6 +20,9 @@
 //
 // The point is moved onto the surface first, along the gradient: interpolated ones (sparse casting) and those that nothing refined
 // lie beside it. Rays then start a part of a voxel above it, and look at the field as often as those of the picture.
+//
+// Out: how many of the rays meet nothing, to be added to those of other draws: pvfiblets/engine/raycast/occlusion.py casts them in
+// portions.
 
 #version 430
 
@@ -36,10 +39,11 @@ uniform usampler2D shown_depth;
 uniform sampler2D shown_position;   // mm along the pixel's ray, mu
 uniform mat3 to_data;
 uniform float radius;
-uniform int samples;
+uniform int samples;                // of this portion
+uniform uint first_sample;
 uniform uint seed;
 
-layout(location = 0) out float open;
+layout(location = 0) out float free;
 
 // PCG's output function over a linear congruential step (Jarzynski and Olano 2020).
 uint hashed(uint x) {
@@ -51,7 +55,7 @@ uint hashed(uint x) {
 vec3 in_voxels(vec3 mm) { return vec3(dot(ray_to_voxels[0].xyz, mm), dot(ray_to_voxels[1].xyz, mm), dot(ray_to_voxels[2].xyz, mm)); }
 
 #if FEATURE_RAYCAST_NEAREST
-// The face of a voxel between what is before and what is behind a hit, by halving.
+// Just behind the face of the voxel that the ray enters, by halving.
 vec3 on_surface(Ray ray, float hit, float mu) {
     float a = hit - ray_low.w, b = hit + ray_low.w;
     bool above = value_at(at(ray, a)) >= mu;
@@ -61,7 +65,7 @@ vec3 on_surface(Ray ray, float hit, float mu) {
         if ((value_at(at(ray, middle)) >= mu) == above) a = middle;
         else b = middle;
     }
-    return at(ray, a);
+    return at(ray, b);
 }
 #else
 vec3 on_surface(Ray ray, float hit, float mu) {
@@ -115,7 +119,7 @@ bool is_open(Ray ray, float low, float high) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    open = 1.0;
+    free = 0.0;
     if (texelFetch(shown_depth, pixel, 0).x == 0xFFFFFFFFu) return;
     vec2 shown = texelFetch(shown_position, pixel, 0).xy;
     Ray seen = ray_of(gl_FragCoord.xy);
@@ -124,7 +128,7 @@ void main() {
     vec3 g = gradient_at(p), way = seen.d.x * ray_to_mm[0].xyz + seen.d.y * ray_to_mm[1].xyz + seen.d.z * ray_to_mm[2].xyz;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
 #if FEATURE_RAYCAST_NEAREST
-    bool above = value_at(p) >= mu;
+    bool above = value_at(p) < mu;
 #else
     // By the field next to the surface: differences of two voxels pass over what is thinner than these.
     vec3 little = seen.d * (BESIDE / length(seen.d));
@@ -149,17 +153,16 @@ void main() {
     vec3 right = vec3(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x);
     vec3 ahead = vec3(b, side + normal.y * normal.y * a, -normal.y);
     uint turn = hashed(uint(pixel.x) + hashed(uint(pixel.y) + hashed(seed)));
-    uvec2 place = uvec2(turn, hashed(turn));
-    int free = 0;
+    const uvec2 golden = uvec2({{ golden_u }}u, {{ golden_v }}u);
+    uvec2 place = uvec2(turn, hashed(turn)) + first_sample * golden;
     for (int i = 0; i < samples; ++i) {
-        place += uvec2({{ golden_u }}u, {{ golden_v }}u);
+        place += golden;
         float squared = float(place.x >> 8) / 16777216.0, angle = float(place.y >> 8) * (6.283185307 / 16777216.0);
         vec2 flat_part = sqrt(squared) * vec2(cos(angle), sin(angle));
         vec3 d = to_data * (flat_part.x * right + flat_part.y * ahead + sqrt(1.0 - squared) * normal);
         float length_in_data = length(d);
         Ray ray = ray_from(p, in_voxels(d / length_in_data));
         ray.last = min(ray.last, radius * length_in_data);
-        free += is_open(ray, low, high) ? 1 : 0;
+        free += is_open(ray, low, high) ? 1.0 : 0.0;
     }
-    open = float(free) / float(samples);
 }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ...raycast.octree import LEAF
 from ..effects.screen import FIRST_UNIT, ScreenEffect
 from ..errors import EngineError
 from .blocks import CONSTANTS
@@ -15,12 +17,17 @@ from .renderer import FEATURES_OF_FILTER, RaycastRenderer
 
 if TYPE_CHECKING:
     from ...raycast.casting import Casting
+    from ...raycast.volume import RaycastVolume
     from ..gbuffer import GBuffer
 
 __all__ = ["GOLDEN", "LIFT", "MAX_SAMPLES", "RayOcclusionPass"]
 
-MAX_SAMPLES = 4096
-"""Rays of a pixel; more change nothing that 11 bits can show."""
+MAX_SAMPLES = 2048
+"""Rays of a pixel: the most that float16 counts one by one."""
+
+MOST_TURNS = 20_000
+"""Turns of loops in one draw of a pixel. Mesa's software OpenGL leaves all loops after 65,535 without a word, lanes of a
+vector do not turn together, and other drivers kill what draws for seconds: more rays are cast in several draws."""
 
 LIFT = 0.25
 """Voxels by which rays start above the surface: shading has smoother normals than the field has surfaces, and rays that
@@ -81,7 +88,7 @@ class RayOcclusionPass(ScreenEffect):
         Returns
         -------
         moderngl.Texture
-            float16, the share of the rays that meets nothing, 1 where nothing shows; valid until the next draw.
+            float16, how many of the rays meet nothing, 0 where nothing shows; valid until the next draw.
 
         Raises
         ------
@@ -94,9 +101,9 @@ class RayOcclusionPass(ScreenEffect):
         uniforms = {
             "to_data": tuple(turn.T.ravel().tolist()),
             "radius": float(radius),
-            "samples": int(samples),
             "seed": int(seed) & 0xFFFFFFFF,
         }
+        portion = max(1, min(samples, MOST_TURNS // turns_of_ray(renderer.volume, casting, turn, radius)))
         texture = self._target(_NAME, buffer.size, "f2")
 
         def rays() -> None:
@@ -112,7 +119,27 @@ class RayOcclusionPass(ScreenEffect):
                 self._queries[_NAME] = self._ctx.query(time=True)
             with self._queries[_NAME]:
                 self._targets[_NAME][1].use()
-                array.render(moderngl.TRIANGLES, vertices=3)
+                self._targets[_NAME][1].clear()
+                self._ctx.enable(moderngl.BLEND)
+                self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+                self._ctx.blend_func = moderngl.ONE, moderngl.ONE
+                for first in range(0, samples, portion):
+                    program["first_sample"] = first
+                    program["samples"] = min(portion, samples - first)
+                    array.render(moderngl.TRIANGLES, vertices=3)
+                self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+                self._ctx.disable(moderngl.BLEND)
 
-        self._once((buffer, buffer.generation, *uniforms.values()), rays)
+        self._once((buffer, buffer.generation, samples, *uniforms.values()), rays)
         return texture
+
+
+def turns_of_ray(volume: RaycastVolume, casting: Casting, to_data: npt.NDArray[np.float64], radius: float) -> int:
+    """Return how often the loops of a ray may turn: once a step, and for each leaf once a level of the octree."""
+    size = np.array(volume.shape, np.float64)
+    along = float(np.linalg.norm(to_data, 2))
+    diagonal = float(np.linalg.norm(np.abs(volume.affine[:3, :3]) @ size))
+    mm = min(radius * along, diagonal)
+    steps = mm / (casting.step * float(volume.spacing.mean()))
+    leaves = min(float(np.linalg.norm(volume.inverse[:3, :3], 2)) * mm, float(size.sum())) * 3.0 / LEAF + 4.0
+    return math.ceil(steps + leaves * (2.0 + math.log2(max(size.max() / LEAF, 1.0) + 1.0)))

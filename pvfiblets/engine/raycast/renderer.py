@@ -220,6 +220,11 @@ class RaycastRenderer:
         self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
         array.render(moderngl.TRIANGLES, vertices=3)
 
+    @property
+    def volume(self) -> RaycastVolume:
+        """What is drawn."""
+        return self._volume
+
     def bind_field(self, program: moderngl.Program) -> None:
         """Bind the volume, its octree and the rays of the last picture for another pass over that picture."""
         voxels, block = self._alive()
