@@ -25,7 +25,6 @@ logger = logging.getLogger("pvfiblets.web")
 
 GRACE = 5.0  # seconds that a process has to end by itself
 START = 600.0  # seconds to open the files it was started with
-LAST_LINES = 40  # of a process's standard error, for the log when it fails
 SHARED = "shared"
 
 
@@ -146,8 +145,7 @@ class Launcher:
         assert process is not None
         assert process.stdout is not None
         assert process.stderr is not None
-        lines: deque[str] = deque(maxlen=LAST_LINES)
-        errors = asyncio.create_task(self._keep(process.stderr, lines))
+        errors = asyncio.create_task(self._keep(session, process.stderr))
         said = None
         async for line in process.stdout:
             try:
@@ -164,11 +162,9 @@ class Launcher:
         if not session.ended:
             session.failure = said or "its process ended unexpectedly"
             logger.error("session %s: %s (exit code %s)", session.short, session.failure, code)
-            for text in lines:
-                logger.error("session %s: | %s", session.short, text)
         await self._forget(session)
 
-    async def _keep(self, stream: asyncio.StreamReader, lines: deque[str]) -> None:
+    async def _keep(self, session: Session, stream: asyncio.StreamReader) -> None:
         while True:
             try:
                 line = await stream.readline()
@@ -177,8 +173,7 @@ class Launcher:
             if not line:
                 return
             text = line.decode(errors="replace").rstrip()
-            lines.append(text)
-            logger.debug("%s", text)
+            logger.info("session %s: | %s", session.short, text)
 
     async def _forget(self, session: Session) -> None:
         session.ended = True

@@ -192,7 +192,10 @@ class Gate:
 
     async def _connection(self, request: web.Request) -> web.StreamResponse:
         """Tell trame's client where its WebSocket is: it asks for a launcher first."""
-        return web.json_response({"sessionURL": "USE_WS://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
+        session = self._session(request)
+        if session is None or session.ended:
+            raise RefusedError(404, "no session")
+        return web.json_response({"sessionURL": "ws://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
 
     async def _begin(self, request: web.Request) -> web.StreamResponse:
         """Answer a browser that opens the page: with the application, or with why not yet or not at all."""

@@ -47,6 +47,8 @@ class PictureStream:
         The number of messages that the network has not taken yet.
     failed : callable
         Told of an error while drawing.
+    drawn : callable
+        Called after each frame.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class PictureStream:
         still: int = 92,
         pending: Callable[[], int] = lambda: 0,
         failed: Callable[[Exception], None] = lambda error: None,
+        drawn: Callable[[], None] = lambda: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
@@ -73,6 +76,7 @@ class PictureStream:
         self._plotter = plotter
         self._pending = pending
         self._failed = failed
+        self._after = drawn
         self._streamer: Any = None
         self._wanted = asyncio.Event()
         self._moved = 0.0
@@ -166,6 +170,15 @@ class PictureStream:
         return self._size
 
     @property
+    def moving(self) -> bool:
+        """Whether the camera moved just now."""
+        return time.monotonic() - self._moved < REST
+
+    def picture(self) -> bytes:
+        """Return the view as PNG, drawn now."""
+        return encode(self._draw(), "png", 100)
+
+    @property
     def milliseconds(self) -> float | None:
         """The median time that a frame took to draw lately."""
         return float(np.median(self.times)) * 1000.0 if self.times else None
@@ -184,9 +197,10 @@ class PictureStream:
             await self._wanted.wait()
             self._wanted.clear()
             started = time.monotonic()
-            moving = started - self._moved < REST
+            moving = self.moving
             try:
                 pixels = self._draw()
+                self._after()
             except Exception as error:  # noqa: BLE001 - whatever failed to draw, the page must go on
                 logger.exception("drawing failed")
                 self._failed(error)

@@ -1,0 +1,91 @@
+"""What ``pvfiblets serve`` does."""
+
+from __future__ import annotations
+
+import logging
+import os
+from typing import Any
+
+from pvfiblets.errors import FibletsError
+
+
+def serve(
+    paths: list[str],
+    *,
+    volume: list[str],
+    mesh: list[str],
+    demo: bool,
+    host: str,
+    port: int,
+    root: str,
+    token: str,
+    shared: bool,
+    limit: int,
+    timeout: float,
+    upload: int,
+    codec: str,
+    rendering: str,
+    origin: list[str],
+) -> int:
+    """Serve files to browsers until interrupted."""
+    from pvfiblets.web.options import MEBIBYTE, Options, chosen_token
+
+    if rendering != "server":
+        raise ValueError(
+            f"--rendering {rendering}: browsers cannot run the shaders that fiblets are drawn with and would leave "
+            "them out or distort them without a word, so the server draws; leave --rendering out"
+        )
+    options = Options(
+        files=[os.path.abspath(path) for path in paths],  # noqa: PTH100 - links are kept, for the names' sake
+        volume=[os.path.abspath(path) for path in volume],  # noqa: PTH100
+        mesh=[os.path.abspath(path) for path in mesh],  # noqa: PTH100
+        demo=demo,
+        host=host,
+        port=port,
+        root=os.path.abspath(root),  # noqa: PTH100
+        token=chosen_token(token),
+        shared=shared,
+        limit=limit,
+        timeout=timeout,
+        upload=upload * MEBIBYTE,
+        codec=codec,
+        origins=origin,
+    ).checked()
+    try:
+        import trame_rca.widgets.rca
+        import trame_vuetify  # noqa: F401
+    except ImportError as error:
+        raise FibletsError(f"{error}; `pvfiblets serve` needs the web extra: pip install 'pvfiblets[web]'") from error
+    return _run(options)
+
+
+def _run(options: Any) -> int:
+    import asyncio
+    import signal
+
+    from pvfiblets.web import server
+
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
+    logging.getLogger("pvfiblets.web").setLevel(logging.INFO)
+
+    def ready(gate: server.Gate) -> None:
+        print(f"Open {gate.url}", flush=True)
+        if options.on_loopback:
+            print(f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address.")
+        print("Stop with Ctrl+C.", flush=True)
+
+    async def main() -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        for name in (signal.SIGINT, signal.SIGTERM):
+            try:
+                asyncio.get_running_loop().add_signal_handler(name, task.cancel)
+            except NotImplementedError:  # Windows: KeyboardInterrupt does the same
+                break
+        await server.serve(options, ready)
+
+    try:
+        asyncio.run(main())
+    except (asyncio.CancelledError, KeyboardInterrupt):
+        pass
+    return 0

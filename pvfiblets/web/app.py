@@ -1,0 +1,275 @@
+"""The application of one session: a scene, its page, and what the page's controls do.
+
+What browsers send has passed :mod:`pvfiblets.web.wire` and is checked again by the scene, for what it means. An error
+becomes a sentence on the page; the scene is then as it was.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from trame.app import TrameApp
+
+from pvfiblets.web import describe, layout
+from pvfiblets.web.camera import CameraActions
+from pvfiblets.web.confined import Confined
+from pvfiblets.web.cuts import CutActions
+from pvfiblets.web.filtering import FilterActions
+from pvfiblets.web.history import History
+from pvfiblets.web.opening import FileActions
+from pvfiblets.web.options import Options
+from pvfiblets.web.picks import SelectionActions
+from pvfiblets.web.scene import Scene
+from pvfiblets.web.state import WRITABLE, bind
+from pvfiblets.web.stream import PictureStream
+from pvfiblets.web.wire import Doors
+
+logger = logging.getLogger("pvfiblets.web")
+
+CLIENT = Path(__file__).with_name("client")
+CLIENT_URL = "__pvfiblets"
+
+
+class Explorer(TrameApp):
+    """One session.
+
+    Parameters
+    ----------
+    options : Options
+        What it opens with, and the root that it is confined to.
+    """
+
+    def __init__(self, options: Options) -> None:
+        super().__init__("pvfiblets")
+        import pyvista
+
+        self.options = options
+        self.confined = Confined(options.root)
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640))
+        self.plotter.set_background("black")
+        self.plotter.enable_trackball_style()
+        given = [*options.files, *options.volume, *options.mesh]
+        self.scene = Scene(self.plotter, self.confined.root, allowed=[Path(path) for path in given])
+        self.history = History(self.scene)
+        self.page = bind(self.state)
+        self.page.shared = options.shared
+        self.page.upload_limit = options.upload
+        self.state.trame__title = "pvfiblets"
+        self.doors = Doors(WRITABLE, self._is_trigger, self.complain)
+        self.stream = PictureStream(
+            self.plotter,
+            layout.VIEW,
+            codec=options.codec,
+            pending=self._pending,
+            failed=lambda error: self.complain(f"The picture could not be drawn: {error}"),
+            drawn=self._drawn,
+        )
+        self.camera = CameraActions(self)
+        self.cuts = CutActions(self)
+        self.filtering = FilterActions(self)
+        self.selecting = SelectionActions(self)
+        self.files = FileActions(self)
+        self.server.enable_module(
+            {"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/pvfiblets.js"]}
+        )
+        self._register_keys()
+        self.ui = layout.build(self)
+        self.scene.watch(lambda change: self.refresh())
+        self.refresh()
+        self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())
+
+    def _is_trigger(self, name: str) -> bool:
+        return self.server.controller.trigger_fn(name) is not None
+
+    def _pending(self) -> int:
+        protocol = self.server.protocol
+        return 0 if protocol is None else int(protocol.network_monitor.pending)
+
+    def _register_keys(self) -> None:
+        """Give names to what client/pvfiblets.js calls."""
+        named: dict[str, Callable[..., Any]] = {
+            "view": self.camera.view,
+            "flip": self.camera.flip,
+            "reset": self.camera.reset,
+            "toggle_parallel": self.camera.toggle_parallel,
+            "undo": self.undo,
+            "redo": self.redo,
+            "browse": self.files.browse,
+            "toggle_chosen": self.toggle_chosen,
+            "remove_chosen": self.remove_chosen,
+            "point": self.selecting.point,
+            "save_session": self.files.save_session,
+            "load_session": self.files.load_session,
+            "picture": self.camera.picture,
+        }
+        for name, function in named.items():
+            self.server.controller.trigger(name)(function)
+
+    def add_routes(self, router: Any) -> None:
+        """Add what comes and goes by plain HTTP."""
+        router.add_post("/upload", self.files.receive)
+        router.add_get("/download/{number}", self.selecting.send)
+
+    def close(self) -> None:
+        """Let go of everything."""
+        self.scene.close()
+        self.plotter.close()
+
+    # Messages
+
+    def complain(self, text: str) -> None:
+        """Show an error on the page."""
+        self.say(text, "error")
+
+    def say(self, text: str, kind: str = "info") -> None:
+        """Show a sentence on the page."""
+        with self.state:
+            self.page.toast = " ".join(text.split())[:400]
+            self.page.toast_kind = kind
+            self.page.toast_open = True
+
+    # Layers
+
+    def refresh(self) -> None:
+        """Show the scene as it is now, and draw it."""
+        scene, page = self.scene, self.page
+        with self.state:
+            ids = [layer.id for layer in scene.layers]
+            if page.chosen not in ids:
+                page.chosen = ids[-1] if ids else ""
+            page.layers = [describe.layer(layer) for layer in scene.layers]
+            chosen = scene.layer(page.chosen) if page.chosen else None
+            page.chosen_name = chosen.name if chosen is not None else ""
+            page.chosen_kind = chosen.kind if chosen is not None else ""
+            page.groups = describe.groups(scene.properties(page.chosen)) if page.chosen else []
+            page.range_chart = describe.range_chart(scene, page.chosen)
+            page.undo_label = self.history.undo_label or ""
+            page.redo_label = self.history.redo_label or ""
+            page.background = scene.state.background
+            page.info = describe.info(scene, page.chosen)
+            self.cuts.refresh()
+            self.filtering.refresh()
+            self.selecting.refresh()
+        self.stream.request()
+
+    def choose(self, layer_id: str) -> None:
+        """Make a layer the one that the panels are about."""
+        self.page.chosen = self.scene.layer(layer_id).id
+        self.refresh()
+
+    def show(self, layer_id: str, visible: bool) -> None:
+        """Show or hide a layer."""
+        self.scene.show(layer_id, visible is True)
+
+    def toggle_chosen(self) -> None:
+        """Show or hide the chosen layer."""
+        if self.page.chosen:
+            self.scene.show(self.page.chosen, not self.scene.layer(self.page.chosen).visible)
+
+    def duplicate(self, layer_id: str) -> None:
+        """Add a layer like another."""
+        self.page.chosen = self.scene.duplicate(layer_id).id
+        self.refresh()
+
+    def remove(self, layer_id: str) -> None:
+        """Take a layer away."""
+        self.scene.remove(layer_id)
+
+    def remove_chosen(self) -> None:
+        """Take the chosen layer away."""
+        if self.page.chosen:
+            self.scene.remove(self.page.chosen)
+
+    def ask_name(self, layer_id: str) -> None:
+        """Open the dialog for a new name."""
+        self.choose(layer_id)
+        self.page.dialog = "rename"
+
+    def rename(self, layer_id: str, name: str) -> None:
+        """Give a layer another name."""
+        self.scene.rename(layer_id, name)
+        self.page.dialog = ""
+
+    # Properties
+
+    def set_property(self, layer_id: str, name: str, value: Any) -> None:
+        """Set a property as a control gave it."""
+        try:
+            self.scene.set(layer_id, name, value)
+        except Exception:
+            self.page.groups = []  # what was typed gives way to what is in force
+            self.state.flush()
+            self.refresh()
+            raise
+
+    def set_choice(self, layer_id: str, name: str, index: int) -> None:
+        """Set a property to one of its choices, by number: values may be none, which no list can show."""
+        choices = self._property(layer_id, name)["choices"]
+        if not isinstance(index, int) or not 0 <= index < len(choices):
+            raise ValueError(f"{name}: there is no choice {index}")
+        self.set_property(layer_id, name, choices[index]["value"])
+
+    def set_number(self, layer_id: str, name: str, text: str) -> None:
+        """Set a property to a number that was typed."""
+        described = self._property(layer_id, name)
+        value = describe.typed(text, name, optional=described["optional"])
+        whole = described["whole"] and value is not None and value == int(value)
+        self.set_property(layer_id, name, int(value) if whole and value is not None else value)
+
+    def set_end(self, layer_id: str, name: str, end: int, text: str) -> None:
+        """Set one end of a range to a number that was typed."""
+        value = describe.typed(text, name, optional=False)
+        ends = list(self._property(layer_id, name)["effective"])
+        ends[1 if end else 0] = value
+        self.set_property(layer_id, name, ends)
+
+    def set_text(self, layer_id: str, name: str, text: str) -> None:
+        """Set a property to a text, or to numbers between commas."""
+        described = self._property(layer_id, name)
+        value: Any = text.strip() or None
+        if described["type"] == "numbers" and value is not None:
+            value = [describe.typed(part, name, optional=False) for part in text.replace(";", ",").split(",")]
+        self.set_property(layer_id, name, value)
+
+    def _property(self, layer_id: str, name: str) -> dict[str, Any]:
+        for described in self.scene.properties(layer_id):
+            if described["name"] == name:
+                return dict(described)
+        raise ValueError(f"there is no property {name!r}")
+
+    # History
+
+    def undo(self) -> None:
+        """Undo the last change."""
+        if self.history.undo() is not None:
+            self.refresh()
+
+    def redo(self) -> None:
+        """Do again what was undone last."""
+        if self.history.redo() is not None:
+            self.refresh()
+
+    # Frames
+
+    def _drawn(self) -> None:
+        """Show what goes with a frame; nothing is sent where it is as before."""
+        with self.state:
+            self.camera.refresh()
+            milliseconds = self.stream.milliseconds
+            if milliseconds is not None and not self.stream.moving:
+                self.page.frame = f"{milliseconds:.0f} ms a frame"
+
+    def later(self, coroutine: Any) -> asyncio.Task[Any]:
+        """Run a coroutine beside everything else; its error becomes a sentence on the page."""
+        task = asyncio.get_running_loop().create_task(coroutine)
+        task.add_done_callback(self._done)
+        return task
+
+    def _done(self, task: asyncio.Task[Any]) -> None:
+        if not task.cancelled() and (error := task.exception()) is not None:
+            logger.error("a task failed", exc_info=error)
+            self.complain(f"{error}")

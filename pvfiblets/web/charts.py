@@ -1,0 +1,84 @@
+"""Small charts as SVG text; nothing that a user wrote goes into them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5ec2c2", "#b0745a")
+
+
+def histogram_chart(counts: ArrayLike) -> str:
+    """Return bars of the square roots of counts, so that rare values are seen beside frequent ones.
+
+    Parameters
+    ----------
+    counts : array_like, shape (n,)
+        From low to high values.
+    """
+    heights = np.sqrt(np.maximum(np.nan_to_num(np.asarray(counts, np.float64)), 0.0))
+    if not heights.size or heights.max() <= 0.0:
+        return ""
+    heights /= heights.max()
+    bars = "".join(
+        f'<rect x="{i}" y="{1 - h:.3f}" width=".92" height="{h:.3f}"/>' for i, h in enumerate(heights) if h > 0.0
+    )
+    return (
+        f'<svg viewBox="0 0 {len(heights)} 1" preserveAspectRatio="none" fill="currentColor" opacity=".45" '
+        f'role="img" aria-label="histogram">{bars}</svg>'
+    )
+
+
+def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: ArrayLike) -> str:
+    """Return a mean with its band along streamlines.
+
+    Parameters
+    ----------
+    positions : array_like, shape (n,)
+        Along the streamlines, 0 to 1.
+    mean, low, high : array_like, shape (n,)
+        Values there; those that are not finite leave a gap.
+    """
+    x, y, below, above = (np.asarray(values, np.float64) for values in (positions, mean, low, high))
+    fine = np.isfinite(y) & np.isfinite(below) & np.isfinite(above)
+    if not fine.any():
+        return ""
+    least, most = float(below[fine].min()), float(above[fine].max())
+    reach = (most - least) or 1.0
+    width, height, left, bottom = 290.0, 130.0, 44.0, 18.0
+
+    def across(values: ArrayLike) -> np.ndarray:
+        return left + np.asarray(values) * (width - left - 6.0)
+
+    def down(values: ArrayLike) -> np.ndarray:
+        return height - bottom - (np.asarray(values) - least) / reach * (height - bottom - 6.0)
+
+    edge = np.concatenate([np.c_[across(x[fine]), down(above[fine])], np.c_[across(x[fine]), down(below[fine])][::-1]])
+    band = " ".join(f"{a:.1f},{b:.1f}" for a, b in edge)
+    line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(across(x[fine]), down(y[fine]), strict=True))
+    ticks = "".join(_label(left - 4.0, float(down(value)) + 4.0, f"{value:.3g}", "end") for value in (least, most))
+    ends = _label(left, height - 4.0, "start", "start") + _label(width - 6.0, height - 4.0, "end", "end")
+    return (
+        f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="profile">'
+        f'<polygon points="{band}" fill="{COLOURS[0]}" opacity=".3"/>'
+        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>{ticks}{ends}</svg>'
+    )
+
+
+def _label(x: float, y: float, text: str, anchor: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="10" fill="currentColor" text-anchor="{anchor}">{text}</text>'
+
+
+def steps(limits: Sequence[float]) -> float:
+    """Return a slider's step for limits: a round number, a few hundred of which fill them."""
+    reach = abs(float(limits[1]) - float(limits[0]))
+    if not np.isfinite(reach) or reach <= 0.0:
+        return 1.0
+    return float(10.0 ** np.floor(np.log10(reach / 200.0)))
+
+
+def short(value: float) -> str:
+    """Return a number as panels show it."""
+    return f"{value:.4g}"

@@ -1,0 +1,139 @@
+// What Vue's templates cannot do: keys, the selection tools over the picture, uploads with progress.
+// Triggers are those of pvfiblets/web/app.py and the rooms beside it.
+(() => {
+  "use strict";
+
+  const call = (name, ...args) => window.trame?.trigger(name, args);
+  const state = () => window.trame?.state;
+  const set = (name, value) => {
+    state()?.set(name, value);
+    state()?.flush?.(name);
+  };
+  const get = (name) => state()?.get(name);
+
+  // Keys -------------------------------------------------------------------------------------------
+
+  const KEYS = {
+    1: () => call("view", "axial"), 2: () => call("view", "coronal"), 3: () => call("view", "sagittal"),
+    4: () => call("view", "oblique"), 0: () => call("flip"), 5: () => call("toggle_parallel"), r: () => call("reset"),
+    p: () => set("tool", "pick"), b: () => set("tool", "box"), l: () => set("tool", "lasso"),
+    m: () => set("tool", "measure"), o: () => call("browse", ""), s: () => set("dialog", "session"),
+    c: () => document.querySelector("[data-action=screenshot]")?.click(), v: () => call("toggle_chosen"),
+    t: () => set("dark", !get("dark")), "?": () => set("dialog", "help"), delete: () => call("remove_chosen"),
+    "[": () => set("left_open", !get("left_open")), "]": () => set("right_open", !get("right_open")),
+  };
+
+  window.addEventListener("keydown", (event) => {
+    const target = event.target;
+    if (target.closest?.("input, textarea, select, [contenteditable], [role=listbox], [role=slider]")) return;
+    const key = event.key.toLowerCase();
+    if (event.ctrlKey || event.metaKey) {
+      if (key === "z") call(event.shiftKey ? "redo" : "undo");
+      else if (key === "y") call("redo");
+      else return;
+      event.preventDefault();
+      return;
+    }
+    if (event.altKey || get("dialog")) return;
+    if (key === "escape") set("tool", "rotate");
+    else if (KEYS[key]) KEYS[key]();
+    else return;
+    event.preventDefault();
+  });
+
+  // Tools over the picture -------------------------------------------------------------------------
+
+  // Places are shares of the picture's width and height from its upper left: browsers that share a view may differ.
+  let drawn = null;
+
+  const place = (over, event) => {
+    const box = over.getBoundingClientRect();
+    const within = (value) => Math.min(Math.max(value, 0), 1);
+    return [within((event.clientX - box.left) / box.width), within((event.clientY - box.top) / box.height)];
+  };
+
+  const draw = (over, tool, points) => {
+    const shown = points.map(([x, y]) => `${x * 1000},${y * 1000}`);
+    const style = 'fill="rgba(255,200,0,.18)" stroke="#fc0" stroke-width="2" vector-effect="non-scaling-stroke"';
+    let shape = "";
+    if (tool === "box" && points.length > 1) {
+      const [a, b] = [points[0], points[points.length - 1]];
+      const x = Math.min(a[0], b[0]) * 1000, y = Math.min(a[1], b[1]) * 1000;
+      const w = Math.abs(a[0] - b[0]) * 1000, h = Math.abs(a[1] - b[1]) * 1000;
+      shape = `<rect x="${x}" y="${y}" width="${w}" height="${h}" ${style}/>`;
+    } else if (tool === "lasso") {
+      shape = `<polygon points="${shown.join(" ")}" ${style}/>`;
+    } else if (tool === "measure" && points.length > 1) {
+      shape = `<polyline points="${shown[0]} ${shown[shown.length - 1]}" ${style}/>`;
+    }
+    over.innerHTML = `<svg viewBox="0 0 1000 1000" preserveAspectRatio="none">${shape}</svg>`;
+  };
+
+  document.addEventListener("pointerdown", (event) => {
+    const over = event.target.closest?.("#pv-over");
+    if (!over || event.button > 0) return;
+    event.preventDefault();
+    over.setPointerCapture(event.pointerId);
+    drawn = { over, tool: over.dataset.tool, points: [place(over, event)], id: event.pointerId };
+    draw(over, drawn.tool, drawn.points);
+  }, true);
+
+  document.addEventListener("pointermove", (event) => {
+    if (!drawn || event.pointerId !== drawn.id) return;
+    const point = place(drawn.over, event), last = drawn.points[drawn.points.length - 1];
+    if (Math.hypot(point[0] - last[0], point[1] - last[1]) < 0.004) return;
+    if (drawn.points.length < 500) drawn.points.push(point);
+    else drawn.points[drawn.points.length - 1] = point;
+    draw(drawn.over, drawn.tool, drawn.points);
+  }, true);
+
+  const finish = (event, keep) => {
+    if (!drawn || event.pointerId !== drawn.id) return;
+    const { over, tool, points } = drawn;
+    drawn = null;
+    over.innerHTML = "";
+    if (keep) call("point", tool, points, event.shiftKey);
+  };
+  document.addEventListener("pointerup", (event) => finish(event, true), true);
+  document.addEventListener("pointercancel", (event) => finish(event, false), true);
+
+  // Files ------------------------------------------------------------------------------------------
+
+  const say = (text) => {
+    set("toast", text);
+    set("toast_kind", "error");
+    set("toast_open", true);
+  };
+
+  const upload = (file, limit) => {
+    if (file.size > limit) return say(`${file.name} has ${(file.size / 2 ** 20).toFixed(0)} MB; ` +
+      `${(limit / 2 ** 20).toFixed(0)} MB is the most that this server takes.`);
+    const request = new XMLHttpRequest();
+    const show = (share) => { set("uploading", file.name); set("uploaded", share); };
+    request.upload.onprogress = (event) => show(event.lengthComputable ? (100 * event.loaded) / event.total : -1);
+    request.onloadend = () => {
+      set("uploading", "");
+      if (request.status !== 200) say(`${file.name} was not uploaded (${request.status || "connection lost"}).`);
+    };
+    request.open("POST", `/upload?name=${encodeURIComponent(file.name)}`);
+    request.setRequestHeader("Content-Type", "application/octet-stream");
+    show(0);
+    set("dialog", "");
+    request.send(file);
+  };
+
+  document.addEventListener("change", async (event) => {
+    const input = event.target;
+    if (!(input instanceof HTMLInputElement) || input.type !== "file" || !input.files.length) return;
+    const file = input.files[0];
+    if (input.dataset.upload !== undefined) upload(file, Number(input.dataset.limit));
+    else if (input.dataset.session !== undefined) {
+      if (file.size > 512 * 1024) say(`${file.name} is too large for a session file.`);
+      else {
+        set("dialog", "");
+        call("load_session", await file.text());
+      }
+    }
+    input.value = "";
+  }, true);
+})();

@@ -1,0 +1,165 @@
+"""What opens over the page: files, sessions, the script, keys, renaming, progress and messages."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from trame.widgets import html
+from trame.widgets import vuetify3 as v3
+
+KEYS = (
+    ("1 2 3 4", "axial, coronal, sagittal, oblique"),
+    ("0", "look from the other side"),
+    ("R", "show everything"),
+    ("5", "parallel or perspective"),
+    ("Esc", "turn, move and zoom with the pointer"),
+    ("P B L", "pick, box, lasso; with Shift what is hit is added"),
+    ("M", "measure between two points"),
+    ("V", "show or hide the chosen layer"),
+    ("Del", "remove the chosen layer"),
+    ("Ctrl+Z  Ctrl+Y", "undo, redo"),
+    ("O S C", "open a file, sessions, save the picture"),
+    ("T", "light or dark"),
+    ("[  ]", "left and right side"),
+    ("?", "this list"),
+)
+POINTER = (
+    ("drag", "turn; one finger"),
+    ("Shift + drag, middle button", "move; two fingers"),
+    ("wheel, right button", "zoom; pinch"),
+    ("Ctrl + drag", "roll"),
+)
+
+
+def build(app: Any) -> None:
+    """Build all of them."""
+    _files(app)
+    _sessions(app)
+    _script()
+    _help()
+    _rename(app)
+    _end()
+    _progress(app)
+    with v3.VSnackbar(
+        v_model=("toast_open", False), timeout=8000, color=("toast_kind",), location="bottom", id="toast"
+    ):
+        html.Span("{{ toast }}", data_toast=True)
+        with v3.Template(v_slot_actions=True):
+            v3.VBtn("Close", variant="text", classes="text-none", click="toast_open = false")
+
+
+def _dialog(name: str, title: str, width: int) -> Any:
+    dialog = v3.VDialog(
+        model_value=(f"dialog === '{name}'",),
+        update_modelValue=f"dialog = !$event && dialog === '{name}' ? '' : dialog",
+        max_width=width,
+        scrollable=True,
+    )
+    with dialog:
+        card = v3.VCard(id=f"dialog-{name}")
+        with card:
+            with html.Div(classes="d-flex align-center px-4 pt-3 pb-1"):
+                html.Div(title, classes="text-subtitle-1 font-weight-medium", style="flex: 1")
+                with v3.VBtn(icon=True, size="small", variant="text", click="dialog = ''", aria_label="Close"):
+                    v3.VIcon("mdi-close")
+    return card
+
+
+def _files(app: Any) -> None:
+    with _dialog("open", "Open a file", 620):
+        with html.Div(classes="px-4 pb-1 pv-pair"):
+            with v3.VBtn(
+                icon=True, size="small", variant="text", aria_label="Folder above", disabled=("!folder",),
+                click=(app.files.browse, "[folder.split('/').slice(0, -1).join('/')]"),
+            ):  # fmt: skip
+                v3.VIcon("mdi-arrow-up")
+            html.Span("/{{ folder }}", classes="pv-value", style="flex: 1")
+            with html.Label(v_if="upload_limit > 0", classes="v-btn v-btn--density-default v-btn--size-small "
+                            "v-btn--variant-tonal px-3", style="cursor: pointer"):  # fmt: skip
+                html.Span("Upload…")
+                html.Input(type="file", hidden=True, data_upload=True, data_limit=("upload_limit",))
+        with v3.VCardText(classes="pa-0", style="max-height: 60vh"):
+            with v3.VList(density="compact"):
+                with v3.VListItem(
+                    v_for="e in entries",
+                    key="e.path",
+                    click=(app.files.take, "[e.path, e.folder]"),
+                    title=("e.name",),
+                    subtitle=("e.detail",),
+                    prepend_icon=("e.folder ? 'mdi-folder-outline' : 'mdi-file-outline'",),
+                    data_entry=("e.name",),
+                ):
+                    pass
+            html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
+
+
+def _sessions(app: Any) -> None:
+    with _dialog("session", "Session", 460):
+        with v3.VCardText():
+            html.Div("A session file keeps layers, camera, cuts, filters and selections; the data stays where it is.",
+                     classes="pv-small mb-3")  # fmt: skip
+            with html.Div(classes="d-flex flex-wrap", style="gap: 8px"):
+                v3.VBtn(
+                    "Save", color="primary", classes="text-none", data_action="save-session",
+                    click="utils.download('session.json', trigger('save_session'), 'application/json')",
+                )  # fmt: skip
+                with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4",
+                                style="cursor: pointer"):  # fmt: skip
+                    html.Span("Load…")
+                    html.Input(type="file", accept=".json,application/json", hidden=True, data_session=True)
+
+
+def _script() -> None:
+    with _dialog("script", "The same picture in Python", 820):
+        with v3.VCardText():
+            html.Div("{{ script }}", classes="pv-code", id="script")
+        with v3.VCardActions():
+            v3.VSpacer()
+            v3.VBtn("Download", color="primary", variant="tonal", classes="text-none",
+                    click="utils.download('scene.py', script, 'text/x-python')")  # fmt: skip
+
+
+def _help() -> None:
+    with _dialog("help", "Keys and pointer", 520), v3.VCardText():
+        for rows in (KEYS, POINTER):
+            with html.Table(classes="mb-3", style="width: 100%; font-size: 13px"):
+                for keys, meaning in rows:
+                    with html.Tr():
+                        html.Td(keys, style="width: 40%; font-weight: 500; padding: 3px 0")
+                        html.Td(meaning)
+
+
+def _rename(app: Any) -> None:
+    with _dialog("rename", "Rename", 400), v3.VCardText():
+        html.Input(
+            id="rename", value=("chosen_name",), classes="pv-num", style="width: 100%; font-size: 15px; padding: 8px",
+            change=(app.rename, "[chosen, $event.target.value]"), aria_label="Name", autofocus=True,
+        )  # fmt: skip
+
+
+def _end() -> None:
+    with _dialog("end", "Close this session?", 420):
+        v3.VCardText("What was not saved is lost; another browser can have its place.")
+        with html.Form(method="post", action="/end", classes="d-flex justify-end pa-3", style="gap: 8px"):
+            v3.VBtn("Cancel", variant="text", classes="text-none", click="dialog = ''")
+            v3.VBtn("Close", type="submit", color="primary", classes="text-none", data_action="end-session")
+
+
+def _progress(app: Any) -> None:
+    with v3.VCard(
+        v_if="job.text", elevation=8, width=340, id="busy",
+        style="position: fixed; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400",
+    ):  # fmt: skip
+        with html.Div(classes="pa-3"):
+            with html.Div(classes="pv-pair mb-2"):
+                html.Span("{{ job.text }}", style="flex: 1; font-size: 13px", classes="text-truncate")
+                v3.VBtn("Cancel", v_if="job.cancellable", size="x-small", variant="tonal", classes="text-none",
+                        click=app.files.cancel, data_action="cancel")  # fmt: skip
+            v3.VProgressLinear(model_value=("job.share",), indeterminate=("job.share < 0",), color="primary")
+    with v3.VCard(
+        v_if="uploading", elevation=8, width=340, id="uploading",
+        style="position: fixed; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400",
+    ):  # fmt: skip
+        with html.Div(classes="pa-3"):
+            html.Div("Uploading {{ uploading }}", classes="pv-small mb-2 text-truncate")
+            v3.VProgressLinear(model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary")

@@ -1,0 +1,164 @@
+"""The page: bar above, layers and their properties left, tabs right, the picture between them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from trame.ui.vuetify3 import VAppLayout
+from trame.widgets import client, html, rca
+from trame.widgets import vuetify3 as v3
+
+from pvfiblets.web import dialogs, panels, tabs
+
+VIEW = "view"
+VIEWS = (
+    ("axial", "Axial", "from above (1)"),
+    ("coronal", "Coronal", "from the front (2)"),
+    ("sagittal", "Sagittal", "from the left (3)"),
+    ("oblique", "Oblique", "from the left, front and above (4)"),
+)
+TOOLS = (
+    ("rotate", "mdi-rotate-orbit", "Turn, move and zoom (Esc)"),
+    ("pick", "mdi-cursor-default-click-outline", "Pick a streamline (P)"),
+    ("box", "mdi-selection", "Select in a box (B)"),
+    ("lasso", "mdi-lasso", "Select in a lasso (L)"),
+    ("measure", "mdi-ruler", "Measure between two points (M)"),
+)
+STYLE = """
+html, body { overflow: hidden !important; overscroll-behavior: none }
+.pv-view { position: absolute; inset: 0; touch-action: none; background: #000 }
+.pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
+.pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
+  text-shadow: 0 0 3px #000, 0 0 3px #000 }
+.pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
+.pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
+.pv-over svg { width: 100%; height: 100% }
+.pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
+  opacity: .85; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
+.pv-scroll { overflow-y: auto; min-height: 0 }
+.pv-row { display: grid; grid-template-columns: 104px 1fr; align-items: center; gap: 8px; padding: 3px 12px }
+.pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
+.pv-value { font-size: 13px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
+.pv-head { font-size: 11px; letter-spacing: .08em; text-transform: uppercase; opacity: .6; padding: 10px 12px 2px }
+.pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; color: inherit; background: transparent;
+  border: 1px solid rgba(128,128,128,.5); border-radius: 4px; padding: 3px 6px }
+.pv-num:focus { outline: 2px solid rgb(var(--v-theme-primary)); outline-offset: -1px }
+.pv-colour { width: 44px; height: 26px; padding: 0; border: 1px solid rgba(128,128,128,.5); border-radius: 4px;
+  background: none }
+.pv-pair { display: flex; gap: 6px; align-items: center; min-width: 0 }
+.pv-chart svg { width: 100%; height: 36px; display: block }
+.pv-small { font-size: 12px; opacity: .75 }
+.pv-code { white-space: pre; overflow: auto; font: 12px/1.45 "DejaVu Sans Mono", monospace; max-height: 60vh; padding: 12px;
+  background: rgba(128,128,128,.12); border-radius: 6px; user-select: text }
+.pv-table { width: 100%; border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums }
+.pv-table th { text-align: right; font-weight: 500; opacity: .7; padding: 3px 6px; position: sticky; top: 0 }
+.pv-table td { text-align: right; padding: 3px 6px; border-top: 1px solid rgba(128,128,128,.2) }
+.pv-table td:first-child, .pv-table th:first-child { text-align: left }
+.pv-layer { min-height: 34px !important; padding-inline: 6px !important }
+.v-toolbar__content > .v-btn { margin-inline: 0 !important }
+.v-slider.v-input--horizontal { margin-inline: 6px }
+.v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;
+  padding-bottom: 3px !important }
+"""
+
+
+def build(app: Any) -> Any:
+    """Build the page of an application, and return its layout."""
+    with VAppLayout(app.server, theme=("dark ? 'dark' : 'light'",)) as layout:
+        client.Style(STYLE)
+        with v3.VLayout(style="height: 100vh; height: 100dvh"):
+            _bar(app)
+            with v3.VNavigationDrawer(
+                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=900, id="left"
+            ):
+                with html.Div(style="display: flex; flex-direction: column; height: 100%"):
+                    panels.layers(app)
+                    panels.properties(app)
+            with v3.VNavigationDrawer(
+                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=1100, id="right"
+            ):
+                tabs.build(app)
+            with v3.VMain(style="position: relative; height: 100%"):
+                _view(app)
+            dialogs.build(app)
+    return layout
+
+
+def _bar(app: Any) -> None:
+    with v3.VAppBar(density="compact", height=44, flat=True, border="b"):
+        _icon("mdi-dock-left", "Layers and properties ([)", click="left_open = !left_open")
+        _icon("mdi-folder-open-outline", "Open a file (O)", click=(app.files.browse, "['']"), name="open")
+        _icon("mdi-content-save-outline", "Save or load a session (S)", click="dialog = 'session'", name="session")
+        _icon("mdi-undo", "Undo {{ undo_label }} (Ctrl+Z)", click=app.undo, disabled=("!undo_label",), name="undo")
+        _icon("mdi-redo", "Redo {{ redo_label }} (Ctrl+Y)", click=app.redo, disabled=("!redo_label",), name="redo")
+        v3.VDivider(vertical=True, classes="mx-1")
+        for name, title, hint in VIEWS:
+            with v3.VBtn(
+                title, size="small", variant="text", classes="px-2 text-none", click=(app.camera.view, f"['{name}']"),
+                data_view=name,
+            ):  # fmt: skip
+                v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+        _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
+        _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
+        _icon(
+            "mdi-perspective-less", "Parallel or perspective (5)", click=app.camera.toggle_parallel, name="parallel",
+            color=("parallel ? 'primary' : ''",),
+        )  # fmt: skip
+        with html.Label(classes="px-1", title="Background"):
+            html.Input(
+                type="color", classes="pv-colour", value=("background",), aria_label="Background",
+                change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
+            )  # fmt: skip
+        _icon(
+            "mdi-camera-outline", "Save the picture (C)", name="screenshot",
+            click="utils.download('picture.png', trigger('picture'), 'image/png')",
+        )  # fmt: skip
+        v3.VSpacer()
+        _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
+        _icon("mdi-keyboard-outline", "Keys (?)", click="dialog = 'help'", name="help")
+        _icon("mdi-theme-light-dark", "Light or dark (T)", click="dark = !dark", name="theme")
+        _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
+        _icon("mdi-dock-right", "Clip, filter, selection, information (])", click="right_open = !right_open")
+
+
+def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None:
+    if name is not None:
+        rest["data_action"] = name
+    with v3.VBtn(icon=True, size="small", density="comfortable", variant="text", aria_label=hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", ""), **rest):
+        v3.VIcon(icon, size=20)
+        v3.VTooltip(hint, activator="parent", location="bottom")
+
+
+def _view(app: Any) -> None:
+    with html.Div(classes="pv-view", id="pv-view"):
+        area = rca.RemoteControlledArea(
+            name=VIEW, display="image", event_throttle_ms=20, image_style=("({width: '100%', height: '100%'})",),
+            style="position: absolute; inset: 0; width: 100%; height: 100%",
+        )
+        area.add_view_handler(app.stream)
+        # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
+        html.Div(v_if="tool !== 'rotate'", classes="pv-over", id="pv-over", data_tool=("tool",))
+        for edge, place in (
+            ("left", "left: 52px; top: 50%"),
+            ("right", "right: 8px; top: 50%"),
+            ("top", "top: 4px; left: 50%"),
+            ("bottom", "bottom: 4px; left: 50%"),
+        ):
+            html.Div(f"{{{{ edges.{edge} }}}}", v_if=f"edges.{edge}", classes="pv-edge", style=place, data_edge=edge)
+        with html.Div(classes="pv-tools"):
+            for name, icon, hint in TOOLS:
+                with v3.VBtn(
+                    icon=True, size="small", density="comfortable", aria_label=hint, click=f"tool = '{name}'",
+                    color=(f"tool === '{name}' ? 'primary' : undefined",), data_tool_button=name,
+                ):  # fmt: skip
+                    v3.VIcon(icon, size=20)
+                    v3.VTooltip(hint, activator="parent", location="right")
+        html.Div("{{ measured ? measured + ' · ' : '' }}{{ frame }}", classes="pv-status")
+        with html.Div(
+            v_if="!layers.length && !job.text",
+            style="position: absolute; inset: 0; display: grid; place-items: center; z-index: 3; pointer-events: none",
+        ):
+            with html.Div(style="pointer-events: auto; text-align: center; color: #fff"):
+                html.Div("Nothing is open yet", classes="text-h6 mb-2")
+                v3.VBtn("Open a file", color="primary", click=(app.files.browse, "['']"), classes="ma-1 text-none")
+                v3.VBtn("Open the demo", variant="outlined", click=app.files.open_demo, classes="ma-1 text-none")

@@ -1,0 +1,194 @@
+"""Files: opening with progress, uploads, sessions and the script."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.formats.registry import suffixes
+from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
+from pvfiblets.web.confined import ConfinedError
+from pvfiblets.web.loading import MESHES, Cancelled
+from pvfiblets.web.options import MEBIBYTE
+
+PIECE = MEBIBYTE  # bytes of an upload at a time
+LATEST = 0.2  # seconds between two reports of progress
+
+
+class FileActions:
+    """The files of an application.
+
+    Parameters
+    ----------
+    app : Explorer
+        Whose scene and page these act on.
+    """
+
+    def __init__(self, app: Any) -> None:
+        self._app = app
+        self._stop = False
+        self._opening = asyncio.Lock()
+        self._for = ""  # what the file that is chosen next is for: a layer, or 'clip'
+
+    # Opening
+
+    def open_given(self) -> None:
+        """Open what the server was started with."""
+        options = self._app.options
+        given = [(path, "tractogram" if _is_lines(path) else None) for path in options.files]
+        given += [(path, "volume") for path in options.volume] + [(path, "mesh") for path in options.mesh]
+        self._app.later(self._open_all(given))
+
+    async def _open_all(self, given: list[tuple[str, str | None]]) -> None:
+        for path, kind in given:
+            try:
+                await self.open(path, kind)
+            except Exception as error:  # noqa: BLE001 - the others are opened all the same
+                self._app.complain(f"{Path(path).name}: {error}")
+        if self._app.options.demo:
+            self.open_demo()
+
+    def open_demo(self) -> None:
+        """Open the made-up tractogram."""
+        self._app.scene.add_demo()
+        self._app.refresh()
+
+    async def open(self, path: str, kind: str | None = None) -> None:
+        """Open a file beside everything else: what takes long runs in a thread, and the page goes on."""
+        app = self._app
+        loop = asyncio.get_running_loop()
+        name = Path(path).name
+        reported = 0.0
+
+        def show(what: str, share: float) -> None:
+            with app.state:
+                app.page.job = {"text": f"{name}: {what}", "share": 100.0 * share, "cancellable": True}
+
+        def progress(what: str, share: float) -> None:  # in the thread
+            nonlocal reported
+            if (now := time.monotonic()) - reported > LATEST:
+                reported = now
+                loop.call_soon_threadsafe(show, what, share)
+
+        async with self._opening:
+            self._stop = False
+            show("opening", 0.0)
+            try:
+                loaded = await asyncio.to_thread(app.scene.load, path, kind, progress, lambda: self._stop)
+                layer = app.scene.add(loaded)
+            except Cancelled:
+                app.say(f"{name} was not opened: cancelled.")
+                return
+            finally:
+                await asyncio.sleep(0)  # let the last report of the thread come first
+                with app.state:
+                    app.page.job = {}
+        app.page.chosen = layer.id
+        app.refresh()
+
+    def cancel(self) -> None:
+        """Stop opening."""
+        self._stop = True
+
+    # The file browser
+
+    def browse(self, folder: str = "", purpose: str = "") -> None:
+        """Show a folder of the root."""
+        app = self._app
+        self._for = purpose if purpose == "clip" else ("" if app.page.dialog != "open" else self._for)
+        known = MESHES if self._for == "clip" else (*suffixes(), *VOLUMES, *MESHES)
+        entries = app.confined.listing(folder)
+        app.page.folder = app.confined.relative(app.confined.resolve(folder)).removeprefix(".")
+        app.page.entries = [
+            {"name": entry.name, "path": entry.path, "folder": entry.folder,
+             "detail": "" if entry.folder else _size(entry.size)}
+            for entry in entries
+            if entry.folder or entry.name.lower().endswith(tuple(known))
+        ]  # fmt: skip
+        app.page.dialog = "open"
+
+    def take(self, path: str, folder: bool) -> None:
+        """Open what was chosen in the file browser."""
+        app = self._app
+        if folder is True:
+            self.browse(path, self._for)
+            return
+        app.confined.existing(path)
+        app.page.dialog = ""
+        if self._for == "clip":
+            self._for = ""
+            app.cuts.add("mesh", path)
+        else:
+            app.later(self.open(path))
+
+    async def receive(self, request: Any) -> Any:
+        """Take an upload into the root, and open it; a file of its name is never replaced."""
+        from aiohttp import web
+
+        app = self._app
+        known = (*suffixes(), *VOLUMES, *MESHES)
+        name = Path(request.query.get("name", "")).name
+        try:
+            target = app.confined.writable(name, tuple(known))
+        except ConfinedError as error:
+            app.complain(str(error))
+            raise web.HTTPBadRequest(text="not a name") from error
+        limit, size = app.options.upload, 0
+        part = target.with_name(f".{target.name}.part")
+        try:
+            with part.open("xb") as file:
+                async for piece in request.content.iter_chunked(PIECE):
+                    size += len(piece)
+                    if size > limit:
+                        raise web.HTTPRequestEntityTooLarge(max_size=limit, actual_size=size)
+                    await asyncio.to_thread(file.write, piece)
+            if request.content_length is not None and size != request.content_length:
+                raise web.HTTPBadRequest(text="incomplete")
+            part.rename(target)
+        except FileExistsError as error:
+            app.complain(f"{name} is being uploaded already")
+            raise web.HTTPConflict from error
+        except OSError as error:
+            app.complain(f"{name} could not be stored: {error.strerror}")
+            raise web.HTTPInsufficientStorage from error
+        finally:
+            part.unlink(missing_ok=True)
+        app.later(self.open(app.confined.relative(target)))
+        return web.Response(text="stored")
+
+    # Sessions and the script
+
+    def save_session(self) -> str:
+        """Return the session as JSON."""
+        from pvfiblets.web import session
+
+        return json.dumps(session.to_dict(self._app.scene), indent=1)
+
+    def load_session(self, text: str) -> None:
+        """Become what a session file says; where it is malformed, all stays as it is."""
+        from pvfiblets.web import session
+
+        try:
+            data = json.loads(text)
+        except ValueError as error:
+            raise ValueError(f"this is no session file: {error}") from error
+        session.from_dict(self._app.scene, data)
+        self._app.refresh()
+
+    def show_script(self) -> None:
+        """Show the Python that makes the same picture."""
+        from pvfiblets.web.script import as_script
+
+        self._app.page.script = as_script(self._app.scene)
+        self._app.page.dialog = "script"
+
+
+def _is_lines(path: str) -> bool:
+    return path.lower().endswith((".trk", ".trk.gz", ".tck", ".trx", ".tt.gz", ".fiblets"))
+
+
+def _size(size: int) -> str:
+    return f"{size / MEBIBYTE:,.1f} MB" if size >= MEBIBYTE else f"{max(size, 1) / 1024:,.0f} kB"

@@ -1,0 +1,201 @@
+"""The tools over the picture and the tab Selection."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from collections import OrderedDict
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.web.charts import profile_chart, short
+from pvfiblets.web.wire import number
+
+ROWS = 200
+DOWNLOADS = 16  # files that can be fetched; older ones are forgotten
+EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
+
+
+class SelectionActions:
+    """Picking and the selection of an application's scene.
+
+    Parameters
+    ----------
+    app : Explorer
+        Whose scene and page these act on.
+    """
+
+    def __init__(self, app: Any) -> None:
+        self._app = app
+        self._files: OrderedDict[str, Path] = OrderedDict()
+        self._latest: str = ""
+        self._profile: str | None = None
+        self._measuring: list[Any] = []
+        self._shown: Any = None
+
+    # Tools
+
+    def point(self, tool: str, places: Any, add: bool) -> None:
+        """Take what a tool did over the picture.
+
+        Parameters
+        ----------
+        tool : {'pick', 'box', 'lasso', 'measure'}
+            Which one.
+        places : list of [x, y]
+            Where the pointer went, as shares of the picture from its upper left.
+        add : bool
+            Whether what is hit is added to the selection.
+        """
+        if not isinstance(places, list) or not 1 <= len(places) <= 501:
+            raise ValueError("a tool needs places in the picture")
+        width, height = self._app.stream.size
+        pixels = []
+        for place in places:
+            if not isinstance(place, list) or len(place) != 2:
+                raise ValueError("a place in the picture is two numbers")
+            x, y = (number(part, 0.0, 1.0) for part in place)
+            pixels.append((x * (width - 1), (1.0 - y) * (height - 1)))
+        mode = "add" if add is True else "replace"
+        scene = self._app.scene
+        if tool == "measure":
+            self._measure(pixels[0], pixels[-1])
+            return
+        far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
+        if tool == "pick" or (tool == "box" and far < 3) or (tool == "lasso" and len(pixels) < 3):
+            found = scene.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
+            if found is None and mode == "replace":
+                self._app.say("There is no streamline there.")
+        elif tool == "box":
+            scene.select_box(*pixels[0], *pixels[-1], mode=mode)
+        elif tool == "lasso":
+            scene.select_polygon([list(pixel) for pixel in pixels], mode=mode)
+        else:
+            raise ValueError(f"there is no tool {str(tool)[:40]!r}")
+        with self._app.state:
+            if scene.count():
+                self._app.page.tab = "selection"
+                self._app.page.right_open = True
+        self._app.refresh()
+
+    def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
+        import numpy as np
+
+        ends = [self._position(*pixel) for pixel in (first, last)]
+        if ends[0] is None or ends[1] is None:
+            self._app.say("Begin and end on something that is drawn.")
+            return
+        length = float(np.linalg.norm(np.subtract(ends[1], ends[0])))
+        self._app.page.measured = f"{short(length)} mm"
+
+    def _position(self, x: float, y: float) -> Any:
+        from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
+
+        renderer = self._app.plotter.renderer
+        depth = renderer.GetZ(round(x), round(y))
+        if depth >= 1.0:
+            return None
+        picker = vtkWorldPointPicker()
+        picker.Pick(x, y, 0.0, renderer)
+        return picker.GetPickPosition()
+
+    # The tab
+
+    def refresh(self) -> None:
+        """Show what is selected."""
+        scene, page = self._app.scene, self._app.page
+        count = scene.count()
+        if not count:
+            page.selection = {"count": 0}
+            self._latest = ""
+            return
+        table = scene.table(limit=ROWS)
+        rows = table["rows"]
+        layers = {row["layer"] for row in rows}
+        of = next((row["of"] for row in rows if row["of"]), None)
+        columns = ["streamline", "points", "mm"] + ([of] if of else []) + (["layer"] if len(layers) > 1 else [])
+        cells = []
+        for row in rows:
+            line = [f"{row['streamline']:,}", f"{row['points']:,}", short(row["length"])]
+            if of:
+                line.append("–" if row["value"] is None else short(row["value"]))
+            if len(layers) > 1:
+                line.append(row["name"])
+            cells.append(line)
+        page.selection = {
+            "count": count,
+            "title": f"{count:,} streamline{'' if count == 1 else 's'}",
+            "columns": columns,
+            "rows": cells,
+            "more": f"and {table['total'] - len(rows):,} more" if table["total"] > len(rows) else "",
+            "url": f"/download/{self._latest}" if self._latest else "",
+            "file": self._files[self._latest].name if self._latest else "",
+            **self._plot(),
+        }
+
+    def _owner(self) -> Any:
+        """The layer whose selection is exported and profiled: the chosen one, or the first that has one."""
+        scene = self._app.scene
+        having = [layer for layer in scene.layers if layer.selected is not None]
+        if not having:
+            raise ValueError("nothing is selected; pick streamlines first")
+        return next((layer for layer in having if layer.id == self._app.page.chosen), having[0])
+
+    def _plot(self) -> dict[str, Any]:
+        scene = self._app.scene
+        layer = self._owner()
+        fiblets = scene.actor(layer.id).fiblets
+        names = ["curvature", *fiblets.per_point]
+        name = self._profile if self._profile in names else None
+        found = scene.profile(layer.id, name)
+        mean, spread = ([float("nan") if part is None else part for part in found[key]] for key in ("mean", "std"))
+        low = [a - b for a, b in zip(mean, spread, strict=True)]
+        high = [a + b for a, b in zip(mean, spread, strict=True)]
+        chart = profile_chart(found["position"], mean, low, high)
+        return {"profiles": names, "profile": found["name"], "chart": chart}
+
+    def set_profile(self, name: str) -> None:
+        """Choose what the profile is of."""
+        self._profile = str(name)
+        self._app.refresh()
+
+    def clear(self) -> None:
+        """Select nothing."""
+        self._app.scene.deselect()
+
+    def as_layer(self) -> None:
+        """Add a layer of what is selected."""
+        self._app.page.chosen = self._app.scene.keep_selection(self._owner().id).id
+        self._app.refresh()
+
+    # Export
+
+    def export(self, suffix: str) -> None:
+        """Write the selected streamlines to a file in the root, and offer it."""
+        if suffix not in EXPORTS:
+            raise ValueError(f"{suffix!r} is none of {', '.join(EXPORTS)}")
+        layer = self._owner()
+        stem = re.sub(r"[^\w-]+", "_", layer.name.partition(".")[0]).strip("_") or "streamlines"
+        path = next(
+            name
+            for k in range(1, 10_000)
+            if not (self._app.confined.root / (name := f"{stem}_selected{'' if k == 1 else f'_{k}'}{suffix}")).exists()
+        )
+        done = self._app.scene.export(layer.id, path)
+        self._latest = secrets.token_urlsafe(12)
+        self._files[self._latest] = self._app.confined.existing(done["path"])
+        while len(self._files) > DOWNLOADS:
+            self._files.popitem(last=False)
+        lost = f"; {suffix} cannot hold: {', '.join(map(str, done['lost']))}" if done["lost"] else ""
+        size = f"{done['bytes'] / 1024:,.0f} kB"
+        self._app.say(f"{done['streamlines']:,} streamlines saved as {done['path']} ({size}){lost}", "success")
+        self._app.refresh()
+
+    async def send(self, request: Any) -> Any:
+        """Answer a browser that fetches an exported file."""
+        from aiohttp import web
+
+        path = self._files.get(request.match_info["number"])
+        if path is None or not path.is_file():
+            raise web.HTTPNotFound
+        return web.FileResponse(path, headers={"Content-Disposition": f'attachment; filename="{path.name}"'})

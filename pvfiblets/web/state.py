@@ -1,0 +1,104 @@
+"""What a page shows, as one typed record; the server writes it, browsers may write a few of its fields."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, cast
+
+Record = dict[str, Any]
+
+
+@dataclass
+class Page:
+    """The state of a page.
+
+    The first block is the browser's: which panels are open, which tool is in hand. All else is a copy of what the
+    server knows, and only the server writes it.
+    """
+
+    tab: str = "clip"
+    tool: str = "rotate"
+    left_open: bool = True
+    right_open: bool = True
+    dark: bool = True
+    dialog: str = ""
+    toast_open: bool = False
+    toast: str = ""
+    toast_kind: str = "error"
+    uploading: str = ""
+    uploaded: float = 0.0  # per cent; below zero: nobody knows
+
+    layers: list[Record] = field(default_factory=list)
+    chosen: str = ""
+    chosen_name: str = ""
+    chosen_kind: str = ""
+    groups: list[Record] = field(default_factory=list)  # of properties, as the panel draws them
+    range_chart: str = ""  # SVG
+    undo_label: str = ""
+    redo_label: str = ""
+
+    parallel: bool = False
+    background: str = "#000000"
+    edges: Record = field(default_factory=dict)  # anatomical letters at the picture's edges
+    measured: str = ""
+
+    clips: list[Record] = field(default_factory=list)
+    filters: Record = field(default_factory=dict)
+    selection: Record = field(default_factory=dict)
+    info: list[Record] = field(default_factory=list)
+    frame: str = ""
+
+    job: Record = field(default_factory=dict)
+    folder: str = ""
+    entries: list[Record] = field(default_factory=list)
+    script: str = ""
+    shared: bool = False
+    upload_limit: int = 0
+
+
+WRITABLE: dict[str, type] = {
+    "tab": str,
+    "tool": str,
+    "left_open": bool,
+    "right_open": bool,
+    "dark": bool,
+    "dialog": str,
+    "toast_open": bool,
+    "toast": str,
+    "toast_kind": str,
+    "uploading": str,
+    "uploaded": float,
+}
+"""Fields that browsers may write, and their types."""
+
+
+def bind(state: Any) -> Page:
+    """Return a page whose fields are keys of trame's state: reading and writing them reads and writes the state.
+
+    Parameters
+    ----------
+    state : trame_server.state.State
+        Keys that it lacks get the defaults of :class:`Page`.
+    """
+    return cast("Page", _Bound(state))
+
+
+class _Bound:
+    """A :class:`Page` by its fields."""
+
+    def __init__(self, state: Any) -> None:
+        names = {item.name for item in fields(Page)}
+        object.__setattr__(self, "_state", state)
+        object.__setattr__(self, "_names", names)
+        for name, value in asdict(Page()).items():
+            state.setdefault(name, value)
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in self._names:
+            raise AttributeError(f"a page has no {name!r}")
+        return self._state[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self._names:
+            raise AttributeError(f"a page has no {name!r}")
+        self._state[name] = value

@@ -1,0 +1,225 @@
+"""The right side: Clip, Filter, Selection and Info."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from trame.widgets import html
+from trame.widgets import vuetify3 as v3
+
+TABS = (("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("info", "Info"))
+CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
+EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
+
+
+def build(app: Any) -> None:
+    """Build the tabs."""
+    with html.Div(style="display: flex; flex-direction: column; height: 100%"):
+        with v3.VTabs(v_model=("tab", "clip"), density="compact", grow=True, style="flex: none", show_arrows=False):
+            for name, title in TABS:
+                v3.VTab(title, value=name, classes="text-none px-1", style="min-width: 0", data_tab=name)
+        with html.Div(classes="pv-scroll", style="flex: 1 1 auto"):
+            with html.Div(v_if="tab === 'clip'", id="tab-clip"):
+                _clip(app)
+            with html.Div(v_if="tab === 'filter'", id="tab-filter"):
+                _filter(app)
+            with html.Div(v_if="tab === 'selection'", id="tab-selection"):
+                _selection(app)
+            with html.Div(v_if="tab === 'info'", id="tab-info"):
+                _info()
+
+
+def _slider_rows(change: Any, owner: str, rows: str) -> None:
+    """Build sliders with their numbers for a list of described values."""
+    with html.Div(v_for=f"c in {rows}", key="c.name", classes="pv-row", data_control=("c.name",)):
+        html.Label("{{ c.label }}", title=("c.help || ''",))
+        with html.Div(style="min-width: 0"):
+            common: dict[str, Any] = {
+                "min": ("c.limits[0]",), "max": ("c.limits[1]",), "step": ("c.step",), "density": "compact",
+                "hide_details": True, "color": "primary", "thumb_size": 14, "track_size": 3,
+                "model_value": ("c.value",), "end": (change, f"[{owner}, c.name, $event]"), "aria_label": ("c.label",),
+            }  # fmt: skip
+            v3.VRangeSlider(v_if="c.type === 'range'", **common)
+            v3.VSlider(v_else=True, **common)
+            with html.Div(classes="pv-pair pv-small", style="justify-content: space-between"):
+                html.Span("{{ c.shown[0] }}")
+                html.Span("{{ c.shown[1] }}", v_if="c.shown.length > 1")
+
+
+def _clip(app: Any) -> None:
+    with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
+        for kind, title in CUTS:
+            v3.VBtn(
+                title, size="small", variant="tonal", classes="text-none", click=(app.cuts.add, f"['{kind}']"),
+                prepend_icon="mdi-plus", data_cut=kind,
+            )  # fmt: skip
+        v3.VBtn(
+            "Mesh", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
+            click=(app.files.browse, "['', 'clip']"), data_cut="mesh",
+        )  # fmt: skip
+    html.Div(
+        "Cuts go through all layers. Add a plane, a box or another shape; what is on its other side is hidden.",
+        v_if="!clips.length", classes="pv-small px-3",
+    )  # fmt: skip
+    with html.Div(v_for="clip in clips", key="clip.id", data_clip=("clip.id",)):
+        with html.Div(classes="pv-pair px-2 pt-2"):
+            with v3.VBtn(
+                icon=True, size="x-small", variant="text", click=(app.cuts.enable, "[clip.id, !clip.enabled]"),
+                aria_label=("clip.enabled ? 'Switch off' : 'Switch on'",),
+            ):  # fmt: skip
+                v3.VIcon(("clip.enabled ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+            html.Span("{{ clip.name }}", style="flex: 1; font-size: 13px; font-weight: 500")
+            v3.VBtn(
+                "{{ clip.side }}", size="x-small", variant="tonal", classes="text-none",
+                click=(app.cuts.turn, "[clip.id, !clip.inside]"), title="Show the other side", data_action="side",
+            )  # fmt: skip
+            with v3.VBtn(
+                icon=True, size="x-small", variant="text", click=(app.cuts.remove, "[clip.id]"), aria_label="Remove"
+            ):
+                v3.VIcon("mdi-delete-outline", size=18)
+        with html.Div(v_if="clip.axes", classes="pv-pair px-3 pt-1"):
+            html.Span("Across", classes="pv-small", style="width: 104px")
+            for axis, title in (("x", "Left–right"), ("y", "Back–front"), ("z", "Down–up")):
+                v3.VBtn(
+                    axis.upper(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",), title=title,
+                    click=(app.cuts.set_axis, f"[clip.id, '{axis}']"), style="min-width: 34px",
+                )  # fmt: skip
+            v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none",
+                    click=(app.cuts.set_axis, "[clip.id, 'view']"))  # fmt: skip
+        _slider_rows(app.cuts.set_value, "clip.id", "clip.controls")
+        v3.VDivider(classes="mt-2")
+
+
+def _filter(app: Any) -> None:
+    html.Div(
+        "Choose a tractogram on the left to filter its streamlines.", v_if="!filters.layer", classes="pv-small pa-3"
+    )
+    with html.Div(v_if="filters.layer"):
+        with html.Div(classes="pv-pair px-3 pt-2"):
+            html.Span("{{ filters.counted }}", classes="pv-value", style="flex: 1", data_value="counted")
+            v3.VBtn("Show all", size="x-small", variant="tonal", classes="text-none", click=app.filtering.clear,
+                    disabled=("!filters.active",))  # fmt: skip
+        html.Div("Criteria", classes="pv-head")
+        with html.Div(v_for="c in filters.criteria", key="c.name", data_criterion=("c.name",)):
+            with html.Div(classes="pv-pair px-3"):
+                html.Span("{{ c.label }}", style="flex: 1; font-size: 13px")
+                with v3.VBtn(
+                    icon=True, size="x-small", variant="text", aria_label="Remove",
+                    click=(app.filtering.remove, "[c.name]"),
+                ):  # fmt: skip
+                    v3.VIcon("mdi-close", size=16)
+            html.Div(v_html=("c.chart",), classes="pv-chart mx-5")
+            v3.VRangeSlider(
+                model_value=("c.value",), min=("c.limits[0]",), max=("c.limits[1]",), step=("c.step",),
+                end=(app.filtering.set_criterion, "[c.name, $event]"), density="compact", hide_details=True,
+                color="primary", thumb_size=14, track_size=3, classes="mx-2", aria_label=("c.label",),
+            )  # fmt: skip
+            with html.Div(classes="pv-pair px-4 pb-2", style="justify-content: space-between"):
+                for end in (0, 1):
+                    html.Input(
+                        classes="pv-num", inputmode="decimal", value=(f"c.shown[{end}]",),
+                        change=(app.filtering.set_end, f"[c.name, {end}, $event.target.value]"),
+                        aria_label=(f"c.label + ({end} ? ', most' : ', least')",),
+                    )  # fmt: skip
+        v3.VSelect(
+            label="Add a criterion", items=("filters.more",), model_value=("null",), density="compact",
+            variant="outlined", hide_details=True, classes="mx-3 my-1", id="add-criterion",
+            update_modelValue=(app.filtering.add, "[$event]"),
+        )  # fmt: skip
+        with html.Div(v_if="filters.groups && filters.groups.length"):
+            html.Div("Groups", classes="pv-head")
+            v3.VSelect(
+                items=("filters.groups",), model_value=("filters.shown_groups",), multiple=True, chips=True,
+                closable_chips=True, clearable=True, placeholder="all", density="compact", variant="outlined",
+                hide_details=True, classes="mx-3", update_modelValue=(app.filtering.set_groups, "[$event]"),
+            )  # fmt: skip
+        html.Div("Random subset", classes="pv-head")
+        with html.Div(classes="pv-row"):
+            html.Span("{{ filters.share }} %", classes="pv-value")
+            v3.VSlider(
+                model_value=("filters.share",), min=1, max=100, step=1, density="compact", hide_details=True,
+                color="primary", thumb_size=14, track_size=3, end=(app.filtering.set_share, "[$event]"),
+                aria_label="Share of streamlines",
+            )  # fmt: skip
+        _regions(app)
+
+
+def _regions(app: Any) -> None:
+    html.Div("Regions", classes="pv-head")
+    with html.Div(classes="pv-pair px-3 pb-1"):
+        v3.VBtn("Sphere", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
+                click=(app.filtering.add_region, "['sphere']"), data_region="sphere")  # fmt: skip
+        v3.VBtn("Box", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
+                click=(app.filtering.add_region, "['box']"), data_region="box")  # fmt: skip
+        v3.VSpacer()
+        with v3.VBtnToggle(
+            v_if="filters.regions.length > 1", model_value=("filters.join",), mandatory=True, density="compact",
+            update_modelValue=(app.filtering.set_join, "[$event]"), style="height: 26px",
+        ):  # fmt: skip
+            v3.VBtn("all", value="and", size="x-small", classes="text-none")
+            v3.VBtn("any", value="or", size="x-small", classes="text-none")
+    with html.Div(v_for="(r, i) in filters.regions", key="i", data_region_row=("i",)):
+        with html.Div(classes="pv-pair px-3 pt-1"):
+            v3.VBtn(
+                "not", size="x-small", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'primary' : ''",),
+                classes="text-none", click=(app.filtering.set_not, "[i, !r.not]"), style="min-width: 36px",
+            )  # fmt: skip
+            v3.VSelect(
+                items=("filters.hows",), model_value=("r.how",), density="compact", variant="outlined",
+                hide_details=True, update_modelValue=(app.filtering.set_how, "[i, $event]"),
+            )  # fmt: skip
+            html.Span("{{ r.kind }}", classes="pv-value")
+            with v3.VBtn(
+                icon=True, size="x-small", variant="text", aria_label="Remove", click=(app.filtering.drop_region, "[i]")
+            ):
+                v3.VIcon("mdi-delete-outline", size=18)
+        _slider_rows(app.filtering.set_region, "i", "r.controls")
+
+
+def _selection(app: Any) -> None:
+    html.Div(
+        "Take the pick, box or lasso tool beside the picture, or press P, B or L, and point at streamlines. "
+        "With Shift they are added.",
+        v_if="!selection.count", classes="pv-small pa-3",
+    )  # fmt: skip
+    with html.Div(v_if="selection.count"):
+        with html.Div(classes="pv-pair px-3 pt-2"):
+            html.Span("{{ selection.title }}", classes="pv-value", style="flex: 1", data_value="selected")
+            v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=app.selecting.clear)
+        with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
+            v3.VBtn("As a layer", size="small", variant="tonal", classes="text-none", click=app.selecting.as_layer)
+            with v3.VBtn("Export", size="small", variant="tonal", classes="text-none", data_action="export"):
+                with v3.VMenu(activator="parent"):
+                    with v3.VList(density="compact"):
+                        for suffix in EXPORTS:
+                            v3.VListItem(title=suffix, click=(app.selecting.export, f"['{suffix}']"),
+                                         data_export=suffix)  # fmt: skip
+            v3.VBtn("Download {{ selection.file }}", v_if="selection.url", size="small", color="primary",
+                    classes="text-none", href=("selection.url",), download=("selection.file",), data_action="download",
+                    prepend_icon="mdi-download")  # fmt: skip
+        with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2"):
+            with html.Table(classes="pv-table", id="picked"):
+                with html.Thead():
+                    with html.Tr():
+                        html.Th("{{ c }}", v_for="c in selection.columns", key="c")
+                with html.Tbody():
+                    with html.Tr(v_for="row in selection.rows", key="row[0]"):
+                        html.Td("{{ cell }}", v_for="(cell, k) in row", key="k")
+        html.Div("{{ selection.more }}", v_if="selection.more", classes="pv-small px-3 py-1")
+        with html.Div(v_if="selection.profiles && selection.profiles.length", classes="pa-2"):
+            with html.Div(classes="pv-row"):
+                html.Label("Profile of")
+                v3.VSelect(
+                    items=("selection.profiles",), model_value=("selection.profile",), density="compact",
+                    variant="outlined", hide_details=True, update_modelValue=(app.selecting.set_profile, "[$event]"),
+                )  # fmt: skip
+            html.Div(v_html=("selection.chart",), id="profile")
+
+
+def _info() -> None:
+    with html.Div(v_for="section in info", key="section.title"):
+        html.Div("{{ section.title }}", classes="pv-head")
+        with html.Div(v_for="row in section.rows", key="row[0]", classes="pv-row", data_info=("row[0]",)):
+            html.Div("{{ row[0] }}", classes="pv-label")
+            html.Div("{{ row[1] }}", classes="pv-value")
+    html.Div("Choose a layer.", v_if="!info.length", classes="pv-small pa-3")

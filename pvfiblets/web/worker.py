@@ -1,0 +1,104 @@
+"""The process of one session: ``python -m pvfiblets.web.worker``, started by the gate and by nothing else.
+
+It reads its settings from standard input, says on standard output where it listens, and ends when standard input
+closes. Every request must carry the gate's key, so that nobody else on this machine can speak to it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import logging
+import os
+import sys
+import threading
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from pvfiblets.web.options import Options
+
+KEY_HEADER = "X-Pvfiblets-Key"  # as in pvfiblets/web/server.py
+
+
+def main() -> int:
+    """Run a session until its gate has gone."""
+    told = json.loads(sys.stdin.readline())
+    # What others print goes to standard error: standard output is for the gate.
+    speaker = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)
+    sys.argv = sys.argv[:1]  # trame reads the command line too
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s", stream=sys.stderr)
+    try:
+        _run(told, speaker)
+    except Exception as error:
+        print(json.dumps({"failure": f"{type(error).__name__}: {error}"}), file=speaker)
+        raise
+    return 0
+
+
+def _run(told: dict[str, Any], speaker: TextIO) -> None:
+    from pvfiblets.web.options import Options
+
+    options = Options.from_dict(told["options"])
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # VTK need not try X and complain
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+    app = make_app(options)
+    server = app.server
+
+    def bind(web_server: Any) -> None:
+        # wslink offers no other way to its table of methods, which is what must be guarded.
+        for handler in web_server._ws_handlers:  # noqa: SLF001
+            app.doors.guard(handler.functionMap)
+        web_server.app.middlewares.append(key_check(told["key"]))
+        app.add_routes(web_server.app.router)
+
+    def ready(**_: Any) -> None:
+        threading.Thread(target=_wait_for_end, args=(loop, server), daemon=True).start()
+        print(json.dumps({"port": server.port}), file=speaker)
+
+    server.controller.on_server_bind.add(bind)
+    server.controller.on_server_ready.add(ready)
+    server.start(
+        port=0,
+        host="127.0.0.1",
+        open_browser=False,
+        show_connection_info=False,
+        disable_logging=True,
+        exec_mode="main",
+        backend="aiohttp",
+    )
+    app.close()
+
+
+def make_app(options: Options) -> Any:
+    """Return the application of a session."""
+    from pvfiblets.web.app import Explorer
+
+    return Explorer(options)
+
+
+def key_check(key: str) -> Callable[..., Awaitable[Any]]:
+    """Return a middleware of aiohttp that lets in only requests with the gate's key."""
+    from aiohttp import web
+
+    @web.middleware
+    async def check(request: web.Request, handler: Callable[[web.Request], Awaitable[Any]]) -> Any:
+        if not hmac.compare_digest(request.headers.get(KEY_HEADER, "").encode(), key.encode()):
+            raise web.HTTPForbidden
+        return await handler(request)
+
+    return check
+
+
+def _wait_for_end(loop: asyncio.AbstractEventLoop, server: Any) -> None:
+    while sys.stdin.readline():
+        pass
+    asyncio.run_coroutine_threadsafe(server.stop(), loop)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
