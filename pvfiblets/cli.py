@@ -129,6 +129,8 @@ def make_parser() -> argparse.ArgumentParser:
     _scene(show)
     show.set_defaults(run="pvfiblets.cli_pictures:show")
 
+    _serve(commands.add_parser("serve", help="explore files in a browser; this machine draws"))
+
     gl = commands.add_parser(
         "gl",
         help="say what this machine's OpenGL is, and which pipelines can draw with it",
@@ -146,6 +148,21 @@ def make_parser() -> argparse.ArgumentParser:
     demo.add_argument("--seed", type=int, default=0)
     _json(demo)
     demo.set_defaults(run="pvfiblets.cli_pictures:demo")
+
+    report = commands.add_parser(
+        "report",
+        help="measure error against run time of every approximation in the program, beside its rivals",
+        description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
+    )
+    report.add_argument("--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volume, halos")
+    report.add_argument(
+        "--data", nargs="+", default=[], metavar="FILE",
+        help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
+    )  # fmt: skip
+    report.add_argument("--quick", action="store_true", help="a little of each, in at most two minutes on two cores")
+    report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
+    report.add_argument("-o", "--output", required=True, metavar="DIR")
+    report.set_defaults(run="pvfiblets.cli_report:report")
     return parser
 
 
@@ -156,6 +173,41 @@ def _json(parser: argparse.ArgumentParser) -> None:
 def _quiet_and_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
     _json(parser)
+
+
+def _serve(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Serve FILEs to browsers. This machine draws and sends pictures; browsers need nothing installed. By default "
+        "only this machine can connect, and must show a token that is printed."
+    )
+    add = parser.add_argument
+    add("paths", metavar="FILE", nargs="*", help="tractograms of any format")
+    add("--volume", action="append", default=[], metavar="F", help="a volume beside them; may be given several times")
+    add("--mesh", action="append", default=[], metavar="F", help="a mesh beside them; may be given several times")
+    add("--demo", action="store_true", help="open a made-up tractogram")
+    add("--host", default="127.0.0.1", help="where to listen (default: %(default)s, this machine only)")
+    add("--port", type=int, default=8080, metavar="N", help="0: any that is free (default: %(default)s)")
+    add("--root", default=".", metavar="DIR", help="the folder that browsers may open files from (default: this one)")
+    add(
+        "--token",
+        default="auto",
+        metavar="auto|TEXT|none",
+        help="what a browser must show (default: auto, made and printed); none only where other machines cannot connect",
+    )
+    add("--shared", action="store_true", help="all browsers see and steer the same view")
+    add("--limit", type=count, default=8, metavar="N", help="sessions at once (default: %(default)s)")
+    add(
+        "--timeout",
+        type=positive,
+        default=300.0,
+        metavar="SECONDS",
+        help="how long a session waits for its browser to come back (default: 300)",
+    )
+    add("--upload", type=int, default=2048, metavar="MB", help="greatest size of an upload; 0: none (default: %(default)s)")
+    add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
+    add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
+    add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
+    parser.set_defaults(run="pvfiblets.cli_serve:serve")
 
 
 def _scene(parser: argparse.ArgumentParser) -> None:
