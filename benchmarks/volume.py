@@ -1,0 +1,164 @@
+"""Ray-cast volumes beside VTK's: time per frame, error and GPU memory of one run, and the paper's Table I.
+
+Angiogram-like trees of vessels of 64^3 to 512^3 voxels and a brain, as light, greatest values and a surface; a camera
+that circles (512x512) and one that rests, whose picture is made anew each time (1024x1024), as in Lesar 2015, section
+IV. Errors are those of sampled pixels against rays in float64. VTK's GPU mapper is measured at the same step, and at
+the step with which it is as wrong as this program in a plotter; where it never is, the row says so and shows its best::
+
+    python benchmarks/volume.py --output docs/benchmarks
+
+writes ``volume-CARD.json``, ``.md`` and ``.png``, named after the card. ``--quick`` measures little of it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from orbit import card_slug, context, machine, write
+from volume_effects import EFFECTS, effects
+from volume_scene import FOLDER, MODES, circle, known_data, look_of, make_data, truth
+from volume_told import plot, table
+from volume_ways import EQUAL, WAYS, run
+
+DATA = ("vessels-64", "vessels-128", "vessels-256", "vessels-512", "brain")
+PICTURE = 256  # pixels along a side of the pictures whose errors are measured
+QUICK = {"data": ["vessels-64"], "frames": 3, "seconds": 1.0, "search": 1.0, "pixels": 500, "size": 192, "still": 256,
+         "effects_data": "vessels-64"}  # fmt: skip
+PASSED_ON = (
+    "data_folder", "step", "seed", "size", "still", "frames", "seconds", "search", "pixels", "effects_mode",
+)  # fmt: skip
+
+
+def main() -> None:
+    """Measure every way on every volume, one process each, and write the table."""
+    parser = parsed()
+    options = parser.parse_args()
+    if options.quick:
+        given = parser.parse_args([])
+        for key, value in QUICK.items():
+            if getattr(options, key) == getattr(given, key):
+                setattr(options, key, value)
+    if options.run:
+        print(json.dumps(child(*options.run, options)))
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        results = measure_all(options, Path(folder))
+    table_one = []
+    if options.effects:
+        told = started("effects", options.effects_data, Path(), options)
+        table_one = told.get("rows", [{"data": options.effects_data, "mode": options.effects_mode, "effect": effect,
+                                       "view": view, "unmeasured": told.get("unmeasured")}
+                                      for effect in options.effects for view in ("static", "circle")])  # fmt: skip
+    ctx = context()
+    about = {
+        **machine(ctx),
+        "size": options.size,
+        "still": options.still,
+        "step": options.step,
+        "seed": options.seed,
+        "pixels": options.pixels,
+        "effects": table_one,
+        "volumes": {row["data"]: row.pop("about") for row in results if "about" in row},
+    }
+    write(options.output / f"volume-{card_slug(ctx)}", about, results, table(about, results), plot)
+
+
+def parsed() -> argparse.ArgumentParser:
+    """Return what reads the options."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--data", nargs="+", type=known_data, default=list(DATA), metavar="DATA",
+                        help="of vessels-N and brain-N, of N voxels along each side, and brain")  # fmt: skip
+    parser.add_argument("--data-folder", type=Path, default=FOLDER, help="where a brain's template may lie")
+    parser.add_argument("--modes", nargs="+", choices=MODES, default=list(MODES))
+    parser.add_argument("--ways", nargs="+", choices=list(WAYS), default=list(WAYS))
+    parser.add_argument("--step", type=float, default=0.5, help="voxels")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--size", type=int, default=512, help="pixels along a side of the circling view")
+    parser.add_argument("--still", type=int, default=1024, help="of the static view")
+    parser.add_argument("--frames", type=int, default=12, help="in either view, at most")
+    parser.add_argument("--seconds", type=float, default=4.0, help="of drawing either view; one frame at least")
+    parser.add_argument("--search", type=float, default=8.0, help="seconds that pictures of VTK's finest step may take")
+    parser.add_argument("--pixels", type=int, default=3000, help="whose errors are measured, in each of two pictures")
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds that one way may take with one volume")
+    parser.add_argument("--effects", nargs="*", choices=list(EFFECTS), default=list(EFFECTS), help="of Table I")
+    parser.add_argument("--effects-data", type=known_data, default="vessels-256")
+    parser.add_argument("--effects-mode", choices=MODES, default="isosurface")
+    parser.add_argument("--quick", action="store_true", help="a little of all")
+    parser.add_argument("--output", type=Path, default=Path())
+    parser.add_argument("--run", nargs=3, metavar=("WHAT", "DATA", "FILE"), help=argparse.SUPPRESS)
+    return parser
+
+
+def child(what: str, data: str, file: str, options: Any) -> dict[str, Any]:
+    """Do one thing with one volume: what is right of it, one way, or Table I."""
+    if what == "effects":
+        return {"rows": effects(data, options.effects_mode, options.effects, options)}
+    if what == "truth":
+        volume = make_data(data, options.seed, options.data_folder)
+        cameras = circle(volume, 2, (PICTURE, PICTURE))
+        right = {mode: truth(volume, look_of(volume, mode), cameras, options.pixels) for mode in options.modes}
+        Path(file).write_bytes(pickle.dumps(right))
+        return {"about": {"shape": list(volume.shape), "bytes": volume.nbytes, "name": volume.name}}
+    targets = json.loads(Path(file).with_suffix(".json").read_text())
+    return {"rows": run(what, data, pickle.loads(Path(file).read_bytes()), targets, options)}
+
+
+def measure_all(options: Any, folder: Path) -> list[dict[str, Any]]:
+    """Return a row for every volume, mode and way, in this order."""
+    results = []
+    for data in options.data:
+        file, targets = folder / f"{data}.pickle", {}
+        told = started("truth", data, file, options)
+        if "unmeasured" in told:
+            common = {"data": data, **told}
+            results += [{**common, "mode": mode, "way": way} for mode in options.modes for way in options.ways]
+            continue
+        rows = [{"data": data, "about": told["about"]}]
+        # Ours come first: what VTK's errors shall be is theirs.
+        for way in sorted(options.ways, key=list(WAYS).index):
+            file.with_suffix(".json").write_text(json.dumps(targets))
+            done = started(way, data, file, options)
+            missing = [{"mode": mode, "way": way, **done} for mode in options.modes] if "unmeasured" in done else []
+            for row in done.get("rows", missing):
+                rows.append({"data": data, **row})
+                if way in ("engine", "plotter") and "error" in row:
+                    targets[row["mode"]] = row["error"]
+        about, *rows = rows
+        order = [*WAYS, EQUAL]
+        rows.sort(key=lambda row: (options.modes.index(row["mode"]), order.index(row["way"])))
+        rows[0] = {**rows[0], "about": about["about"]}
+        results += rows
+    return results
+
+
+def started(what: str, data: str, file: Path, options: Any) -> dict[str, Any]:
+    """Do one thing in a process of its own, for as long as it may take."""
+    command = [sys.executable, __file__, "--run", what, data, str(file)]
+    for key in PASSED_ON:
+        command += ["--" + key.replace("_", "-"), str(getattr(options, key))]
+    for key in ("modes", "effects"):
+        command += [f"--{key}", *getattr(options, key)]
+    environment = dict(os.environ)
+    if sys.platform.startswith("linux") and not environment.get("DISPLAY"):
+        environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    print(f"{data}, {what} ...", flush=True)
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False, timeout=options.limit,
+                              env=environment)  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return {"unmeasured": f"takes more than {options.limit:g} s here"}
+    if done.returncode != 0:
+        return {"unmeasured": f"failed with {done.returncode}; what it said is above the table"}
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+if __name__ == "__main__":
+    main()

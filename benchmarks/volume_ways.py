@@ -1,0 +1,473 @@
+"""The ways of casting rays through volumes that the benchmark compares, and how each is timed.
+
+Every way shows the same (`volume_scene`) at the same step, on black, without anti-aliasing and without jitter. What
+differs is said with each way in :data:`ABOUT`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+from orbit import context
+from tube_reference import Camera
+from volume_memory import held
+from volume_scene import Look, Truth, circle, grey_of, lit, look_of, make_data
+
+from pvfiblets.raycast import RaycastVolume
+
+ABOUT = {
+    "engine": "this program's ray casting on a bare context, without VTK: a G-buffer, not lit",
+    "plotter": "`plotter.add_raycast_volume`: the same in a PyVista window, lit by VTK",
+    "vtk-gpu": "`plotter.add_volume(mapper='gpu')`, vtkGPUVolumeRayCastMapper, at the same step",
+    "vtk-gpu-equal": "the same at the step with which its picture is as wrong as the plotter's",
+    "vtk-smart": "`plotter.add_volume(mapper='smart')`, vtkSmartVolumeMapper: VTK 9.7 gives its GPU mapper a step of "
+    "its own, whatever sample distance is asked for",
+}
+EQUAL = "vtk-gpu-equal"
+OURS = ("engine", "plotter")
+STATIC_TOO = ("engine", "plotter", "vtk-gpu", EQUAL)
+"""Ways that are also timed in the static view: the other one is the mapper of these once more."""
+
+BYTES = 1.0 / (255.0 * math.sqrt(12.0))
+"""What rounding colours to bytes costs: no picture of bytes need be nearer to what is right."""
+
+NEAR = 1.03
+"""So many times another error is as good as equal to it."""
+
+CLOSE = 1.1
+"""So many times another step is no longer looked for what lies between."""
+
+COARSEST = 8.0  # voxels: no step is longer
+WARM = "vessels-16"
+
+
+class Measured:
+    """Milliseconds of frames, by the clock and of all of this process's threads."""
+
+    def __init__(self) -> None:
+        self.wall: list[float] = []
+        self.cpu: list[float] = []
+
+    def time(self, draw: Any, *arguments: Any) -> None:
+        """Draw a frame."""
+        wall, cpu = time.perf_counter(), time.process_time()
+        draw(*arguments)
+        self.wall.append(1e3 * (time.perf_counter() - wall))
+        self.cpu.append(1e3 * (time.process_time() - cpu))
+
+    def report(self) -> dict[str, Any]:
+        """Return medians, and the 10th and 90th percentile."""
+        low, median, high = (float(np.percentile(self.wall, q)) for q in (10, 50, 90))
+        cpu_low, cpu, cpu_high = (float(np.percentile(self.cpu, q)) for q in (10, 50, 90))
+        return {"ms": median, "ms_spread": [low, high], "cpu_ms": cpu, "cpu_spread": [cpu_low, cpu_high],
+                "frames": len(self.wall)}  # fmt: skip
+
+
+def timed(draw: Any, cameras: list[Camera], seconds: float) -> dict[str, Any]:
+    """Return times of frames: of all cameras, or of as many as take so many seconds, and of one at least.
+
+    What is nearly the first one is drawn once before; if that alone takes longer than that, it is what is measured.
+    """
+    warm = Measured()
+    warm.time(draw, nudged(cameras[0], 3)[2])
+    if warm.wall[0] > 1500.0 * seconds:
+        return warm.report()
+    measured = Measured()
+    for camera in cameras:
+        measured.time(draw, camera)
+        if sum(measured.wall) > 1e3 * seconds:
+            break
+    return measured.report()
+
+
+def nudged(camera: Camera, count: int) -> list[Camera]:
+    """Return a camera so many times, each a little different: none may show the picture of the one before."""
+    return [
+        Camera(camera.size, camera.eye, camera.centre, camera.near, camera.far * (1.0 + 1e-7 * (1 + k % 3)))
+        for k in range(count)
+    ]
+
+
+class Way:
+    """What ways share.
+
+    Parameters
+    ----------
+    name : str
+    volume : RaycastVolume
+    look : Look
+    step : float
+        In mean spacings of voxels.
+    size : tuple of int
+        Of the first picture.
+    """
+
+    lamp = 0
+
+    def draw(self, camera: Camera) -> None:
+        """Draw a picture and wait for it."""
+        raise NotImplementedError
+
+    def picture(self) -> np.ndarray:
+        """Return the picture drawn last: ``(height, width, 3)``, 0 to 1, row 0 at the bottom."""
+        raise NotImplementedError
+
+    def error(self, of: Truth) -> float:
+        """Return by how much pictures are off."""
+        pictures = []
+        for camera in of.cameras:
+            self.draw(camera)
+            pictures.append(self.picture())
+        return of.error(pictures, self.lamp)
+
+    def facts(self) -> dict[str, Any]:
+        """Return what else there is to tell."""
+        return {}
+
+    def bytes(self) -> int | None:
+        """Return what the context holds beyond an empty one of the same size."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Give all back."""
+        raise NotImplementedError
+
+
+class Engine(Way):
+    """The engine on a bare context."""
+
+    def __init__(self, _: str, volume: RaycastVolume, look: Look, step: float, __: tuple[int, int]) -> None:
+        from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
+
+        self.ctx, self.look, self.volume = context(), look, volume
+        self.before = held()
+        self.renderer = RaycastRenderer(self.ctx, volume)
+        self.style = RaycastStyle(casting=look.casting(step=step))
+
+    def draw(self, camera: Camera) -> None:
+        """Cast rays and wait for them."""
+        from pvfiblets.engine import View
+
+        self.camera = camera
+        self.gbuffer = self.renderer.render(View(camera.size, camera.model_view_projection), self.style)
+        self.ctx.finish()
+
+    def picture(self) -> np.ndarray:
+        """Return what the G-buffer means."""
+        return colours_of(self.gbuffer, self.look, self.camera)
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the engine tells."""
+        return told(self.renderer.explain(), self.volume)
+
+    def bytes(self) -> int | None:
+        """Return what has come since the context was empty."""
+        now = held()
+        return None if now is None or self.before is None else now - self.before
+
+    def close(self) -> None:
+        """Give all back, the context included."""
+        self.renderer.release()
+        self.ctx.release()
+
+
+class _Window(Way):
+    """What ways in a PyVista window share."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        import pyvista as pv
+
+        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
+        self.plotter.disable_anti_aliasing()
+        self.plotter.set_background("black")
+        self.plotter.add_light(pv.Light(light_type="headlight"))
+        self.drawn: list[Camera] = []  # the first of each size
+
+    def draw(self, camera: Camera) -> None:
+        plotter = self.plotter
+        if not self.drawn or self.drawn[-1].size != camera.size:
+            plotter.window_size = list(camera.size)
+            self.drawn.append(camera)
+        camera.aim(plotter)
+        plotter.render()
+        plotter.render_window.WaitForCompletion()
+        plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
+
+    def picture(self) -> np.ndarray:
+        return np.asarray(self.plotter.screenshot(None))[::-1, :, :3] / 255.0
+
+    def bytes(self) -> int | None:
+        self.plotter.render_window.MakeCurrent()
+        now = held()
+        empty = _Window(self.drawn[0].size)
+        empty.plotter.show(auto_close=False)
+        for camera in self.drawn:
+            empty.draw(camera)
+        empty.plotter.render_window.MakeCurrent()
+        before = held()
+        empty.close()
+        return None if now is None or before is None else now - before
+
+    def close(self) -> None:
+        self.plotter.close()
+
+
+class Plotter(_Window):
+    """Ray-cast volumes of this program in a PyVista window."""
+
+    def __init__(self, _: str, volume: RaycastVolume, look: Look, step: float, size: tuple[int, int]) -> None:
+        super().__init__(size)
+        self.volume = volume
+        self.actor = added(self.plotter, volume, look, step=step)
+        self.plotter.show(auto_close=False)
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the actor tells."""
+        return told(self.actor.explain(), self.volume)
+
+
+class VTK(_Window):
+    """VTK's own mappers."""
+
+    lamp = 1
+
+    def __init__(self, name: str, volume: RaycastVolume, look: Look, step: float, size: tuple[int, int]) -> None:
+        super().__init__(size)
+        self.spacing = float(volume.spacing.mean())
+        surface = look.mode == "isosurface"
+        self.volume = self.plotter.add_volume(
+            image(volume), mapper="smart" if name == "vtk-smart" else "gpu", clim=look.clim, cmap="gray",
+            shade=surface, ambient=0.0, diffuse=1.0, specular=0.0, opacity_unit_distance=look.transfer.unit,
+            show_scalar_bar=False,
+        )  # fmt: skip
+        self.mapper = self.volume.mapper
+        {"composite": self.mapper.SetBlendModeToComposite, "mip": self.mapper.SetBlendModeToMaximumIntensity,
+         "isosurface": self.mapper.SetBlendModeToIsoSurface}[look.mode]()  # fmt: skip
+        self.mapper.SetAutoAdjustSampleDistances(0)
+        transfer_to(self.volume.prop, look)
+        self.step(step)
+        self.plotter.show(auto_close=False)
+
+    def step(self, voxels: float) -> None:
+        """Have steps of another length."""
+        self.mapper.SetSampleDistance(voxels * self.spacing)
+
+
+WAYS = {"engine": Engine, "plotter": Plotter, "vtk-gpu": VTK, "vtk-smart": VTK}
+
+
+def added(plotter: Any, volume: RaycastVolume, look: Look, **more: Any) -> Any:
+    """Add a volume to a plotter as this program has it, and return the actor.
+
+    Raises
+    ------
+    RuntimeError
+        If the light that the plotter makes of the table is not that of the table.
+    """
+    from matplotlib.colors import ListedColormap
+
+    common = {"mode": look.mode, "clim": look.clim, "show_scalar_bar": False, **more}
+    if look.mode == "isosurface":
+        actor = plotter.add_raycast_volume(volume, values=look.value, color="white", **common)
+        actor.prop.ambient, actor.prop.diffuse, actor.prop.specular = 0.0, 1.0, 0.0
+        return actor
+    if look.mode == "mip":
+        return plotter.add_raycast_volume(volume, cmap="gray", opacity=1.0, **common)
+    table = look.transfer.table
+    actor = plotter.add_raycast_volume(
+        volume, cmap=ListedColormap(table[:, :3]), n_colors=len(table), opacity=table[:, 3],
+        opacity_unit_distance=look.transfer.unit, **common,
+    )  # fmt: skip
+    shown = actor.casting.transfer
+    if not np.allclose(shown.table, table, atol=1e-6) or shown.clim != look.transfer.clim:
+        raise RuntimeError("the plotter shows light of another transfer function than it was given")
+    return actor
+
+
+def image(volume: RaycastVolume) -> Any:
+    """Return a volume as PyVista's image, which shares its numbers."""
+    import pyvista as pv
+
+    made = pv.ImageData(dimensions=volume.shape, spacing=volume.spacing, origin=volume.affine[:3, 3])
+    made.direction_matrix = volume.affine[:3, :3] / volume.spacing
+    made.point_data["values"] = volume.values.ravel(order="F")
+    return made
+
+
+def transfer_to(prop: Any, look: Look) -> None:
+    """Give VTK's property of a volume colours and opacities."""
+    from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
+    from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+
+    colours, opacities = vtkColorTransferFunction(), vtkPiecewiseFunction()
+    if look.mode == "composite":
+        for value, row in zip(np.linspace(*look.clim, len(look.transfer.table)), look.transfer.table, strict=True):
+            colours.AddRGBPoint(value, *map(float, row[:3]))
+            opacities.AddPoint(value, float(row[3]))
+    else:
+        first = (0.0, 0.0, 0.0) if look.mode == "mip" else (1.0, 1.0, 1.0)
+        colours.AddRGBPoint(look.clim[0], *first)
+        colours.AddRGBPoint(look.clim[1], 1.0, 1.0, 1.0)
+        for value in look.clim:
+            opacities.AddPoint(value, 1.0)
+    prop.SetColor(colours)
+    prop.SetScalarOpacity(opacities)
+    prop.SetScalarOpacityUnitDistance(look.transfer.unit)
+    prop.SetInterpolationTypeToLinear()
+    if look.mode == "isosurface":
+        prop.GetIsoSurfaceValues().SetValue(0, look.value)
+
+
+def colours_of(gbuffer: Any, look: Look, camera: Camera) -> np.ndarray:
+    """Return the picture that a G-buffer means, by the lamp of meshes: ``(height, width, 3)``, row 0 at the bottom."""
+    width, height = gbuffer.size
+    there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != 0xFFFFFFFF
+    if look.mode == "composite":
+        rgba = np.frombuffer(gbuffer.colours.read(), np.uint8).reshape(height, width, 4) / 255.0
+        shown = rgba[..., :3] * rgba[..., 3:]
+    elif look.mode == "mip":
+        shown = grey_of(np.frombuffer(gbuffer.position.read(), np.float32).reshape(height, width, 2)[..., 1], look)
+    else:
+        normals = directions_of(np.frombuffer(gbuffer.across.read(), np.uint32)).reshape(height, width, 3)
+        # They face the eye already.
+        shown = lit(normals, -normals, camera.backwards)
+    return np.where(there[..., None], shown, 0.0)
+
+
+def directions_of(words: np.ndarray) -> np.ndarray:
+    """Return ``(n, 3)`` unit vectors of words, each an octahedral map about +x in two signed 16 bits."""
+    from pvfiblets.codec.layout import DIRECTION_SCALE
+
+    u, v = ((words >> shift).astype(np.uint16).view(np.int16) / DIRECTION_SCALE for shift in (0, 16))
+    x = 1.0 - abs(u) - abs(v)
+    behind = x < 0.0
+    u, v = (
+        np.where(behind, (1.0 - abs(v)) * np.where(u < 0.0, -1.0, 1.0), u),
+        np.where(behind, (1.0 - abs(u)) * np.where(v < 0.0, -1.0, 1.0), v),
+    )
+    found = np.stack([x, u, v], axis=-1)
+    return found / np.linalg.norm(found, axis=-1, keepdims=True)
+
+
+def told(report: dict[str, Any], volume: RaycastVolume) -> dict[str, Any]:
+    """Return what an engine tells of its octree and its passes."""
+    nodes = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] in ("nodes", "means"))
+    return {"skipped": report["skipped"], "octree_share": nodes / volume.nbytes, "passes": report["passes"]}
+
+
+def run(
+    name: str, data: str, truths: dict[str, Truth], targets: dict[str, float], options: Any
+) -> list[dict[str, Any]]:
+    """Return a row for each mode of one way: its error, its times, what it holds and how long it takes to be there.
+
+    Of VTK's GPU mapper there is a second one where an error to reach is given.
+    """
+    kind = WAYS[name]
+    volume = make_data(data, options.seed, options.data_folder)
+    size, still = (options.size, options.size), (options.still, options.still)
+    cameras, static = circle(volume, options.frames, size), nudged(circle(volume, 1, still)[0], options.frames)
+    rows = []
+    for mode, of in truths.items():
+        small = make_data(WARM)
+        first = kind(name, small, look_of(small, mode), options.step, size)  # imports, compilers
+        first.draw(circle(small, 1, size)[0])
+        first.close()
+        look = look_of(volume, mode)
+        build = Measured()
+        made: list[Way] = []
+
+        def begin(look: Look = look, made: list[Way] = made) -> None:
+            made.append(kind(name, volume, look, options.step, size))
+            made[0].draw(cameras[0])
+
+        build.time(begin)
+        (way,) = made
+        try:
+            row = {"mode": mode, "way": name, "step": options.step, "error": way.error(of)}
+            row["circle"] = timed(way.draw, cameras, options.seconds)
+            if name in STATIC_TOO:
+                row["static"] = timed(way.draw, static, options.seconds)
+            row["gpu_bytes"] = way.bytes()
+            report = build.report()
+            # The first picture itself is no part of building.
+            row["build_ms"] = max(report["ms"] - row["circle"]["ms"], 0.0)
+            row["build_cpu_ms"] = max(report["cpu_ms"] - row["circle"]["cpu_ms"], 0.0)
+            rows.append({**row, **way.facts()})
+            print_row(rows[-1])
+            if name == "vtk-gpu" and mode in targets:
+                rows.append(equal(way, mode, row, of, targets[mode], cameras, static, options))
+                print_row(rows[-1])
+        finally:
+            way.close()
+    return rows
+
+
+def print_row(row: dict[str, Any]) -> None:
+    """Say how far it is, on the standard error: the standard output is the result's."""
+    import sys
+
+    print({key: value for key, value in row.items() if key != "passes"}, file=sys.stderr, flush=True)
+
+
+def equal(
+    way: Any, mode: str, same: dict[str, Any], of: Truth, target: float, cameras: list[Camera], static: list[Camera],
+    options: Any,
+) -> dict[str, Any]:  # fmt: skip
+    """Return the row of VTK's GPU mapper at a step with which it is as wrong as another way."""
+    target = max(target, BYTES)
+    step, error, reached = search(way, of, target, (same["step"], same["error"]), options.search)
+    row = {"mode": mode, "way": EQUAL, "step": step, "error": error, "target": target, "reached": reached}
+    if step == same["step"]:
+        return {**row, **{key: same[key] for key in ("circle", "static")}}
+    way.step(step)
+    row["circle"] = timed(way.draw, cameras, options.seconds)
+    if reached:
+        row["static"] = timed(way.draw, static, options.seconds)
+    return row
+
+
+def search(way: Any, of: Truth, target: float, start: tuple[float, float], seconds: float) -> tuple[float, float, bool]:
+    """Return the longest step found with which a way is as wrong as another, or the best one, its error, and which.
+
+    Steps are halved or doubled until the error is on the other side, then what lies between is halved in turn.
+
+    Parameters
+    ----------
+    way : Way
+        With a method `step`.
+    of : Truth
+    target : float
+        The error to keep to.
+    start : tuple of float
+        A step, and the error with it.
+    seconds : float
+        That pictures of one step may take: finer ones are not tried.
+    """
+    tried = [start]
+    fine = start[1] <= target * NEAR
+    took = 0.0
+    while (tried[-1][1] <= target * NEAR) == fine:
+        step = tried[-1][0] * (2.0 if fine else 0.5)
+        if step > COARSEST or (not fine and 2.0 * took > seconds):
+            break
+        began = time.perf_counter()
+        way.step(step)
+        tried.append((step, way.error(of)))
+        took = time.perf_counter() - began
+    else:
+        (a, error_a), (b, _) = sorted(tried[-2:])  # a keeps to it, b does not
+        while b / a > CLOSE:
+            step = math.sqrt(a * b)
+            way.step(step)
+            error = way.error(of)
+            if error <= target * NEAR:
+                a, error_a = step, error
+            else:
+                b = step
+        return a, error_a, True
+    if fine:
+        return (*max(tried), True)
+    return (*min(tried, key=lambda one: one[1]), False)
