@@ -84,13 +84,23 @@ FEATURES: dict[str, str] = {
     "RAYCAST_TRICUBIC": "the field of cubics between voxels",
     "RAYCAST_UNREFINED": "surfaces at the sample behind them",
     "RAYCAST_NEWTON": "surfaces by Newton's steps",
+    "RAYCAST_ADAPTIVE": "light of stretches halved until they agree",
     "RAYCAST_PREINTEGRATED": "light of steps integrated beforehand",
     "RAYCAST_RIEMANN": "light by Riemann's sum",
     "RAYCAST_SIMPSON": "light by Simpson's rule",
+    "RAYCAST_ROMBERG": "light by Romberg's rule of three levels",
     "RAYCAST_RK4": "light by Runge and Kutta's method of order four",
     "RAYCAST_HOMOGENEOUS": "light through nodes of hardly any change at once",
     "RAYCAST_JITTER": "rays that start at places of their own",
+    "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",
     "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
+    "PICTURE_SAMPLES": "a picture of several samples a pixel",
+    "PICTURE_DEPTH": "the depths of a picture, beside its colours",
+    "PICTURE_TONE": "other tones for a picture, beside depth of field",
+    "TONE_REINHARD": "tones by Reinhard's operator",
+    "TONE_EXPONENTIAL": "tones by the exponential function",
+    "TONE_ACES": "tones by the ACES film curve",
+    "TONE_HABLE": "tones by Hable's film curve",
 }
 """What a program can be made to do, by the name of its switch."""
 

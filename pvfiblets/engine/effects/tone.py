@@ -1,0 +1,85 @@
+"""Tone mapping, brightness, contrast, gamma: what ``shaders/effects/picture/tone.glsl`` does to a picture's colours."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from numbers import Real
+
+__all__ = ["OPERATORS", "Tone", "is_number"]
+
+OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
+"""What tone mapping may be; the formulas are in the shader."""
+
+_WHITE = {"hable": 11.2}
+"""What becomes white where nothing else is asked for; of the other operators, the brightest that was drawn."""
+
+
+@dataclass(frozen=True)
+class Tone:
+    """Changes of red, green and blue, the same for all pixels: exposure, operator, contrast, gamma, in this order.
+
+    Parameters
+    ----------
+    operator : str
+        One of `OPERATORS`.
+    exposure : float
+        Factor of what was drawn; above 0.
+    white : float, optional
+        What the exposed picture's white becomes white from, for ``'reinhard'`` and ``'hable'``: above 0. The exposure
+        (so that white stays white), and 11.2, by default.
+    brightness : float
+        Added, -1 to 1.
+    contrast : float
+        Factor of the distance from middle grey; 0 or more.
+    gamma : float
+        Colours are raised to ``1 / gamma``; above 0.
+
+    Raises
+    ------
+    ValueError
+        A value has no meaning.
+    """
+
+    operator: str = "none"
+    exposure: float = 1.0
+    white: float | None = None
+    brightness: float = 0.0
+    contrast: float = 1.0
+    gamma: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.operator not in OPERATORS:
+            raise ValueError(f"operator is {self.operator!r}; choose one of {OPERATORS}")
+        if self.white is not None and self.operator not in ("reinhard", "hable"):
+            raise ValueError(f"white is {self.white!r}, but operator {self.operator!r} has none; leave it None")
+        for name in ("exposure", "white", "gamma"):
+            value = getattr(self, name)
+            if value is not None and not (is_number(value) and value > 0.0):
+                raise ValueError(f"{name} is {value!r}; give a number above 0")
+        if not (is_number(self.contrast) and self.contrast >= 0.0):
+            raise ValueError(f"contrast is {self.contrast!r}; give a number of 0 or more, 1 for none")
+        if not (is_number(self.brightness) and -1.0 <= self.brightness <= 1.0):
+            raise ValueError(f"brightness is {self.brightness!r}; give a number from -1 to 1, 0 for none")
+
+    @property
+    def changes(self) -> bool:
+        """Whether there is anything to be done."""
+        plain = self.exposure, self.brightness, self.contrast, self.gamma
+        return self.operator != "none" or plain != (1.0, 0.0, 1.0, 1.0)
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """What a shader of this tone is made with."""
+        return () if self.operator == "none" else (f"TONE_{self.operator.upper()}",)
+
+    def uniforms(self) -> dict[str, float]:
+        """Return what ``shaders/effects/picture/tone.glsl`` asks for."""
+        white = _WHITE.get(self.operator, self.exposure) if self.white is None else self.white
+        names = ("exposure", "brightness", "contrast", "gamma")
+        return {"white": float(white)} | {name: float(getattr(self, name)) for name in names}
+
+
+def is_number(value: object) -> bool:
+    """Say whether a value is a finite number, of NumPy's or of Python's, and no bool."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

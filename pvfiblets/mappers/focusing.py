@@ -1,0 +1,186 @@
+"""What a camera's lens is set to: a distance that is given, or one that follows what is seen at a place."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
+from pvfiblets.engine.effects.lens import Lens
+from pvfiblets.engine.effects.picture import PictureEffects
+from pvfiblets.engine.effects.tone import is_number
+from pvfiblets.mappers.scene import to_array
+
+__all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
+
+FOLLOWED = ("cursor", "center")
+"""Places in the picture whose depth may be the one in focus."""
+
+APERTURE = 0.06
+"""Of the height that is seen at the distance in focus: the lens's diameter where none is asked for."""
+
+NEAR_CURSOR = 2
+"""Pixels around the mouse in which things are looked for: lines are thin."""
+
+SETTLED = 1e-3
+"""Share of a distance by which a focus that follows may still be off when it counts as arrived."""
+
+LONGEST = 0.1
+"""Seconds that count as passed at most: a focus that has rested starts slowly, too."""
+
+
+@dataclass(frozen=True)
+class DepthOfField:
+    """What is in focus, and how blurred the rest is.
+
+    Parameters
+    ----------
+    focal_distance : float, None or str
+        mm from the viewer's plane; None for the camera's focal point; ``'cursor'`` for what is nearest under the mouse,
+        or ``'center'`` for what is nearest in the middle, the last one where nothing is there.
+    aperture : float, optional
+        mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
+    darkening : float
+        0 to 1: share of the light that things with the greatest blur lose.
+    max_blur : float
+        Pixels of the window, 1 to `WIDEST`: the greatest radius of a blurred point.
+    smooth : float
+        Seconds in which a focus that follows comes 63 % of the way; 0 for at once.
+
+    Raises
+    ------
+    ValueError
+        A value has no meaning.
+    """
+
+    focal_distance: float | str | None = None
+    aperture: float | None = None
+    darkening: float = 0.0
+    max_blur: float = 16.0
+    smooth: float = 0.0
+
+    def __post_init__(self) -> None:
+        focal = self.focal_distance
+        if not (focal is None or focal in FOLLOWED or (is_number(focal) and float(focal) > 0.0)):
+            raise ValueError(
+                f"focal_distance is {focal!r}; give a number of mm above 0, None for the camera's focal point, "
+                f"or one of {FOLLOWED}"
+            )
+        if self.aperture is not None and not (is_number(self.aperture) and self.aperture >= 0.0):
+            raise ValueError(f"aperture is {self.aperture!r}; give a number of mm, 0 or more, or None")
+        if not (is_number(self.darkening) and 0.0 <= self.darkening <= 1.0):
+            raise ValueError(f"darkening is {self.darkening!r}; give a number from 0 to 1")
+        if not (is_number(self.max_blur) and 1.0 <= self.max_blur <= WIDEST):
+            raise ValueError(f"max_blur is {self.max_blur!r}; give a number of pixels from 1 to {WIDEST:g}")
+        if not (is_number(self.smooth) and self.smooth >= 0.0):
+            raise ValueError(f"smooth is {self.smooth!r}; give a number of seconds, 0 or more")
+
+
+class Focusing:
+    """The lens of one renderer: where its focus is, and on its way to.
+
+    Attributes
+    ----------
+    distance : float or None
+        mm, in focus in the last picture.
+    clock : callable
+        Tells seconds.
+    """
+
+    def __init__(self) -> None:
+        self.distance: float | None = None
+        self.clock: Callable[[], float] = time.monotonic
+        self._aim: float | None = None
+        self._moved = 0.0
+
+    def forget(self) -> None:
+        """Start anew, as if nothing had been seen."""
+        self.distance = self._aim = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether a focus that follows has arrived: if not, another picture would show it nearer to where it goes."""
+        if self.distance is None or self._aim is None:
+            return True
+        return abs(self.distance - self._aim) <= SETTLED * self._aim
+
+    def focus(self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Lens) -> Focus:
+        """Return what the lens is set to for a picture that has just been copied.
+
+        Parameters
+        ----------
+        wanted : DepthOfField
+        renderer : vtkRenderer
+            That draws the picture.
+        effects : PictureEffects
+            Have the copy, with depths.
+        lens : Lens
+            Of the picture.
+        """
+        enlarged = _enlarged(renderer, lens.size[1])
+        place = wanted.focal_distance
+        if isinstance(place, str):
+            self._follow(_seen_at(place, renderer, effects, lens, enlarged), wanted.smooth)
+        elif place is not None:
+            self.distance = float(place)
+        if place is None or self.distance is None:  # nothing has been seen there so far
+            self.distance = float(renderer.GetActiveCamera().GetDistance())
+        aperture = wanted.aperture
+        if aperture is None:
+            height = renderer.GetSize()[1] / renderer.GetRenderWindow().GetTileScale()[1] * enlarged
+            aperture = APERTURE * height / lens.pixels_per_mm(self.distance)
+        return Focus(self.distance, float(aperture), float(wanted.max_blur) * enlarged, float(wanted.darkening))
+
+    def _follow(self, seen: float | None, smooth: float) -> None:
+        """Move the distance in focus towards what is seen now; None leaves it on its way to the last."""
+        now = self.clock()
+        passed, self._moved = now - self._moved, now
+        if seen is not None:
+            self._aim = seen
+        if self._aim is None:
+            return
+        if self.distance is None or smooth == 0.0:
+            self.distance = self._aim
+            return
+        # In the logarithm, so that the way from near to far is as long as the way back.
+        left = math.log(self.distance / self._aim) * math.exp(-min(passed, LONGEST) / smooth)
+        self.distance = self._aim * math.exp(left)
+        if self.settled:
+            self.distance = self._aim
+
+
+def lens_of(renderer: Any, size: tuple[int, int]) -> Lens:
+    """Return the camera's lens for a picture of some pixels, stereo eye and tile included."""
+    aspect = renderer.GetTiledAspectRatio()
+    return Lens(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
+
+
+def _enlarged(renderer: Any, rows: int) -> float:
+    """Return how many pixels of the framebuffer a pixel of the window is: more when it is enlarged or supersampled."""
+    width, height = [0], [0]
+    renderer.GetTiledSize(width, height)
+    return float(renderer.GetRenderWindow().GetTileScale()[1] * rows / max(height[0], 1))
+
+
+def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Lens, enlarged: float) -> float | None:
+    """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles."""
+    window = renderer.GetRenderWindow()
+    if tuple(window.GetTileScale()) != (1, 1):
+        return None
+    if place == "center":
+        x, y = (side // 2 for side in lens.size)
+    else:
+        interactor = window.GetInteractor()
+        if interactor is None:
+            return None
+        mouse, origin = interactor.GetEventPosition(), renderer.GetOrigin()
+        x, y = (int((at - start + 0.5) * enlarged) for at, start in zip(mouse, origin, strict=True))
+        if not (0 <= x < lens.size[0] and 0 <= y < lens.size[1]):
+            return None
+    around = int(NEAR_CURSOR * enlarged)
+    depths = effects.depths((x - around, y - around, 2 * around + 1, 2 * around + 1))
+    nearest = float(depths.min(initial=1.0))
+    return distance_of(lens, nearest) if nearest < 1.0 else None

@@ -1,0 +1,46 @@
+// What VTK has drawn so far in one viewport, as single samples that shaders can read: the picture that effects change.
+//
+//   drawn      colour attachment of VTK's framebuffer
+//   depths     its depth attachment
+//   samples    per pixel, of both                     (FEATURE_PICTURE_SAMPLES)
+//   origin     pixel of the attachments that becomes the target's pixel corner
+//   corner     pixel of the target
+//
+// Colours are the mean of a pixel's samples, as VTK's own resolve makes them. Of the depths the nearest counts: a pixel at
+// the edge of something belongs to what is in front, or an edge in focus would be blurred with what is behind it.
+
+#version 430
+
+#if FEATURE_PICTURE_SAMPLES
+uniform sampler2DMS drawn;
+uniform sampler2DMS depths;
+uniform int samples;
+#else
+uniform sampler2D drawn;
+uniform sampler2D depths;
+#endif
+uniform ivec2 origin;
+uniform ivec2 corner;
+layout(location = 0) out vec4 colour;
+#if FEATURE_PICTURE_DEPTH
+layout(location = 1) out float depth;
+#endif
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy) - corner + origin;
+#if FEATURE_PICTURE_SAMPLES
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < samples; ++i) sum += texelFetch(drawn, pixel, i);
+    colour = sum / float(samples);
+#if FEATURE_PICTURE_DEPTH
+    depth = 1.0;
+    for (int i = 0; i < samples; ++i) depth = min(depth, texelFetch(depths, pixel, i).r);
+#endif
+#else
+    colour = texelFetch(drawn, pixel, 0);
+#if FEATURE_PICTURE_DEPTH
+    depth = texelFetch(depths, pixel, 0).r;
+#endif
+#endif
+}
