@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from pvfiblets.streamlines import Streamlines
 
-from .data import DataSet, data_sets
+from .data import SMALL, DataSet, data_sets
 from .measure import distances, error_figures, median_step, timed
 from .record import Axes, Figure, LeftOut, Record
 from .rivals.directions import PaperFiblets, QFib
@@ -135,14 +135,17 @@ class CodecStudy:
     )
     notes = (
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
-        "distance between consecutive points. Raw points are float32: 12 bytes each. All ways count 4 bytes a streamline "
-        "for its number of points where decoding needs it. Times are of one thread, in memory: no file is read or written.",
-        "*fiblets*: greedy encoder, with the promise as the setting; *look-ahead*: effort high; *fiblets of 30 points*: "
-        "records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description in Schertzer "
-        "et al. 2022 (pvfiblets/report/rivals/directions.py says what it leaves open), with the file's median step: what "
-        "steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the setting; its points "
-        "cannot be had back, so its error is the distance from the line that is left, and there is nothing to "
-        "decompress. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
+        "distance between consecutive points. Raw points are float32: 12 bytes each. All ways count 4 bytes a "
+        "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
+        "read or written. "
+        "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
+        f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
+        "*fiblets*: greedy encoder, with the promise as the setting; *look-ahead*: effort high; *fiblets of 30 "
+        "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
+        "in Schertzer et al. 2022 (pvfiblets/report/rivals/directions.py says what it leaves open), with the file's "
+        "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
+        "setting; its points cannot be had back, so its error is the distance from the line that is left, and there is "
+        "nothing to decompress. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
         "Made-up sets: whole-brain-like tracking of constant step (pvfiblets.synthetic); *noisy* ones turn by an "
         "independent random angle at every step as well, 4° per axis at 0.2 mm and in proportion to the step's root "
         "otherwise, much as iFOD1 does.",

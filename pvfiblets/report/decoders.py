@@ -60,7 +60,7 @@ def inputs(dtype: npt.DTypeLike) -> tuple[Any, ...]:
 @kernel
 def _closed(number: Any, ratio: Any, unit: Any, rounded: bool, c: Any) -> Any:
     """Quaternion ``(w, y, z)`` of a code, whose x is 0."""
-    one, two = c[1], c[2]
+    one = c[1]
     t = number / c[4]
     rho = math.sqrt(t * math.sqrt(t * math.sqrt(t)))
     turns = number * c[5]

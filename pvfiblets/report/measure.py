@@ -73,9 +73,10 @@ def timed(
     clock: Callable[[], float] = time.process_time,
     clock_name: str = "cpu",
 ) -> tuple[Result, Timing]:
-    """Call a function some times, after once to warm up, and return its first result and how long the others took.
+    """Call a function some times, and return its first result and how long the calls after that took.
 
-    Calls that take much less than the clock's or the machine's grain are repeated within one measurement.
+    Calls that are much shorter than the clock's grain are put together; of calls longer than half a second three are
+    enough.
     """
     result = function()
     collecting = gc.isenabled()
@@ -85,8 +86,9 @@ def timed(
         function()
         once = clock() - begun
         inner = 1 if once >= _GRAIN else int(min(np.ceil(_GRAIN / max(once, 1e-6)), 1000))
-        seconds = []
-        for _ in range(max(repeats, 1)):
+        wanted = max(repeats, 1) if once < _LONG else min(max(repeats, 1), 3)
+        seconds = [once] if inner == 1 else []
+        while len(seconds) < wanted:
             begun = clock()
             for _ in range(inner):
                 function()
@@ -99,3 +101,4 @@ def timed(
 
 
 _GRAIN = 2e-3  # s: shorter calls are put together until they take about as long
+_LONG = 0.5  # s

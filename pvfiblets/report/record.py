@@ -231,7 +231,9 @@ class Report:
         try:
             return cls(dict(data["about"]), [_study(study) for study in data["studies"]])
         except (KeyError, TypeError, AttributeError) as error:
-            raise FormatError(path, None, f"a report that lacks or adds something ({error})", "one as written") from error
+            raise FormatError(
+                path, None, f"a report that lacks or adds something ({error})", "one as written"
+            ) from error
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write ``report.json`` into a folder, which is made if there is none, and return its path."""
@@ -284,16 +286,18 @@ def _timing(data: Mapping[str, Any]) -> Timing:
 
 
 def _record(data: Mapping[str, Any]) -> Record:
-    figures = {"errors": _figures(data["errors"]), "costs": _figures(data["costs"])}
-    times = {name: _timing(timing) for name, timing in data["times"].items()}
-    rest = {name: value for name, value in data.items() if name not in ("errors", "costs", "times")}
-    return Record(**rest, **figures, times=times)
+    inner: dict[str, Any] = {
+        "errors": _figures(data["errors"]),
+        "costs": _figures(data["costs"]),
+        "times": {name: _timing(timing) for name, timing in data["times"].items()},
+    }
+    return Record(**{**data, **inner})
 
 
 def _study(data: Mapping[str, Any]) -> StudyResult:
-    lists = {
+    lists: dict[str, Any] = {
         "axes": [Axes(**axes) for axes in data["axes"]],
         "records": [_record(record) for record in data["records"]],
         "left_out": [LeftOut(**item) for item in data["left_out"]],
     }
-    return StudyResult(**{name: value for name, value in data.items() if name not in lists}, **lists)
+    return StudyResult(**{**data, **lists})

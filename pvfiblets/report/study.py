@@ -77,7 +77,7 @@ class Options:
     seed : int
         Of all made-up data.
     repeats : int
-        Timed calls of each way, after one to warm up.
+        Timed calls of each way, after one that is not timed.
     points : int
         To which data sets are cut.
     machine : str
@@ -91,7 +91,7 @@ class Options:
     files: tuple[Path, ...] = ()
     seed: int = 0
     repeats: int = 5
-    points: int = 200_000
+    points: int = 100_000
     machine: str = ""
     log: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -30,9 +31,7 @@ class LinesPacked:
         """Bytes of the points kept, in float32, and of their numbers."""
         return sum(12 * len(line) + COUNT_BYTES for line in self.kept)
 
-    def distances(
-        self, points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]
-    ) -> npt.NDArray[np.float64]:
+    def distances(self, points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         """Distance of each original point from the kept line beside it, ``(n,)`` mm.
 
         Raises
@@ -79,7 +78,7 @@ def linearised(tolerance: float) -> Callable[[npt.NDArray[np.floating], npt.NDAr
     compress: Any = import_module("dipy.tracking.streamlinespeed").compress_streamlines
 
     def pack(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> LinesPacked:
-        lines = [points[a:b] for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+        lines = [points[a:b] for a, b in pairwise(offsets)]
         longer = [i for i, line in enumerate(lines) if len(line) > 2]  # of the others nothing can be left out
         for i, line in zip(longer, compress([lines[i] for i in longer], tol_error=tolerance), strict=True):
             lines[i] = line

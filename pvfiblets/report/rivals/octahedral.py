@@ -7,8 +7,9 @@ rounded to ``levels`` values an axis, both ends among them. A direction is off b
 Stretching: Rousseau and Boubekeur, "Unorganized unit vectors sets quantization", 2020 ([RB20]): the cap of half-angle
 ``alpha`` around X is mapped to the sphere (``spread = 2``; QFib) or to the half with ``x >= 0`` (``spread = 1``; the
 fiblets paper, appendix A) so that areas keep their ratios: ``c' = 1 - spread (1 - c) / Ratio``,
-``Ratio = 1 - cos alpha``, where ``c`` is a vector's x. All of the cap's rim falls on the one point ``-X`` of the sphere,
-around which codes mean any azimuth; what lies on the rim or beyond it is therefore kept ``limit`` away from X at most.
+``Ratio = 1 - cos alpha``, where ``c`` is a vector's x. All of the cap's rim falls on the one point ``-X`` of the
+sphere, around which codes tell azimuths badly or not at all; what lies near the rim or beyond it is therefore kept
+``limit`` away from X at most.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 
 from pvfiblets.codec.jit import kernel
 
-__all__ = ["angle_between", "from_cap", "pack", "ratio_of", "rim", "to_cap", "unpack", "worst_angle"]
+__all__ = ["angle_between", "from_cap", "pack", "ratio_of", "to_cap", "unpack", "worst_angle"]
 
 
 @kernel
@@ -34,7 +35,7 @@ def pack(x: float, y: float, z: float, levels: int) -> Any:
         v = (1.0 - abs(u)) * (1.0 if v >= 0.0 else -1.0)
         u = folded_u
     half = 0.5 * (levels - 1)
-    return int(math.floor(0.5 + half * (1.0 + u))), int(math.floor(0.5 + half * (1.0 + v)))
+    return math.floor(0.5 + half * (1.0 + u)), math.floor(0.5 + half * (1.0 + v))
 
 
 @kernel
@@ -59,11 +60,6 @@ def worst_angle(levels: int) -> float:
     lengths grow by up to ``sqrt(3)``, and the faces are ``1 / sqrt(3)`` from the centre at least.
     """
     return math.sqrt(2.0) / (levels - 1) * math.sqrt(3.0) * math.sqrt(3.0)
-
-
-def rim(levels: int) -> float:
-    """Return the least limit of :func:`from_cap` whose azimuths ``levels`` values an axis tell apart: 1.5 cells off."""
-    return 1.0 + math.cos(3.0 / (levels - 1))
 
 
 def ratio_of(angle: float) -> float:

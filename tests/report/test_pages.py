@@ -1,0 +1,121 @@
+"""The command, the page and the plots."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from pvfiblets.cli import main
+from pvfiblets.report.front import mark_fronts
+from pvfiblets.report.page import page
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+
+ABOUT = {
+    "name": "m", "processor": "Some CPU", "cores": 2, "system": "Linux", "python": "3.11", "driver": "none",
+    "versions": {"numpy": "2.0"}, "seed": 7, "quick": False, "date": "2026-01-01", "load": 9.0,
+}  # fmt: skip
+
+
+def made():
+    """A study of two sets with known numbers: the default is beaten on the first by rival 1, in both figures."""
+    axes = [
+        Axes("size", "costs/size", "errors/max", "bytes per point", "largest error, mm"),
+        Axes("time", "times/pack", "errors/max", "pack, ns per point", "largest error, mm"),
+        Axes("drift", "", "errors/mean at point ", "point", "mean error", series=True),
+    ]
+    records = []
+    for data, group in (("one", "g"), ("two|2", "g"), ("tiny", "")):
+        for i, (size, error, seconds) in enumerate([(2.0, 0.5, 1.0), (1.0, 0.25, 2.0), (4.0, 0.0, 0.5)]):
+            records.append(
+                Record(
+                    data, group, "points", "ours" if i == 0 else f"rival {i}", "",
+                    {"max": Figure(error, "mm"), "mean at point 1": Figure(0.1, "mm"),
+                     "mean at point 9": Figure(0.2 + i, "mm")},
+                    {"size": Figure(size, "bytes/point")},
+                    {"pack": Timing(seconds, 0.9 * seconds, 1.1 * seconds, 5, 1e6, "point", "cpu")},
+                    ours=i == 0, default=i == 0,
+                )
+            )  # fmt: skip
+    mark_fronts(records, axes)
+    study = StudyResult("codec", "Kept points", "Points.", ["Note."], axes, records, [LeftOut("x.tck", "it | is bad")])
+    return Report(dict(ABOUT), [study, StudyResult("tubes", "Tubes", "", unavailable="no context")])
+
+
+def test_the_page_says_what_the_numbers_say():
+    text = page(made(), {"codec": [("a.png", "errors")]})
+    assert "Some CPU" in text
+    assert "seed 7" in text
+    assert "Other programs ran beside this: 9 wanted to" in text
+    assert "| tubes | not available | no context |" in text
+    assert "![errors](a.png)" in text
+    assert "| x.tck | it \\| is bad |" in text
+    assert "| one | 0.5 / 2; rival 1 | 0.5 / 1e+03; rival 2 |" in text
+    assert "| **ours** |  | 2 | 0.5 | 1 (0.909–1.11) | 1 |  |" in text
+    assert "| rival 1 |  | 1 | 0.25 | 0.5 (0.455–0.556) | 0.5 | size |" in text
+    assert "| rival 2 |  | 4 | 0 | 2 (1.82–2.22) | 2 | size, time |" in text
+    assert "mean at point" not in text.replace("mean error", "")
+
+
+def test_page_and_plots_are_made_again_from_the_file_alone(tmp_path):
+    made().save(tmp_path / "first")
+    assert main(["report", "--from", str(tmp_path / "first" / "report.json"), "-o", str(tmp_path / "again")]) == 0
+    names = sorted(path.name for path in (tmp_path / "again").iterdir())
+    assert names == [
+        "codec-drift-g.png", "codec-size-g.png", "codec-time-g.png", "report.json", "report.md",
+    ]  # fmt: skip
+    assert (tmp_path / "again" / "report.json").read_bytes() == (tmp_path / "first" / "report.json").read_bytes()
+    for name in names[:3]:
+        assert f"]({name})" in (tmp_path / "again" / "report.md").read_text()
+        picture = np.asarray(Image.open(tmp_path / "again" / name).convert("RGB"))
+        assert (picture == [0x00, 0x72, 0xB2]).all(axis=2).sum() > 50  # the default's colour is there
+        assert picture.std() > 5
+
+
+def test_a_wrong_study_is_one_clear_error(tmp_path, capsys):
+    assert main(["report", "--only", "codec", "colour", "-o", str(tmp_path)]) == 1
+    error = capsys.readouterr().err
+    assert error == (
+        "pvfiblets: there is no study 'colour'; choose among codec, decode, culling, tubes, volume, halos\n"
+    )
+    assert not list(tmp_path.iterdir())
+
+
+def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys):
+    assert main(["report", "--only", "codec", "--data", str(tmp_path / "no.tck"), "-o", str(tmp_path)]) == 1
+    assert "no.tck" in capsys.readouterr().err
+    assert main(["report", "--from", str(tmp_path / "none.json"), "-o", str(tmp_path)]) == 1
+    assert "none.json" in capsys.readouterr().err
+    assert main(["report", "--from", "x.json", "--quick", "-o", str(tmp_path)]) == 1
+    assert "--from" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["report"])
+
+
+def test_studies_to_come_make_a_page(tmp_path, capsys):
+    assert main(["report", "--only", "volume", "-o", str(tmp_path)]) == 0
+    assert "not part of the report yet" in (tmp_path / "report.md").read_text()
+    assert "wrote" in capsys.readouterr().err
+
+
+def test_measuring_needs_no_vtk_and_no_matplotlib():
+    code = (
+        "import sys, pvfiblets.report.run, pvfiblets.report.codec, pvfiblets.report.decode, pvfiblets.cli_report\n"
+        "from pvfiblets.report.data import made_up\n"
+        "made_up(1.0, True, 500, 0)\n"
+        "print(sorted({'vtkmodules', 'vtk', 'pyvista', 'matplotlib', 'dipy'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_without_matplotlib_there_is_a_page_without_plots(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    monkeypatch.delitem(sys.modules, "pvfiblets.report.plots", raising=False)
+    made().save(tmp_path)
+    assert main(["report", "--from", str(tmp_path), "-o", str(tmp_path)]) == 0
+    assert "no plots" in capsys.readouterr().err
+    assert not list(tmp_path.glob("*.png"))

@@ -1,0 +1,172 @@
+"""The form of all measurements: kept whole by the file, fronts against brute force, errors and times measured right."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pvfiblets.errors import FormatError
+from pvfiblets.report.front import mark_fronts, pareto
+from pvfiblets.report.measure import distances, error_figures, median_step, timed
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+
+
+def a_record(way="a", data="d", size=1.0, error=0.5, **rest):
+    return Record(
+        data=data, group="g", approximation="points", way=way, setting="8 bits",
+        errors={"max": Figure(error, "mm")}, costs={"size": Figure(size, "bytes/point")},
+        times={"pack": Timing(2.0, 1.0, 3.0, 5, 100.0, "point", "cpu")}, **rest,
+    )  # fmt: skip
+
+
+def a_report():
+    axes = Axes("size", "costs/size", "errors/max", "bytes", "mm")
+    study = StudyResult(
+        "codec", "Codec", "points", ["a note"], [axes], [a_record(front=["size"]), a_record("b", error=math.nan)],
+        [LeftOut("zstd", "not installed")], seconds=1.5,
+    )  # fmt: skip
+    away = StudyResult("volume", "Volume", "", unavailable="no graphics")
+    return Report({"name": "m", "versions": {"numpy": "2"}, "quick": True}, [study, away])
+
+
+def test_a_report_comes_back_whole_from_its_file(tmp_path):
+    report = a_report()
+    path = report.save(tmp_path / "new folder")
+    for source in (path, path.parent):
+        loaded = Report.load(source)
+        assert math.isnan(loaded.studies[0].records[1].errors["max"].value)
+        loaded.studies[0].records[1].errors["max"] = report.studies[0].records[1].errors["max"]
+        assert loaded == report
+    json.loads(path.read_text(), parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
+
+
+@pytest.mark.parametrize(
+    "text", ["not JSON", "[]", '{"format": "something else"}', '{"format": "pvfiblets report 1", "about": {}}',
+             '{"format": "pvfiblets report 1", "about": {}, "studies": [{"name": "codec"}]}'],
+)  # fmt: skip
+def test_what_is_no_report_is_said_so(tmp_path, text):
+    path = tmp_path / "other.json"
+    path.write_text(text)
+    with pytest.raises(FormatError, match=r"other\.json"):
+        Report.load(path)
+
+
+def test_numbers_of_a_record_by_name():
+    record = a_record()
+    assert record.value("costs/size") == 1.0
+    assert record.value("times/pack") == 0.02
+    assert math.isnan(record.value("errors/none"))
+    assert record.times["pack"].rate == 50.0
+    with pytest.raises(ValueError, match="must begin with"):
+        record.value("size")
+
+
+def dominated(points, i):
+    return any(q[0] <= points[i][0] and q[1] <= points[i][1] and q != points[i] for j, q in enumerate(points) if j != i)
+
+
+@given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=30))
+def test_fronts_against_brute_force(points):
+    assert pareto(points) == [not dominated(points, i) for i in range(len(points))]
+
+
+def test_what_is_not_finite_is_on_no_front():
+    assert pareto([(1.0, math.nan), (math.inf, 0.0), (2.0, 3.0)]) == [False, False, True]
+    assert pareto([]) == []
+
+
+def test_fronts_are_of_one_data_set_and_machine():
+    axes = [Axes("k", "costs/size", "errors/max", "", ""), Axes("s", "", "errors/", "", "", series=True)]
+    worse = a_record(size=2.0, error=1.0)
+    others = a_record(size=2.0, error=1.0, data="e"), a_record(size=2.0, error=1.0, machine="m")
+    mark_fronts([a_record(), worse, *others], axes)
+    assert worse.front == []
+    assert [record.front for record in others] == [["k"], ["k"]]
+
+
+def test_errors_of_a_made_up_decoder():
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-100, 100, (5000, 3)).astype(np.float32)
+    move = rng.normal(size=(5000, 3))
+    move /= np.linalg.norm(move, axis=1, keepdims=True)
+    length = np.full(5000, 0.25)
+    length[:3] = 1.0  # fewer than a thousandth
+    apart = distances(points, points.astype(np.float64) + length[:, None] * move)
+    np.testing.assert_allclose(apart, length, rtol=1e-12)
+    figures = error_figures(apart, 0.5)
+    assert figures["max"].value == pytest.approx(1.0)
+    assert figures["max"].unit == "mm"
+    assert figures["mean"].value == pytest.approx((0.25 * 4997 + 3.0) / 5000)
+    assert figures["p99.9"].value == pytest.approx(0.25)
+    assert figures["mean in steps"] == Figure(2.0 * figures["mean"].value, "steps")
+
+
+def test_points_that_are_lost_or_broken_are_no_small_error():
+    points = np.zeros((4, 3))
+    with pytest.raises(ValueError, match="4 points were coded and 3 came back"):
+        distances(points, points[:3])
+    broken = points.copy()
+    broken[2, 1] = np.nan
+    with pytest.raises(ValueError, match="1 of 4 decoded points are not finite"):
+        distances(points, broken)
+
+
+def test_the_median_step_knows_where_streamlines_end():
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [50, 0, 0], [50, 1, 0], [50, 1, 0]], float)
+    assert median_step(points, np.array([0, 3, 6])) == 1.0
+    assert median_step(points, np.array([0, 3, 3, 6])) == 1.0
+    assert math.isnan(median_step(points[:1], np.array([0, 1])))
+    assert math.isnan(median_step(points[:0], np.array([0])))
+
+
+class Clock:
+    """Time that passes only when something says that it takes some."""
+
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+def test_times_are_medians_of_repeats_after_a_first_call():
+    clock, calls = Clock(), []
+
+    def work():
+        calls.append(None)
+        clock.now += [50.0, 0.1, 0.3, 0.2, 0.4, 0.2][len(calls) - 1]
+        return len(calls)
+
+    result, timing = timed(work, 5, 10, "ray", clock, "fake")
+    assert result == 1
+    assert len(calls) == 6
+    assert timing == Timing(0.2, pytest.approx(0.1), pytest.approx(0.4), 5, 10, "ray", "fake") or (
+        timing.median == pytest.approx(0.2) and timing.repeats == 5 and timing.clock == "fake"
+    )
+    assert timing.each == pytest.approx(0.02)
+
+
+def test_short_calls_are_put_together_and_long_ones_made_less_often():
+    clock, calls = Clock(), []
+
+    def short():
+        calls.append(None)
+        clock.now += 1e-5
+
+    _, timing = timed(short, 3, 1, clock=clock)
+    assert timing.median == pytest.approx(1e-5)
+    assert len(calls) > 3 * 100
+    calls.clear()
+
+    def long():
+        calls.append(None)
+        clock.now += 2.0
+
+    _, timing = timed(long, 9, 1, clock=clock)
+    assert timing.repeats == 3
+    assert len(calls) == 4
