@@ -68,9 +68,10 @@ class Explorer(TrameApp):
             failed=lambda error: self.complain(f"The picture could not be drawn: {error}"),
             drawn=self._drawn,
         )
+        self._charts = describe.Charts(self.scene)
         self.camera = CameraActions(self)
         self.cuts = CutActions(self)
-        self.filtering = FilterActions(self)
+        self.filtering = FilterActions(self, self._charts)
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
         self.server.enable_module(
@@ -79,6 +80,7 @@ class Explorer(TrameApp):
         self._register_keys()
         self.ui = layout.build(self)
         self.scene.watch(lambda change: self.refresh())
+        self.state.change("tab")(lambda tab, **_: self._show_info() if tab == "info" else None)
         self.refresh()
         self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())
 
@@ -146,15 +148,20 @@ class Explorer(TrameApp):
             page.chosen_name = chosen.name if chosen is not None else ""
             page.chosen_kind = chosen.kind if chosen is not None else ""
             page.groups = describe.groups(scene.properties(page.chosen)) if page.chosen else []
-            page.range_chart = describe.range_chart(scene, page.chosen)
+            page.range_chart = self._charts.of_range(page.chosen)
             page.undo_label = self.history.undo_label or ""
             page.redo_label = self.history.redo_label or ""
             page.background = scene.state.background
-            page.info = describe.info(scene, page.chosen)
             self.cuts.refresh()
             self.filtering.refresh()
             self.selecting.refresh()
         self.stream.request()
+
+    def _show_info(self) -> None:
+        """Show the facts of the chosen layer, some of which are counted on the GPU: only while somebody looks."""
+        page = self.page
+        if page.tab == "info":
+            page.info = describe.info(self.scene.info(page.chosen)) if page.chosen else []
 
     def choose(self, layer_id: str) -> None:
         """Make a layer the one that the panels are about."""
@@ -262,6 +269,7 @@ class Explorer(TrameApp):
             milliseconds = self.stream.milliseconds
             if milliseconds is not None and not self.stream.moving:
                 self.page.frame = f"{milliseconds:.0f} ms a frame"
+                self._show_info()
 
     def later(self, coroutine: Any) -> asyncio.Task[Any]:
         """Run a coroutine beside everything else; its error becomes a sentence on the page."""

@@ -10,6 +10,12 @@ import numpy as np
 
 from pvfiblets.web.charts import histogram_chart, short, steps
 
+MOST_CHARTS = 64
+TITLES = {
+    "facts": "File", "promise_mm": "error promise, mm", "error_mm": "measured error, mm", "step_mm": "step, mm",
+    "error_steps": "measured error, steps", "bounds": "bounds, mm", "bounds_mm": "bounds, mm", "explain": "Drawing",
+    "gpu_bytes": "GPU memory, bytes", "milliseconds": "last redraw, ms",
+}  # fmt: skip
 WIDE = 1e3  # limits whose ends are farther apart than this, as a ratio, are for typing and not for a slider
 
 
@@ -65,17 +71,40 @@ def control(item: Mapping[str, Any]) -> dict[str, Any]:
     return shown
 
 
-def range_chart(scene: Any, layer_id: str) -> str:
-    """Return the histogram of what the chosen layer is coloured by, or nothing where it has one colour."""
-    if not layer_id:
-        return ""
-    for item in scene.properties(layer_id):
-        if item["name"] == "clim" and not item["matters"]:
+class Charts:
+    """Histograms of a scene's values, kept: they are of the data, which does not change.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose layers they are of.
+    """
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._kept: dict[tuple[Any, str, str], tuple[str, list[float]]] = {}
+
+    def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
+        """Return the chart of a layer's values, and between which they lie."""
+        found = self._scene.layer(layer_id)
+        key = found.source, found.kind, name
+        if key not in self._kept:
+            if len(self._kept) >= MOST_CHARTS:
+                self._kept.pop(next(iter(self._kept)))
+            counted = self._scene.histogram(layer_id, name)
+            self._kept[key] = histogram_chart(counted["counts"]), [counted["edges"][0], counted["edges"][-1]]
+        return self._kept[key]
+
+    def of_range(self, layer_id: str) -> str:
+        """Return the chart of what colours a layer; nothing where colours stand for no numbers."""
+        if not layer_id:
             return ""
-    try:
-        return histogram_chart(scene.histogram(layer_id)["counts"])
-    except (KeyError, ValueError, TypeError):
-        return ""  # colours that stand for no numbers
+        found = self._scene.layer(layer_id)
+        names = [entry["name"] for entry in self._scene.arrays(layer_id)]
+        name = found.settings.get("scalars")
+        if found.kind == "volume":
+            name = names[0]
+        return self.of(layer_id, name)[0] if name in names else ""
 
 
 def typed(text: str, name: str, *, optional: bool) -> float | None:
@@ -92,14 +121,13 @@ def typed(text: str, name: str, *, optional: bool) -> float | None:
     return value
 
 
-def info(scene: Any, layer_id: str) -> list[dict[str, Any]]:
+def info(facts: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the sections of the tab Info."""
-    if not layer_id:
-        return []
     sections, plain = [], []
-    for name, value in scene.info(layer_id).items():
+    for name, value in facts.items():
         if isinstance(value, Mapping):
-            rows = [[_title(key), _text(item)] for key, item in value.items() if item is not None]
+            rows = [[_title(key), _text(item)] for key, item in value.items() if item not in (None, [], {}, "")]
+            rows = [row for row in rows if row[0] != "path"]  # of the server; the layer's own is above
             if rows:
                 sections.append({"title": _title(name), "rows": rows})
         elif value is not None:
@@ -108,7 +136,8 @@ def info(scene: Any, layer_id: str) -> list[dict[str, Any]]:
 
 
 def _title(name: object) -> str:
-    return str(name).replace("_", " ")
+    text = str(name)
+    return TITLES.get(text, text.replace("_", " "))
 
 
 def _text(value: Any) -> str:

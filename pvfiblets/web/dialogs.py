@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trame.widgets import html
-from trame.widgets import vuetify3 as v3
+from pvfiblets.web.elements import html, v3
 
 KEYS = (
     ("1 2 3 4", "axial, coronal, sagittal, oblique"),

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from pvfiblets.web.charts import histogram_chart, short, steps
+import numpy as np
+
+from pvfiblets.web.charts import short, steps
 from pvfiblets.web.controls import controls, moved
-from pvfiblets.web.describe import typed
+from pvfiblets.web.describe import Charts, typed
 from pvfiblets.web.document import LINES
 from pvfiblets.web.shapes import HOWS
 
@@ -19,11 +21,13 @@ class FilterActions:
     ----------
     app : Explorer
         Whose scene and page these act on.
+    charts : Charts
+        Of the scene's values.
     """
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Any, charts: Charts) -> None:
         self._app = app
-        self._kept: dict[tuple[Any, str], tuple[str, list[float]]] = {}  # charts and limits, by source and name
+        self._charts = charts
 
     @property
     def _layer(self) -> Any:
@@ -44,7 +48,9 @@ class FilterActions:
         layer = self._layer
         arrays = scene.arrays(layer.id)
         titles = {entry["name"]: entry["title"] for entry in arrays}
-        shown = scene.info(layer.id)["streamlines"]
+        actor = scene.actor(layer.id)
+        total = actor.fiblets.n_streamlines
+        left = int(np.count_nonzero(actor.shown)) if layer.filters.active else total
         filters = layer.filters
         amount = (filters.subset or {}).get("amount", 1.0)
         join, regions = _flat(filters.regions)
@@ -52,14 +58,14 @@ class FilterActions:
         page.filters = {
             "layer": layer.id,
             "active": filters.active,
-            "counted": f"{shown['shown']:,} of {shown['total']:,} streamlines",
+            "counted": f"{left:,} of {total:,} streamlines",
             "criteria": [self._criterion(layer, name, titles.get(name, name)) for name in filters.criteria],
             "more": [
                 {"title": entry["title"], "value": entry["name"]}
                 for entry in arrays
                 if entry["name"] not in filters.criteria
             ],
-            "groups": list(scene.info(layer.id).get("groups", {})),
+            "groups": list(actor.fiblets.groups),
             "shown_groups": list(filters.groups or ()),
             "share": round(100.0 * amount) if amount <= 1.0 else 100,
             "join": join,
@@ -74,7 +80,7 @@ class FilterActions:
         }  # fmt: skip
 
     def _criterion(self, layer: Any, name: str, title: str) -> dict[str, Any]:
-        chart, limits = self._chart(layer, name)
+        chart, limits = self._charts.of(layer.id, name)
         low, high = layer.filters.criteria[name]
         value = [limits[0] if math.isinf(low) else low, limits[1] if math.isinf(high) else high]
         reach = [min(limits[0], value[0]), max(limits[1], value[1])]
@@ -83,19 +89,12 @@ class FilterActions:
             "shown": [short(end) for end in value],
         }  # fmt: skip
 
-    def _chart(self, layer: Any, name: str) -> tuple[str, list[float]]:
-        key = layer.source, name
-        if key not in self._kept:
-            found = self._app.scene.histogram(layer.id, name)
-            self._kept[key] = histogram_chart(found["counts"]), [found["edges"][0], found["edges"][-1]]
-        return self._kept[key]
-
     # What is done
 
     def add(self, name: str) -> None:
         """Add a criterion that leaves all in."""
         layer = self._layer
-        low, high = self._chart(layer, name)[1]
+        low, high = self._charts.of(layer.id, name)[1]
         self._app.scene.set_filter(layer.id, name, low, high)
 
     def remove(self, name: str) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
-from trame.widgets import client, html, rca
-from trame.widgets import vuetify3 as v3
+from trame.widgets import client, rca
 
 from pvfiblets.web import dialogs, panels, tabs
+from pvfiblets.web.elements import html, v3
 
 VIEW = "view"
 VIEWS = (
@@ -26,7 +26,8 @@ TOOLS = (
 )
 STYLE = """
 html, body { overflow: hidden !important; overscroll-behavior: none }
-.pv-view { position: absolute; inset: 0; touch-action: none; background: #000 }
+.pv-view { position: absolute; top: var(--v-layout-top); bottom: 0; left: var(--v-layout-left);
+  right: var(--v-layout-right); touch-action: none; background: #000 }
 .pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
@@ -55,6 +56,11 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-table td { text-align: right; padding: 3px 6px; border-top: 1px solid rgba(128,128,128,.2) }
 .pv-table td:first-child, .pv-table th:first-child { text-align: left }
 .pv-layer { min-height: 34px !important; padding-inline: 6px !important }
+.pv-layer .v-list-item__spacer { width: 4px !important }
+.v-switch .v-selection-control { min-height: 28px !important }
+.v-switch__thumb { height: 16px !important; width: 16px !important }
+.v-overlay .v-list-item { min-height: 34px !important }
+.v-overlay .v-list-item-title { font-size: 13px }
 .v-toolbar__content > .v-btn { margin-inline: 0 !important }
 .v-slider.v-input--horizontal { margin-inline: 6px }
 .v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;

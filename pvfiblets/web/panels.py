@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trame.widgets import html
-from trame.widgets import vuetify3 as v3
+from pvfiblets.web.elements import html, v3
 
 ICONS = {
     "tractogram": "mdi-vector-polyline",
@@ -34,8 +33,8 @@ def layers(app: Any) -> None:
                         icon=True, size="x-small", variant="text", aria_label=("layer.visible ? 'Hide' : 'Show'",),
                         click_stop=(app.show, "[layer.id, !layer.visible]"), data_action="eye",
                     ):  # fmt: skip
-                        v3.VIcon(("layer.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
-                    v3.VIcon((f"({ICONS!r})[layer.kind]",), size=16, classes="mx-1", title=("layer.kind",))
+                        v3.VIcon(icon=("layer.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                    v3.VIcon(icon=(f"({ICONS!r})[layer.kind]",), size=16, classes="mx-1", title=("layer.kind",))
                 v3.VListItemTitle("{{ layer.name }}", title=("layer.name",), style="font-size: 13px")
                 with v3.Template(v_slot_append=True):
                     with v3.VBtn(

@@ -89,6 +89,7 @@ class PictureStream:
         self._grab.ReadFrontBufferOff()
         self._grab.ShouldRerenderOff()
         self._grab.SetInputBufferTypeToRGB()
+        plotter.show(auto_close=False, interactive=False)  # until then plotter.render() does nothing
         plotter.iren.interactor.EnableRenderOff()  # frames are drawn here, not by every event
 
     # What trame-rca calls

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trame.widgets import html
-from trame.widgets import vuetify3 as v3
+from pvfiblets.web.elements import html, v3
 
 TABS = (("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("info", "Info"))
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
@@ -67,7 +66,7 @@ def _clip(app: Any) -> None:
                 icon=True, size="x-small", variant="text", click=(app.cuts.enable, "[clip.id, !clip.enabled]"),
                 aria_label=("clip.enabled ? 'Switch off' : 'Switch on'",),
             ):  # fmt: skip
-                v3.VIcon(("clip.enabled ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                v3.VIcon(icon=("clip.enabled ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
             html.Span("{{ clip.name }}", style="flex: 1; font-size: 13px; font-weight: 500")
             v3.VBtn(
                 "{{ clip.side }}", size="x-small", variant="tonal", classes="text-none",

@@ -28,6 +28,8 @@ EVENTS = frozenset(
         "StartPinch", "Pinch", "EndPinch", "StartPan", "Pan", "EndPan", "StartRotate", "Rotate", "EndRotate",
     }
 )  # fmt: skip
+# Keys have their meaning in client/pvfiblets.js; VTK's own would close or spoil the view.
+KEYS = frozenset({"keyPress", "keyDown", "keyUp", "KeyPress", "KeyDown", "KeyUp"})
 # Lifecycle events that trame's client reports.
 LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", "client_unmounting"})
 
@@ -148,7 +150,7 @@ class Doors:
         functions.update(kept)
         functions["application.exit.later"] = (None, lambda *_: None)
 
-    def _checked(self, name: str, check: Callable[..., list[Any]], function: Callable[..., Any]) -> Callable[..., Any]:
+    def _checked(self, name: str, check: Callable[..., list[Any] | None], function: Callable[..., Any]) -> Callable[..., Any]:
         async def call(target: Any, *arguments: Any, **named: Any) -> Any:
             try:
                 if named:
@@ -156,6 +158,8 @@ class Doors:
                 checked = check(*arguments)
             except (MalformedError, TypeError) as error:
                 logger.warning("refused a call of %s: %s", name, error if isinstance(error, MalformedError) else "wrong arguments")
+                return None
+            if checked is None:
                 return None
             try:
                 result = function(target, *checked)
@@ -185,7 +189,9 @@ class Doors:
             kind = self._writable.get(key)
             if kind is None:
                 raise MalformedError(f"the state {key[:40]!r} is not a browser's to set")
-            if not (isinstance(value, kind) and not (isinstance(value, bool) and kind is not bool)):
+            if kind is float and isinstance(value, int) and not isinstance(value, bool):
+                value = float(value)
+            if not isinstance(value, kind):
                 raise MalformedError(f"the state {key!r} is a {kind.__name__}, found {type(value).__name__}")
             allowed.append({"key": key, "value": value})
         return [allowed]
@@ -215,5 +221,7 @@ class Doors:
         width, height, ratio = view_size(size)
         return [*self._area(area), str(origin)[:100], {"w": width, "h": height, "p": ratio}]
 
-    def _event(self, area: object, origin: object, event: object) -> list[Any]:
+    def _event(self, area: object, origin: object, event: object) -> list[Any] | None:
+        if isinstance(event, dict) and event.get("type") in KEYS:
+            return None
         return [*self._area(area), str(origin)[:100], pointer_event(event)]

@@ -1,0 +1,58 @@
+"""The elements of a page: trame's, with every attribute passed on.
+
+trame leaves out attributes that it does not know of an element, without a word; ``data-`` and ``aria-`` are among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from types import ModuleType
+from typing import Any
+
+from trame.widgets import html as _html
+from trame.widgets import vuetify3 as _vuetify
+
+__all__ = ["html", "v3"]
+
+PASSED_ON = ("data_", "aria_")
+PLAIN = frozenset({"accept", "autofocus", "download", "hidden", "inputmode", "role", "tabindex"})
+
+
+class Elements:
+    """The elements of a module of trame's.
+
+    Parameters
+    ----------
+    module : module
+        Such as ``trame.widgets.html``.
+    """
+
+    def __init__(self, module: ModuleType) -> None:
+        self._module = module
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        kind = getattr(self._module, name)
+
+        def make(*children: Any, **attributes: Any) -> Any:
+            raw = []
+            for key in list(attributes):
+                if key.startswith(PASSED_ON) or key in PLAIN:
+                    raw.append(written(key, attributes.pop(key)))
+            return kind(*children, raw_attrs=raw, **attributes) if raw else kind(*children, **attributes)
+
+        return make
+
+
+def written(name: str, value: Any) -> str:
+    """Return an attribute as a template has it: a tuple holds an expression, as everywhere in trame."""
+    name = name.replace("_", "-")
+    if value is True:
+        return name
+    if isinstance(value, tuple):
+        return f':{name}="{escape(value[0])}"'
+    return f'{name}="{escape(str(value))}"'
+
+
+html = Elements(_html)
+v3 = Elements(_vuetify)
