@@ -18,6 +18,7 @@ from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, Outli
 from pvfiblets.engine.effects.ambient_occlusion import MAX_SAMPLES
 from pvfiblets.engine.effects.halos import WIDEST
 from pvfiblets.mappers.extras import Draw
+from pvfiblets.mappers.tubes import normals_to_view
 
 __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
 
@@ -87,7 +88,7 @@ class Ink(_Piece):
 
 @dataclass(frozen=True)
 class AmbientOcclusion(_Piece):
-    """Lines are darker where others stand over them.
+    """Lines and surfaces are darker where others stand over them.
 
     Parameters
     ----------
@@ -126,13 +127,16 @@ class AmbientOcclusion(_Piece):
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
         """Run them."""
         radius = extent(draw) / 20.0 if self.radius is None else self.radius
+        directions = draw.frame.directions_to_view
+        surface = draw.buffer.relief == "normal"
         texture = kept.draw(
             draw.buffer,
             lens_of(draw),
-            draw.frame.directions_to_view,
+            directions,
             radius=radius,
             samples=self.samples,
             strength=self.strength,
+            normals_to_view=normals_to_view(directions) if surface else None,
         )
         return {"fibletOcclusionMap": texture}
 

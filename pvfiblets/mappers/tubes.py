@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pvfiblets.mappers.extras import Draw, Extra
 
-__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "thickened", "thickness_of"]
+__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
 
 
 def thickness_of(extras: Iterable[Extra]) -> float:
@@ -22,6 +23,16 @@ def thickness_of(extras: Iterable[Extra]) -> float:
 def thickened(bounds: Sequence[float], radius: float) -> Sequence[float]:
     """Return bounds (xmin, xmax, ymin, ...) moved outwards."""
     return [bound + side * radius for bound, side in zip(bounds, (-1, 1) * 3, strict=True)]
+
+
+def normals_to_view(directions: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the ``(3, 3)`` cofactors, largest 1, of how directions turn: so a stretched surface keeps its normals."""
+    a, b, c = directions.T
+    turned = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)]).T
+    if np.linalg.det(directions) < 0.0:
+        turned = -turned
+    scaled: npt.NDArray[np.float64] = turned / (np.abs(turned).max() or 1.0)
+    return scaled
 
 
 class _Blank:
@@ -95,12 +106,8 @@ class SurfaceNormals:
         return {"fibletNormalMap": draw.buffer.across}
 
     def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002
-        """Set how normals turn with the actor: by the cofactors, so that a stretched tube keeps its normals."""
-        a, b, c = draw.frame.directions_to_view.T
-        turned = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)]).T
-        if np.linalg.det(draw.frame.directions_to_view) < 0.0:
-            turned = -turned
-        turned /= np.abs(turned).max() or 1.0
+        """Set how normals turn with the actor."""
+        turned = normals_to_view(draw.frame.directions_to_view)
         program.SetUniformMatrix3x3("fibletNormalToView", turned.T.ravel().tolist())
 
 

@@ -196,7 +196,7 @@ class LineRenderer:
         self.draws += 1
         self._key = key
         depth, ids, position = self._target.color_attachments
-        self._gbuffer = SimpleNamespace(depth=depth, ids=ids, position=position, generation=self.draws)
+        self._gbuffer = SimpleNamespace(depth=depth, ids=ids, position=position, relief=None, generation=self.draws)
         return self._gbuffer
 
     def explain(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Ambient occlusion of lines in screen space: ``shaders/effects/occlusion.frag`` and its mean over 4 x 4 pixels."""
+"""Ambient occlusion in screen space: ``shaders/effects/occlusion.frag`` and its mean over 4 x 4 pixels."""
 
 from __future__ import annotations
 
@@ -41,13 +41,14 @@ class AmbientOcclusionPass(ScreenEffect):
         radius: float,
         samples: int,
         strength: float,
+        normals_to_view: npt.NDArray[np.float64] | None = None,
     ) -> moderngl.Texture:
         """Bring the texture up to date.
 
         Parameters
         ----------
         buffer : GBuffer
-            Its ``depth`` and ``ids`` are read.
+            Its ``depth`` is read, and its ``ids``, or of surfaces ``across``.
         lens : Lens
             Of the same picture.
         directions_to_view : numpy.ndarray
@@ -58,6 +59,9 @@ class AmbientOcclusionPass(ScreenEffect):
             Pixels to look at around each, 1 to `MAX_SAMPLES`.
         strength : float
             0 leaves everything open, 1 is the whole effect.
+        normals_to_view : numpy.ndarray, optional
+            ``(3, 3)``: normals in data coordinates to view coordinates, of any scale. With it the picture is one of
+            surfaces, whose normals are in ``across``; else they are those nearest to the viewer of lines.
 
         Returns
         -------
@@ -72,14 +76,19 @@ class AmbientOcclusionPass(ScreenEffect):
             "samples": samples,
             "strength": strength,
         }
+        textures, features = {"keys": buffer.depth, "ids": buffer.ids}, []
+        if normals_to_view is not None:
+            textures, features = {"keys": buffer.depth, "normals": buffer.across}, ["SURFACE_NORMALS"]
+            turn = tuple(np.asarray(normals_to_view, np.float64).T.ravel().tolist())
+            uniforms["normals_to_view"] = turn
         texture = self._target("occlusion", lens.size, "f1")
         self._target("rough occlusion", lens.size, "f1")
         rough = self._targets["rough occlusion"][0]
 
         def passes() -> None:
-            self._pass("occlusion", "rough occlusion", {"keys": buffer.depth, "ids": buffer.ids}, uniforms)
+            self._pass("occlusion", "rough occlusion", textures, uniforms, features)
             self._pass("smooth", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
 
-        made_of = buffer, buffer.generation, lens.key, turn, radius, samples, strength
+        made_of = buffer, buffer.generation, lens.key, *features, turn, radius, samples, strength
         self._once(made_of, passes)
         return texture

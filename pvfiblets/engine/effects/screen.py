@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import moderngl
@@ -62,9 +62,16 @@ class ScreenEffect:
         self._targets[name] = texture, self._ctx.framebuffer([texture])
         return texture
 
-    def _pass(self, name: str, target: str, textures: Mapping[str, Any], uniforms: Mapping[str, Any]) -> None:
+    def _pass(
+        self,
+        name: str,
+        target: str,
+        textures: Mapping[str, Any],
+        uniforms: Mapping[str, Any],
+        features: Sequence[str] = (),
+    ) -> None:
         """Run the fragment stage of ``shaders/effects`` on every pixel of a target."""
-        program, array = self._programs.screen(f"effects/{name}.frag")
+        program, array = self._programs.screen(f"effects/{name}.frag", features)
         for unit, (sampler, texture) in enumerate(textures.items(), start=FIRST_UNIT):
             texture.use(unit)
             program[sampler] = unit
