@@ -10,8 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from volume_measure import Measured, nudged
 from volume_scene import circle, look_of, make_data
-from volume_ways import Measured, Plotter, nudged
+from volume_ways import Plotter
 
 PAPER = {
     "dof": {"static": (15.70, 16.15), "circle": (14.25, 14.63)},

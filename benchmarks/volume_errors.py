@@ -23,8 +23,9 @@ from orbit import card_slug, context, machine, write
 from tube_reference import Camera
 from volume_effects import DIFFERS, differing
 from volume_errors_told import plot, table
+from volume_measure import Measured, nudged
 from volume_scene import FOLDER, MODES, Look, Truth, circle, known_data, look_of, make_data, truth
-from volume_ways import Measured, colours_of, nudged
+from volume_ways import colours_of
 
 from pvfiblets.engine import View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle

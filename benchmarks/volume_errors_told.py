@@ -15,12 +15,12 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         f"# Error against run time of ray-cast volumes on {about['card']}",
         "",
         f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}; the engine without VTK, "
-        f"two pictures of {about['size']}×{about['size']}. *rms*: of colours from 0 to 1 against rays in float64, which "
-        "know no steps, of pixels whose rays meet the volume. *place*: mean distance along the ray from where the "
-        "surface is, in voxels, what is missed or false counted as one voxel; *median* and *p99* of the others; *missed*, "
-        "*false*: over the surface's pixels. *CPU*: milliseconds of all threads, median; *ms*: by the clock, 10th to "
-        f"90th percentile in brackets. *differing*: pixels off the default's by more than {about['differs']} of 255. "
-        "**Bold**: nothing with the same filter beats it in both CPU time and error.",
+        f"two pictures of {about['size']}×{about['size']}. *rms*: of colours from 0 to 1 against rays in float64, "
+        "which know no steps, of pixels whose rays meet the volume. *place*: mean distance along the ray from where "
+        "the surface is, in voxels, what is missed or false counted as one voxel; *median* and *p99* of the others; "
+        "*missed*, *false*: over the surface's pixels. *CPU*: milliseconds of all threads, median; *ms*: by the clock, "
+        "10th to 90th percentile in brackets. *differing*: pixels off the default's by more than "
+        f"{about['differs']} of 255. **Bold**: nothing with the same filter beats it in both CPU time and error.",
     ]
     for data, mode in dict.fromkeys((row["data"], row["mode"]) for row in results):
         surface = mode == "isosurface"

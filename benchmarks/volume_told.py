@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import volume_effects
-from volume_ways import ABOUT, BYTES, EQUAL
+from volume_measure import BYTES
+from volume_ways import ABOUT, EQUAL
 
 SURFACES = 3.0
 """The goal: so many times as fast as VTK's GPU mapper with surfaces of sparse data, and faster in all else."""
@@ -15,8 +16,8 @@ SPARSE = {"speed_up": 1.8, "differing": 0.01}
 """The goals of sparse casting in a moving view."""
 
 VIEWS = ("circle", "static")
-COLUMNS = ("mode", "way", "step", "error", "circle ms", "CPU", "static ms", "CPU", "bytes", "build ms", "CPU", "skipped",
-           "octree")  # fmt: skip
+COLUMNS = ("mode", "way", "step", "error", "circle ms", "CPU", "static ms", "CPU", "bytes", "build ms", "CPU",
+           "skipped", "octree")  # fmt: skip
 
 
 def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
@@ -30,10 +31,10 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         "surface for all; data of 16 bits.",
         "",
         "*error*: root mean square of colours from 0 to 1 against rays in float64, of pixels whose rays meet the "
-        f"volume; bytes alone cost {BYTES:.4f}. *ms*: median of the frames by the clock, 10th to 90th percentile in brackets; "
-        "*CPU*: the processor's time of all threads. *bytes*: all that the context holds, pictures of the static view "
-        "included. *build*: until the first picture is there, without drawing it, from voxels in memory. *skipped*: "
-        "of the octree's leaves; *octree*: its bytes over the voxels'.",
+        f"volume; bytes alone cost {BYTES:.4f}. *ms*: median of the frames by the clock, 10th to 90th percentile in "
+        "brackets; *CPU*: the processor's time of all threads. *bytes*: all that the context holds, pictures of the "
+        "static view included. *build*: until the first picture is there, without drawing it, from voxels in memory. "
+        "*skipped*: of the octree's leaves; *octree*: its bytes over the voxels'.",
         "",
         *(f"- *{way}*: {text}." for way, text in ABOUT.items()),
     ]
@@ -166,7 +167,7 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
     marks = {way: axes[0][0].plot([], [], "o", color=f"C{colour}")[0] for colour, way in enumerate(ABOUT)}
     figure.legend(marks.values(), marks, loc="outside lower center", ncols=3, fontsize="small")
     card, size, still = about["card"].split("(")[0].strip(), about["size"], about["still"]
-    figure.suptitle(f"{card}; filled: circling {size}×{size},\nopen: static {still}×{still}; dotted: the error to keep to",
-                    size="medium")  # fmt: skip
+    title = f"{card}; filled: circling {size}×{size},\nopen: static {still}×{still}; dotted: the error to keep to"
+    figure.suptitle(title, size="medium")
     figure.savefig(path, dpi=110)
     plt.close(figure)
