@@ -172,11 +172,8 @@ def right_openness(volume, values, matrix, pixels, radius, *, filter="trilinear"
     ahead = np.cross(normal, right)
     u, v = (side.ravel() for side in np.meshgrid(*[(np.arange(n) + 0.5) / n] * 2))
     flat = np.sqrt(u) * np.stack([np.cos(2 * np.pi * v), np.sin(2 * np.pi * v)])
-    ways = (
-        right[:, None] * flat[0][:, None]
-        + ahead[:, None] * flat[1][:, None]
-        + normal[:, None] * np.sqrt(1 - u)[:, None]
-    )
+    flat, up = flat[..., None], np.sqrt(1 - u)[:, None]
+    ways = right[:, None] * flat[0] + ahead[:, None] * flat[1] + normal[:, None] * up
     origins = np.broadcast_to(start[:, None], ways.shape)
     low, high = np.zeros(3), np.array(volume.shape) - 1.0
     if box is not None:
