@@ -1,4 +1,4 @@
-# One command each: `make demo`, `make test`, `make lint`, `make fuzz`, `make bench`.
+# One command each: `make demo`, `make serve`, `make test`, `make lint`, `make fuzz`, `make bench`.
 # A new machine needs only make and Python >= 3.11 with its venv module.
 
 PYTHON ?= python3
@@ -8,13 +8,16 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo test lint fuzz bench docs wheel environment gl shaders clean
+.PHONY: demo serve test lint fuzz bench docs wheel environment gl shaders browser clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
 
+serve: demo
+	$(BIN)/pvfiblets serve $(DEMO)/*.fiblets --root $(DEMO)
+
 test: export LEAST = 4.3
-test: environment gl shaders lint
+test: environment gl shaders browser lint
 	$(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile
 
 lint: environment
@@ -45,6 +48,9 @@ $(READY): pyproject.toml scripts/environment.sh
 
 gl: environment
 	@PYTHON=$(BIN)/python scripts/gl_libraries.sh
+
+browser:
+	@scripts/browser.sh
 
 shaders:
 	@scripts/shader_tools.sh

@@ -192,7 +192,7 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         "--token",
         default="auto",
         metavar="auto|TEXT|none",
-        help="what a browser must show (default: auto, made and printed); none only where other machines cannot connect",
+        help="what a browser must show (default: auto, made and printed); none only where nobody else can connect",
     )
     add("--shared", action="store_true", help="all browsers see and steer the same view")
     add("--limit", type=count, default=8, metavar="N", help="sessions at once (default: %(default)s)")
@@ -203,7 +203,7 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="how long a session waits for its browser to come back (default: 300)",
     )
-    add("--upload", type=int, default=2048, metavar="MB", help="greatest size of an upload; 0: none (default: %(default)s)")
+    add("--upload", type=int, default=2048, metavar="MB", help="most in one upload (default: %(default)s)")
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
     add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
     add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")

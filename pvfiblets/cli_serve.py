@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 from typing import Any
@@ -52,7 +53,7 @@ def serve(
         origins=origin,
     ).checked()
     try:
-        import trame_rca.widgets.rca
+        import trame_rca  # noqa: F401
         import trame_vuetify  # noqa: F401
     except ImportError as error:
         raise FibletsError(f"{error}; `pvfiblets serve` needs the web extra: pip install 'pvfiblets[web]'") from error
@@ -71,7 +72,9 @@ def _run(options: Any) -> int:
     def ready(gate: server.Gate) -> None:
         print(f"Open {gate.url}", flush=True)
         if options.on_loopback:
-            print(f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address.")
+            print(
+                f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address."
+            )
         print("Stop with Ctrl+C.", flush=True)
 
     async def main() -> None:
@@ -84,8 +87,6 @@ def _run(options: Any) -> int:
                 break
         await server.serve(options, ready)
 
-    try:
+    with contextlib.suppress(asyncio.CancelledError, KeyboardInterrupt):
         asyncio.run(main())
-    except (asyncio.CancelledError, KeyboardInterrupt):
-        pass
     return 0

@@ -74,12 +74,10 @@ class Explorer(TrameApp):
         self.filtering = FilterActions(self, self._charts)
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
-        self.server.enable_module(
-            {"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/pvfiblets.js"]}
-        )
+        self.server.enable_module({"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/pvfiblets.js"]})
         self._register_keys()
         self.ui = layout.build(self)
-        self.scene.watch(lambda change: self.refresh())
+        self.scene.watch(lambda _: self.refresh())
         self.state.change("tab")(lambda tab, **_: self._show_info() if tab == "info" else None)
         self.refresh()
         self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())

@@ -33,7 +33,7 @@ POINTER = (
 def build(app: Any) -> None:
     """Build all of them."""
     _files(app)
-    _sessions(app)
+    _sessions()
     _script()
     _help()
     _rename(app)
@@ -92,7 +92,7 @@ def _files(app: Any) -> None:
             html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
 
 
-def _sessions(app: Any) -> None:
+def _sessions() -> None:
     with _dialog("session", "Session", 460):
         with v3.VCardText():
             html.Div("A session file keeps layers, camera, cuts, filters and selections; the data stays where it is.",

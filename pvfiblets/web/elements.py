@@ -35,13 +35,15 @@ class Elements:
         kind = getattr(self._module, name)
 
         def make(*children: Any, **attributes: Any) -> Any:
-            raw = []
-            for key in list(attributes):
-                if key.startswith(PASSED_ON) or key in PLAIN:
-                    raw.append(written(key, attributes.pop(key)))
-            return kind(*children, raw_attrs=raw, **attributes) if raw else kind(*children, **attributes)
+            rest = {key: value for key, value in attributes.items() if not _passed_on(key)}
+            raw = [written(key, value) for key, value in attributes.items() if _passed_on(key)]
+            return kind(*children, raw_attrs=raw, **rest)
 
         return make
+
+
+def _passed_on(name: str) -> bool:
+    return name.startswith(PASSED_ON) or name in PLAIN
 
 
 def written(name: str, value: Any) -> str:

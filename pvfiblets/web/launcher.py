@@ -16,7 +16,7 @@ import secrets
 import sys
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from pvfiblets.web.options import Options
@@ -26,6 +26,7 @@ logger = logging.getLogger("pvfiblets.web")
 GRACE = 5.0  # seconds that a process has to end by itself
 START = 600.0  # seconds to open the files it was started with
 SHARED = "shared"
+WORKER = (sys.executable, "-m", "pvfiblets.web.worker")
 
 
 @dataclass
@@ -70,13 +71,16 @@ class Launcher:
     ----------
     options : Options
         The limit, the timeout and what a session opens with.
-    on_end : callable, optional
+    on_end : callable
         Called with a session that has ended, however it did.
+    command : sequence of str, optional
+        What a session's process runs.
     """
 
-    def __init__(self, options: Options, on_end: Callable[[Session], None] = lambda session: None) -> None:
+    def __init__(self, options: Options, on_end: Callable[[Session], None], command: Sequence[str] = WORKER) -> None:
         self._options = options
         self._on_end = on_end
+        self._command = tuple(command)
         self.sessions: dict[str, Session] = {}
         self._failed: deque[Session] = deque(maxlen=32)
         self._spare: Session | None = None
@@ -120,9 +124,7 @@ class Launcher:
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
         process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "pvfiblets.web.worker",
+            *self._command,
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,
@@ -205,18 +207,19 @@ class Launcher:
         await asyncio.gather(*session.tasks, return_exceptions=True)
 
     async def _reap(self) -> None:
-        """End sessions whose browser has not come back."""
-        pause = min(5.0, self._options.timeout / 4)
         while True:
-            await asyncio.sleep(pause)
-            now = time.monotonic()
-            for session in list(self.sessions.values()):
-                idle = now - session.seen
-                if session is self._spare or session.connections or session.ended:
-                    continue
-                if idle > self._options.timeout:
-                    logger.info("session %s: no browser for %.0f s", session.short, idle)
-                    await self.end(session)
+            await asyncio.sleep(min(5.0, self._options.timeout / 4))
+            await self.end_idle()
+
+    async def end_idle(self) -> None:
+        """End sessions whose browser has not come back in time."""
+        now = time.monotonic()
+        for session in list(self.sessions.values()):
+            if session is self._spare or session.connections or session.ended:
+                continue
+            if (idle := now - session.seen) > self._options.timeout:
+                logger.info("session %s: no browser for %.0f s", session.short, idle)
+                await self.end(session)
 
     async def stop(self) -> None:
         """End all sessions."""

@@ -49,7 +49,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-pair { display: flex; gap: 6px; align-items: center; min-width: 0 }
 .pv-chart svg { width: 100%; height: 36px; display: block }
 .pv-small { font-size: 12px; opacity: .75 }
-.pv-code { white-space: pre; overflow: auto; font: 12px/1.45 "DejaVu Sans Mono", monospace; max-height: 60vh; padding: 12px;
+.pv-code { white-space: pre; overflow: auto;
+  font: 12px/1.45 "DejaVu Sans Mono", monospace; max-height: 60vh; padding: 12px;
   background: rgba(128,128,128,.12); border-radius: 6px; user-select: text }
 .pv-table { width: 100%; border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums }
 .pv-table th { text-align: right; font-weight: 500; opacity: .7; padding: 3px 6px; position: sticky; top: 0 }
@@ -130,7 +131,14 @@ def _bar(app: Any) -> None:
 def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None:
     if name is not None:
         rest["data_action"] = name
-    with v3.VBtn(icon=True, size="small", density="comfortable", variant="text", aria_label=hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", ""), **rest):
+    with v3.VBtn(
+        icon=True,
+        size="small",
+        density="comfortable",
+        variant="text",
+        aria_label=hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", ""),
+        **rest,
+    ):
         v3.VIcon(icon, size=20)
         v3.VTooltip(hint, activator="parent", location="bottom")
 
@@ -138,7 +146,10 @@ def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None
 def _view(app: Any) -> None:
     with html.Div(classes="pv-view", id="pv-view"):
         area = rca.RemoteControlledArea(
-            name=VIEW, display="image", event_throttle_ms=20, image_style=("({width: '100%', height: '100%'})",),
+            name=VIEW,
+            display="image",
+            event_throttle_ms=20,
+            image_style=("({width: '100%', height: '100%'})",),
             style="position: absolute; inset: 0; width: 100%; height: 100%",
         )
         area.add_view_handler(app.stream)

@@ -91,7 +91,9 @@ class Options:
         if self.token is not None and len(self.token) < SHORTEST_TOKEN:
             raise ValueError(f"--token: at least {SHORTEST_TOKEN} characters are needed; --token auto makes one")
         if not Path(self.root).is_dir():
-            raise NotADirectoryError(20, "not a folder; --root names the one that browsers may open files from", self.root)
+            raise NotADirectoryError(
+                20, "not a folder; --root names the one that browsers may open files from", self.root
+            )
         for path in (*self.files, *self.volume, *self.mesh):
             if not Path(path).is_file():
                 raise FileNotFoundError(2, "No such file", path)

@@ -35,8 +35,8 @@ def ask_token(wrong: bool) -> str:
     hint = "<p><strong>That is not the token.</strong></p>" if wrong else ""
     return page(
         "A token is needed",
-        f"{hint}<p>Whoever started this server was shown an address with a token in it. Open that address, or enter the "
-        'token here.</p><form method="post" action="/token"><input name="token" type="password" autofocus '
+        f"{hint}<p>Whoever started this server was shown an address with a token in it. Open that address, or enter "
+        'the token here.</p><form method="post" action="/token"><input name="token" type="password" autofocus '
         'autocomplete="off" aria-label="Token"><button>Open</button></form>',
     )
 

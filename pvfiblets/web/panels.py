@@ -44,7 +44,9 @@ def layers(app: Any) -> None:
                         with v3.VMenu(activator="parent"):
                             with v3.VList(density="compact"):
                                 v3.VListItem(
-                                    title="Rename", prepend_icon="mdi-pencil-outline", click=(app.ask_name, "[layer.id]")
+                                    title="Rename",
+                                    prepend_icon="mdi-pencil-outline",
+                                    click=(app.ask_name, "[layer.id]"),
                                 )
                                 v3.VListItem(
                                     title="Duplicate",
@@ -69,9 +71,7 @@ def properties(app: Any) -> None:
         with html.Div(v_for="group in groups", key="chosen + group.title"):
             html.Div("{{ group.title }}", classes="pv-head")
             with html.Div(v_for="p in group.properties", key="p.name", data_property=("p.name",)):
-                html.Div(
-                    v_if="p.name === 'clim' && range_chart", v_html=("range_chart",), classes="pv-chart px-3 mx-2"
-                )
+                html.Div(v_if="p.name === 'clim' && range_chart", v_html=("range_chart",), classes="pv-chart px-3 mx-2")
                 with html.Div(classes="pv-row", v_if="p.matters"):
                     html.Label("{{ p.label }}", title=("p.help",))
                     with html.Div(classes="pv-pair"):

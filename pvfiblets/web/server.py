@@ -11,15 +11,16 @@ import asyncio
 import logging
 import secrets
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from urllib.parse import urlencode
 
 import aiohttp
 from aiohttp import web
+from yarl import URL
 
 from pvfiblets.web import pages
 from pvfiblets.web.access import LARGEST_MESSAGE, Access, RefusedError, check_message
-from pvfiblets.web.launcher import SHARED, Launcher, Session
+from pvfiblets.web.launcher import SHARED, WORKER, Launcher, Session
 from pvfiblets.web.options import Options
 
 logger = logging.getLogger("pvfiblets.web")
@@ -52,12 +53,14 @@ class Gate:
     ----------
     options : Options
         Checked options.
+    command : sequence of str, optional
+        What a session's process runs.
     """
 
-    def __init__(self, options: Options) -> None:
+    def __init__(self, options: Options, command: Sequence[str] = WORKER) -> None:
         self.options = options
         self.access = Access(options, secrets.token_bytes(32))
-        self.launcher = Launcher(options, self._on_end)
+        self.launcher = Launcher(options, self._on_end, command)
         self._sockets: dict[str, set[web.WebSocketResponse]] = {}
         self._closing: set[asyncio.Task[object]] = set()
         self._client: aiohttp.ClientSession | None = None
@@ -93,7 +96,7 @@ class Gate:
     def url(self) -> str:
         """The address to open, with the token if one is asked for."""
         host = self.options.host
-        shown = f"[{host}]" if ":" in host else {"0.0.0.0": "localhost", "::": "localhost"}.get(host, host)  # noqa: S104
+        shown = f"[{host}]" if ":" in host else {"0.0.0.0": "localhost", "::": "localhost"}.get(host, host)
         query = "" if self.options.token is None else "?" + urlencode({"token": self.options.token})
         return f"http://{shown}:{self.port}/{query}"
 
@@ -248,10 +251,16 @@ class Gate:
         address = f"http://127.0.0.1:{session.port}{request.raw_path}"
         try:
             async with self._client.request(
-                request.method, aiohttp.client.URL(address, encoded=True), headers=headers, data=body, allow_redirects=False
+                request.method, URL(address, encoded=True), headers=headers, data=body, allow_redirects=False
             ) as answer:
                 response = web.StreamResponse(status=answer.status, headers=HEADERS)
-                for name in ("Content-Type", "Content-Encoding", "Content-Length", "Content-Disposition", "Content-Range"):
+                for name in (
+                    "Content-Type",
+                    "Content-Encoding",
+                    "Content-Length",
+                    "Content-Disposition",
+                    "Content-Range",
+                ):
                     if name in answer.headers:
                         response.headers[name] = answer.headers[name]
                 if request.path.startswith("/__") and answer.status == 200:  # libraries; their folders carry versions

@@ -60,7 +60,7 @@ class PictureStream:
         moving: int = 50,
         still: int = 92,
         pending: Callable[[], int] = lambda: 0,
-        failed: Callable[[Exception], None] = lambda error: None,
+        failed: Callable[[Exception], None] = lambda _: None,
         drawn: Callable[[], None] = lambda: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
@@ -202,7 +202,7 @@ class PictureStream:
             try:
                 pixels = self._draw()
                 self._after()
-            except Exception as error:  # noqa: BLE001 - whatever failed to draw, the page must go on
+            except Exception as error:
                 logger.exception("drawing failed")
                 self._failed(error)
                 continue

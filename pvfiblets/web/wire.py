@@ -34,6 +34,10 @@ KEYS = frozenset({"keyPress", "keyDown", "keyUp", "KeyPress", "KeyDown", "KeyUp"
 LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", "client_unmounting"})
 
 
+Check = Callable[..., list[Any] | None]
+"""From what was sent to the arguments of a method; ``None``: there is nothing to do."""
+
+
 class MalformedError(ValueError):
     """A message that no page of this application sends."""
 
@@ -108,6 +112,13 @@ def view_size(size: object) -> tuple[int, int, float]:
     return max(width, 16), max(height, 16), number(size.get("p", 1.0), 0.1, 8.0)
 
 
+def sentence(error: BaseException) -> str:
+    """Return an error as users read it."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror  # without the server's path
+    return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__
+
+
 class Doors:
     """Stands between wslink's messages and what they call.
 
@@ -130,7 +141,7 @@ class Doors:
 
     def guard(self, functions: dict[str, tuple[Any, Callable[..., Any]]]) -> None:
         """Replace a handler's table of methods by one of checked ones; others are gone."""
-        checks = {
+        checks: dict[str, Check] = {
             "trame.state.get": self._nothing,
             "trame.state.update": self._state,
             "trame.trigger": self._trigger,
@@ -150,14 +161,15 @@ class Doors:
         functions.update(kept)
         functions["application.exit.later"] = (None, lambda *_: None)
 
-    def _checked(self, name: str, check: Callable[..., list[Any] | None], function: Callable[..., Any]) -> Callable[..., Any]:
+    def _checked(self, name: str, check: Check, function: Callable[..., Any]) -> Callable[..., Any]:
         async def call(target: Any, *arguments: Any, **named: Any) -> Any:
             try:
                 if named:
                     raise MalformedError("named arguments")
                 checked = check(*arguments)
             except (MalformedError, TypeError) as error:
-                logger.warning("refused a call of %s: %s", name, error if isinstance(error, MalformedError) else "wrong arguments")
+                reason = error if isinstance(error, MalformedError) else "wrong arguments"
+                logger.warning("refused a call of %s: %s", name, reason)
                 return None
             if checked is None:
                 return None
@@ -165,9 +177,9 @@ class Doors:
                 result = function(target, *checked)
                 if inspect.isawaitable(result):
                     result = await result
-            except Exception as error:  # noqa: BLE001 - the browser is told a sentence; the traceback is for the log
+            except Exception as error:
                 logger.exception("%s failed", name)
-                self._complain(f"{type(error).__name__}: {error}")
+                self._complain(sentence(error))
                 return None
             return result
 

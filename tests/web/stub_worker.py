@@ -1,0 +1,49 @@
+"""A session's process that draws nothing: it answers as a worker does, so that the gate is tested without OpenGL."""
+
+import asyncio
+import json
+import os
+import sys
+from pathlib import Path
+
+from aiohttp import web
+
+from pvfiblets.web.worker import key_check
+
+
+async def page(request):
+    if request.path == "/crash":
+        os._exit(3)
+    return web.json_response({"pid": os.getpid(), "path": request.raw_path, "cookie": request.headers.get("Cookie")})
+
+
+async def upload(request):
+    return web.Response(text=str(len(await request.read())))
+
+
+async def socket(request):
+    found = web.WebSocketResponse(max_msg_size=0)
+    await found.prepare(request)
+    async for message in found:
+        await found.send_bytes(message.data)
+    return found
+
+
+async def main(told):
+    if (failure := Path(told["options"]["root"]) / "fail").exists():
+        print(json.dumps({"failure": failure.read_text()}), flush=True)
+        sys.exit(1)
+    app = web.Application(middlewares=[key_check(told["key"])], client_max_size=2**30)
+    app.router.add_get("/ws", socket)
+    app.router.add_post("/upload", upload)
+    app.router.add_get("/{path:.*}", page)
+    runner = web.AppRunner(app)
+    await runner.setup()
+    await web.TCPSite(runner, "127.0.0.1", 0).start()
+    print(json.dumps({"port": runner.addresses[0][1]}), flush=True)
+    await asyncio.to_thread(sys.stdin.read)
+    await runner.cleanup()
+
+
+if __name__ == "__main__":
+    asyncio.run(main(json.loads(sys.stdin.readline())))

@@ -1,0 +1,335 @@
+"""The gate, by real HTTP and WebSocket clients; the sessions behind it draw nothing (stub_worker.py)."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+import aiohttp
+import pytest
+
+from pvfiblets.web.access import LARGEST_MESSAGE
+from pvfiblets.web.options import Options
+from pvfiblets.web.server import Gate
+
+TOKEN = "correct-horse-battery"
+STUB = (sys.executable, str(Path(__file__).with_name("stub_worker.py")))
+
+
+@contextlib.asynccontextmanager
+async def gate(tmp_path, **options):
+    found = Gate(Options(port=0, root=str(tmp_path), **{"token": TOKEN} | options), STUB)
+    try:
+        await found.start()
+        yield found
+    finally:
+        await found.stop()
+
+
+class Browser:
+    """A client with cookies of its own."""
+
+    def __init__(self, gate):
+        self.gate = gate
+        self.base = f"http://127.0.0.1:{gate.port}"
+        self.http = aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True))
+
+    async def __aenter__(self):
+        return self
+
+    async def __aexit__(self, *_):
+        await self.http.close()
+
+    async def get(self, path, **more):
+        async with self.http.get(aiohttp.client.URL(self.base + path, encoded=True), **more) as answer:
+            return answer.status, await answer.text()
+
+    async def post(self, path, origin=None, **more):
+        headers = {"Origin": self.base if origin is None else origin} | more.pop("headers", {})
+        async with self.http.post(self.base + path, headers=headers, **more) as answer:
+            return answer.status, await answer.text()
+
+    async def enter(self):
+        """Show the token and wait for the session's page."""
+        await self.get(f"/?token={TOKEN}")
+        for _ in range(200):
+            status, text = await self.get("/")
+            if text.startswith("{"):
+                return await self.pid()
+            assert status == 200, text
+            await asyncio.sleep(0.05)
+        raise AssertionError("the session did not start")
+
+    async def pid(self):
+        async with self.http.get(self.base + "/index.html") as answer:
+            return (await answer.json())["pid"]
+
+    def socket(self, origin=None):
+        return self.http.ws_connect(self.base + "/ws", origin=self.base if origin is None else origin, max_msg_size=0)
+
+
+def message(content, total=None):
+    return b"id__" + bytes(4) + (len(content) if total is None else total).to_bytes(4, "little") + content
+
+
+def run(coroutine):
+    return asyncio.run(asyncio.wait_for(coroutine, 60))
+
+
+def alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return Path(f"/proc/{pid}/stat").read_text().split()[2] != "Z" if Path("/proc").is_dir() else True
+
+
+async def gone(pid, seconds=10.0):
+    end = time.monotonic() + seconds
+    while alive(pid):
+        assert time.monotonic() < end, f"process {pid} is still there"
+        await asyncio.sleep(0.05)
+
+
+def test_nothing_is_shown_without_the_token(tmp_path, caplog):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            for path in ("/", "/index.html", "/anything", "/download/x", f"/?token={TOKEN}x", "/?token="):
+                status, text = await browser.get(path)
+                assert status == 401
+                assert "token" in text
+                assert TOKEN not in text
+            with pytest.raises(aiohttp.WSServerHandshakeError, match="401"):
+                async with browser.socket():
+                    pass
+            status, text = await browser.post("/token", data={"token": "wrong-wrong"})
+            assert status == 401
+            assert "not the token" in text
+
+    run(test())
+    assert caplog.text.count("refused") == 8
+    assert TOKEN not in caplog.text
+    assert "wrong-wrong" not in caplog.text
+
+
+def test_the_token_opens_a_session_and_leaves_the_address(tmp_path):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            assert server.url == f"http://127.0.0.1:{server.port}/?token={TOKEN}"
+            async with browser.http.get(server.url, allow_redirects=False) as answer:
+                assert answer.status == 303
+                assert answer.headers["Location"] == "/"
+                cookie = answer.headers["Set-Cookie"]
+                assert TOKEN not in cookie
+                assert "HttpOnly" in cookie
+                assert "SameSite=Lax" in cookie
+            await browser.enter()
+            async with browser.http.get(browser.base + "/index.html") as answer:
+                assert "frame-ancestors" in answer.headers["Content-Security-Policy"]
+                assert answer.headers["X-Content-Type-Options"] == "nosniff"
+                assert (await answer.json())["cookie"] is None  # the process behind has no use for it
+            async with browser.socket() as socket:
+                await socket.send_bytes(message(b"hello"))
+                assert (await socket.receive_bytes()) == message(b"hello")
+            async with Browser(server) as other:  # by the form
+                assert (await other.post("/token", data={"token": f" {TOKEN} "}))[0] == 200
+
+    run(test())
+
+
+def test_foreign_pages_and_names_are_refused(tmp_path, caplog):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            await browser.enter()
+            for origin in ("http://evil.example", "http://127.0.0.1:1", "null"):
+                with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
+                    async with browser.socket(origin):
+                        pass
+                assert (await browser.post("/new", origin))[0] == 403
+                assert (await browser.post("/upload?name=a.trk", origin, data=b"x"))[0] == 403
+            assert (await browser.get("/", headers={"Host": "evil.example"}))[0] == 403
+            async with browser.http.get(browser.base + "/ws") as answer:
+                assert answer.status in (400, 403)
+            async with browser.http.request("DELETE", browser.base + "/") as answer:
+                assert answer.status == 405
+
+    run(test())
+    assert "foreign origin" in caplog.text
+
+
+def test_paths_that_climb_never_reach_a_session(tmp_path):
+    async def raw(port, path, cookies):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookies}\r\nConnection: close\r\n\r\n".encode())
+        answer = await reader.read()
+        writer.close()
+        return answer
+
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            await browser.enter()
+            cookies = "; ".join(f"{cookie.key}={cookie.value}" for cookie in browser.http.cookie_jar)
+            assert b"200 OK" in (await raw(server.port, "/fine", cookies))
+            for path in ("/../../etc/passwd", "/a/%2e%2e/%2e%2e/etc/passwd", "/a/..%2f..%2fetc", "/%252e%252e/x", "/a\\..\\b"):
+                answer = await raw(server.port, path, cookies)
+                assert b" 404 " in answer.partition(b"\r\n")[0]
+                assert b"pid" not in answer
+
+    run(test())
+
+
+@pytest.mark.parametrize("bad", [message(b"x" * LARGEST_MESSAGE), message(b"x", 2**32 - 1), b"short", "text"])
+def test_a_browser_that_sends_too_much_is_cut_off_and_may_come_back(tmp_path, bad):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            pid = await browser.enter()
+            async with browser.socket() as socket:
+                await (socket.send_str(bad) if isinstance(bad, str) else socket.send_bytes(bad))
+                answer = await socket.receive()
+                assert answer.type in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED, aiohttp.WSMsgType.CLOSING)
+            async with browser.socket() as socket:
+                await socket.send_bytes(message(b"again"))
+                assert (await socket.receive_bytes()) == message(b"again")
+            assert (await browser.pid()) == pid
+
+    run(test())
+
+
+def test_uploads_have_a_limit(tmp_path):
+    async def test():
+        async with gate(tmp_path, upload=1000) as server, Browser(server) as browser:
+            await browser.enter()
+            assert await browser.post("/upload?name=a.trk", data=b"x" * 1000) == (200, "1000")
+            assert (await browser.post("/upload?name=a.trk", data=b"x" * 1001))[0] == 413
+
+            async def endless():
+                for _ in range(5):
+                    yield b"x" * 500
+
+            assert (await browser.post("/upload?name=a.trk", data=endless()))[0] == 411  # no length
+
+    run(test())
+
+
+def test_every_browser_has_a_process_of_its_own_and_keeps_it(tmp_path):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as one, Browser(server) as other:
+            first, second = await one.enter(), await other.enter()
+            assert first != second
+            assert (await one.pid(), await other.pid()) == (first, second)
+        await gone(first)  # with the server
+        await gone(second)
+
+    run(test())
+
+
+def test_shared_sessions_are_one_process(tmp_path):
+    async def test():
+        async with gate(tmp_path, shared=True) as server, Browser(server) as one, Browser(server) as other:
+            pid = await one.enter()
+            assert (await other.enter()) == pid
+            await other.post("/end")  # one of them must not end it for all
+            assert (await one.pid()) == pid
+
+    run(test())
+
+
+def test_beyond_the_limit_there_is_a_page_until_a_place_is_free(tmp_path):
+    async def test():
+        async with gate(tmp_path, limit=2) as server, Browser(server) as one, Browser(server) as two, Browser(server) as three:
+            pid = await one.enter()
+            await two.enter()
+            status, text = await three.get(f"/?token={TOKEN}")
+            assert status == 503
+            assert "2 sessions are open" in text
+            assert (await one.post("/end"))[0] == 200
+            await gone(pid)
+            await three.enter()
+
+    run(test())
+
+
+def test_a_failing_session_touches_no_other_and_says_so(tmp_path):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as one, Browser(server) as other:
+            pid, kept = await one.enter(), await other.enter()
+            async with one.socket() as lost, other.socket() as socket:
+                os.kill(pid, signal.SIGKILL)
+                assert (await lost.receive()).type in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED)
+                await socket.send_bytes(message(b"still here"))
+                assert (await socket.receive_bytes()) == message(b"still here")
+            for _ in range(100):
+                status, text = await one.get("/")
+                if status == 410:
+                    break
+                await asyncio.sleep(0.05)
+            assert status == 410
+            assert "ended unexpectedly" in text
+            assert (await other.pid()) == kept
+            await one.post("/new")
+            assert (await one.enter()) not in (pid, kept)
+
+    run(test())
+
+
+def test_a_session_that_cannot_start_says_why(tmp_path):
+    (tmp_path / "fail").write_text("there is no OpenGL <here>")
+
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            for _ in range(100):
+                status, text = await browser.get(f"/?token={TOKEN}")
+                if status == 410:
+                    break
+                await asyncio.sleep(0.05)
+            assert status == 410
+            assert "there is no OpenGL &lt;here&gt;" in text
+
+    run(test())
+
+
+def test_sessions_without_a_browser_end_and_others_wait(tmp_path):
+    async def test():
+        async with gate(tmp_path, timeout=900.0) as server, Browser(server) as left, Browser(server) as stays:
+            pid, kept = await left.enter(), await stays.enter()
+
+            async def pass_time(seconds):
+                for session in server.launcher.sessions.values():
+                    session.seen -= seconds
+                await server.launcher.end_idle()
+
+            async with stays.socket() as socket:
+                async with left.socket():
+                    await pass_time(1000.0)
+                    assert alive(pid)  # connected
+                await asyncio.sleep(0.1)
+                await pass_time(800.0)
+                assert (await left.pid()) == pid  # a reload within the time finds it
+                await pass_time(800.0)
+                await gone(pid)
+                await socket.send_bytes(message(b"mine"))
+                assert (await socket.receive_bytes()) == message(b"mine")
+            assert alive(kept)
+            assert (await left.enter()) != pid  # a new one, without a word
+
+    run(test())
+
+
+def test_nobody_speaks_to_a_session_past_the_gate(tmp_path):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            await browser.enter()
+            (session,) = server.launcher.sessions.values()
+            async with browser.http.get(f"http://127.0.0.1:{session.port}/index.html") as answer:
+                assert answer.status == 403
+            headers = {"X-Pvfiblets-Key": "0" * 64}
+            async with browser.http.get(f"http://127.0.0.1:{session.port}/index.html", headers=headers) as answer:
+                assert answer.status == 403
+            assert session.key not in repr(session)
+
+    run(test())
