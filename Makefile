@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo serve test lint fuzz bench docs wheel environment gl shaders browser clean
+.PHONY: demo serve test lint fuzz bench docs check-wheel wheel environment gl shaders browser clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -36,6 +36,9 @@ bench: environment gl
 docs: environment gl
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+
+check-wheel: environment gl
+	@PYTHON=$(BIN)/python scripts/wheel_check.sh
 
 wheel: environment
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .

@@ -1,0 +1,82 @@
+"""A program of all that a page of the docs says: its commands and its Python, in their order.
+
+``python tests/docs/pages.py PAGE TARGET`` writes it.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+INSTALLS = re.compile(r"\b(sudo|pip|source|make)\b")
+WINDOWS = re.compile(r"^pvfiblets (show|serve)\b")
+
+BRAIN = """
+import pyvista as pv
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
+"""
+
+# What a page takes for granted: the reader's own files and objects.
+GIVEN = {
+    "README.md": BRAIN + """
+pvfiblets.write("brain.trk", brain_streamlines(400, seed=1, fa=True))
+pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
+closed_mesh = pv.Sphere(radius=60)
+centrelines = pv.Spline([(0, 0, 0), (9, 2, 0), (9, 9, 4)], 20)
+centrelines["radius"] = [1.0 + 0.02 * i for i in range(20)]
+ids = [1, 2, 3]
+""",
+    "docs/exploring.md": BRAIN + """
+import numpy as np
+plotter = pv.Plotter(window_size=(900, 700))
+actor = plotter.add_fiblets("brain.trx", per_point=["fa"])
+plotter.show(auto_close=False)
+atlas_array, affine = np.arange(8.0**3).reshape(8, 8, 8).astype(int) % 20, np.diag([20.0, 20.0, 20.0, 1.0])
+triangulated = pv.Sphere(radius=12).triangulate()
+points, triangles = np.asarray(triangulated.points), triangulated.regular_faces
+ids = [1, 2, 3]
+""",
+    "docs/tubes.md": "",
+    "docs/halos.md": "",
+    "docs/tutorial.md": "",
+    "docs/howto.md": BRAIN + """
+pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))
+import nibabel, numpy as np
+pvfiblets.compress_file("big.tck", "brain.fiblets")
+image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
+""",
+}  # fmt: skip
+# A smaller brain, and windows that stay open for what a page says after it has shown them.
+INSTEAD = {
+    "brain_streamlines(20_000, seed=1, fa=True)": "brain_streamlines(400, seed=1, fa=True)",
+    "plotter.show()": "plotter.show(auto_close=False)",
+}
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Return (language, text) of each block of a page that is to be run."""
+    return re.findall(r"^```(python|console|sh)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def program(page: str) -> str:
+    """Return one program of all blocks of a page."""
+    parts = ["import subprocess", GIVEN[page]]
+    for language, text in blocks(ROOT / page):
+        if language != "python":
+            if INSTALLS.search(text):  # of an install only what comes after it
+                text = "\n".join(line for line in text.splitlines() if line.startswith("pvfiblets"))
+            text = "\n".join(line for line in text.splitlines() if not WINDOWS.match(line))  # these wait for someone
+            parts.append(f"subprocess.run(['bash', '-e', '-c', {text!r}], check=True)")
+        else:
+            for told, run in INSTEAD.items():
+                text = text.replace(told, run)
+            parts.append(text)
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    Path(sys.argv[2]).write_text(program(sys.argv[1]))
