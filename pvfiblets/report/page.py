@@ -85,32 +85,32 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
 
 
 def _defaults(study: StudyResult) -> list[str]:
-    """The default on every data set, and what beats it."""
+    """The default on every data set that is drawn, and what beats it."""
     pairs = [pair for pair in study.axes if not pair.series]
     heads = [f"{pair.y_label} / {pair.x_label}" for pair in pairs]
+    shown = [record for record in study.records if record.group]
     label = next(record.label for record in study.records if record.default)
     lines = [
-        f"By default: **{label}**. At each pair of figures: its own two, and the ways that beat it in both.",
+        f"By default: **{label}**. At each pair of figures: its own two, and after a colon the ways that beat it "
+        "in both.",
         "",
         "| data | " + " | ".join(heads) + " |",
         "|---|" + "---|" * len(heads),
     ]
-    for record in study.records:
-        if not record.default:
-            continue
+    for record in (record for record in shown if record.default):
         cells = []
         for pair in pairs:
             x, y = record.value(pair.x), record.value(pair.y)
             scale = 1e9 if pair.x.startswith("times/") else 1.0
             beaten = [
                 other.label
-                for other in study.records
+                for other in shown
                 if (other.data, other.machine) == (record.data, record.machine)
                 and other is not record
                 and other.value(pair.x) < x
                 and other.value(pair.y) < y
             ]
-            cells.append(f"{_number(y)} / {_number(scale * x)}" + (f"; {', '.join(beaten)}" if beaten else ""))
+            cells.append(f"{_number(y)} / {_number(scale * x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
         lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
     return lines
 

@@ -2,7 +2,7 @@
 
 ``report.json`` is what :meth:`Report.to_json` writes: ``format`` (a name and a version), ``about`` (machine, versions,
 seed, date), and ``studies``. Each study has its ``records``, the pairs of figures to be plotted against each other
-(``axes``), and what was ``left_out`` and why. Numbers that are not finite are written as null.
+(``axes``), and what was ``left_out`` and why. Numbers are written with six digits, those that are not finite as null.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ __all__ = ["FORMAT", "Axes", "Figure", "LeftOut", "Record", "Report", "StudyResu
 
 FORMAT = "pvfiblets report 1"
 NAME = "report.json"
+DIGITS = 6
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ class Record:
     @property
     def label(self) -> str:
         """Way and setting."""
-        return f"{self.way}, {self.setting}" if self.setting else self.way
+        return f"{self.way} ({self.setting})" if self.setting else self.way
 
     def value(self, path: str) -> float:
         """Return one number.
@@ -239,8 +240,7 @@ class Report:
         """Write ``report.json`` into a folder, which is made if there is none, and return its path."""
         path = Path(folder) / NAME
         path.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(self.to_json(), indent=1, allow_nan=False, ensure_ascii=False)
-        path.write_text(text + "\n", encoding="utf-8")
+        path.write_text(_text(self.to_json()), encoding="utf-8")
         return path
 
     @classmethod
@@ -262,13 +262,29 @@ class Report:
         return cls.from_json(data, file)
 
 
+def _text(plain: dict[str, Any]) -> str:
+    """JSON with a line for each record: small, and what a new run changed can be seen."""
+
+    def one(value: Any, **rest: Any) -> str:
+        return json.dumps(value, allow_nan=False, ensure_ascii=False, **rest)
+
+    parts = []
+    for study in plain["studies"]:
+        records = ",\n".join(one(record) for record in study["records"])
+        rest = one({name: value for name, value in study.items() if name != "records"})
+        parts.append(f'{rest[:-1]}, "records": [\n{records}\n]}}')
+    studies = ",\n".join(parts)
+    about = one(plain["about"], indent=1)
+    return f'{{"format": {one(plain["format"])},\n"about": {about},\n"studies": [\n{studies}\n]}}\n'
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     if isinstance(value, float):  # NumPy's float64 as well
-        return float(value) if math.isfinite(value) else None
+        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
     return value
 
 

@@ -53,7 +53,7 @@ def test_the_page_says_what_the_numbers_say():
     assert "| tubes | not available | no context |" in text
     assert "![errors](a.png)" in text
     assert "| x.tck | it \\| is bad |" in text
-    assert "| one | 0.5 / 2; rival 1 | 0.5 / 1e+03; rival 2 |" in text
+    assert "| one | 0.5 / 2: rival 1 | 0.5 / 1e+03: rival 2 |" in text
     assert "| **ours** |  | 2 | 0.5 | 1 (0.909–1.11) | 1 |  |" in text
     assert "| rival 1 |  | 1 | 0.25 | 0.5 (0.455–0.556) | 0.5 | size |" in text
     assert "| rival 2 |  | 4 | 0 | 2 (1.82–2.22) | 2 | size, time |" in text

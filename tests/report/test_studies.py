@@ -106,7 +106,7 @@ def test_every_way_is_measured_on_every_set_or_named(of_codec):
     for way in codec.ways(True):
         found = [record for record in records if (record.way, record.setting) == (way.name, way.setting)]
         assert len(found) == 4 or way.name in named
-    assert all(record.default for record in records if record.label == "fiblets, 0.1 steps")
+    assert all(record.default for record in records if record.label == "fiblets (0.1 steps)")
     assert all(record.costs["size"].value > 0.5 for record in records)
     assert all(timing.median > 0.0 for record in records for timing in record.times.values())
 
@@ -201,7 +201,7 @@ def test_the_study_of_decoding_measures_all_ways(monkeypatch):
     assert len(records) == 4 * 24
     assert sum(record.default for record in records) == 4
     by_label = {record.label: record for record in records[:24]}
-    exact = by_label["sequential, float64, quaternions, table"]
+    exact = by_label["sequential, float64 (quaternions, table)"]
     assert exact.errors["max in steps"].value < 1e-10
     assert exact.errors["mean at point 1"].unit == "steps"
 

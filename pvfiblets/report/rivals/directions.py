@@ -23,11 +23,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.codec.jit import kernel, parallel_kernel
+from pvfiblets.codec.jit import kernel
 
 from ..measure import median_step
 from . import COUNT_BYTES
@@ -123,10 +122,10 @@ def widest_turn(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]
     return float(_widest(points, offsets))
 
 
-@parallel_kernel
+@kernel
 def _widest(points: Any, offsets: Any) -> float:
-    widest = np.zeros(max(len(offsets) - 1, 1))
-    for s in numba.prange(len(offsets) - 1):
+    widest = 0.0
+    for s in range(len(offsets) - 1):
         for i in range(offsets[s] + 2, offsets[s + 1]):
             ax = np.float64(points[i - 1, 0]) - np.float64(points[i - 2, 0])
             ay = np.float64(points[i - 1, 1]) - np.float64(points[i - 2, 1])
@@ -136,8 +135,8 @@ def _widest(points: Any, offsets: Any) -> float:
             bz = np.float64(points[i, 2]) - np.float64(points[i - 1, 2])
             cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
             turn = math.atan2(math.sqrt(cx * cx + cy * cy + cz * cz), ax * bx + ay * by + az * bz)
-            widest[s] = max(widest[s], turn)
-    return widest.max()
+            widest = max(widest, turn)
+    return widest
 
 
 @kernel
@@ -201,11 +200,11 @@ def _first_frame(firsts: Any, s: int, propagated: bool) -> Any:
     return dx, dy, dz, ax, ay, az, bx, by, bz
 
 
-@parallel_kernel
+@kernel
 def encode(points: Any, firsts: Any, starts: Any, how: Any, codes: Any) -> None:
     """Write a code for every point but the first two of each piece; codes stand where points do."""
     step, ratio, levels, spread, limit, propagated = how
-    for s in numba.prange(len(starts) - 1):
+    for s in range(len(starts) - 1):
         frame = _first_frame(firsts, s, propagated)
         px, py, pz = firsts[s, 1, 0], firsts[s, 1, 1], firsts[s, 1, 2]
         for i in range(starts[s] + 2, starts[s + 1]):
@@ -247,11 +246,11 @@ def _local(u: int, v: int, how: Any) -> Any:
     return to_cap(x, y, z, ratio, spread)
 
 
-@parallel_kernel
+@kernel
 def decode(firsts: Any, codes: Any, starts: Any, how: Any, points: Any) -> None:
     """Write all points, ``(n, 3)`` float64."""
     step, levels, propagated = how[0], how[2], how[5]
-    for s in numba.prange(len(starts) - 1):
+    for s in range(len(starts) - 1):
         a, b = starts[s], starts[s + 1]
         for i in range(a, min(a + 2, b)):
             for axis in range(3):
