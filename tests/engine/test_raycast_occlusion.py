@@ -40,7 +40,7 @@ def occluded(gl):
     """Return a function that draws a volume and its occlusion."""
     kept = []
 
-    def draw(volume, casting, matrix, *, to_data=np.eye(3), planes=(), **settings):
+    def draw(volume, casting, matrix, *, to_data=None, planes=(), **settings):
         renderer, occlusion = RaycastRenderer(gl, volume), RayOcclusionPass(gl)
         kept.extend([renderer, occlusion])
         buffer = renderer.render(View(SIZE, matrix, planes), RaycastStyle(casting=casting))

@@ -59,7 +59,7 @@ class RayOcclusionPass(ScreenEffect):
         renderer: RaycastRenderer,
         buffer: GBuffer,
         casting: Casting,
-        to_data: npt.ArrayLike = np.eye(3),
+        to_data: npt.ArrayLike | None = None,
         *,
         radius: float,
         samples: int = 32,
@@ -77,7 +77,7 @@ class RayOcclusionPass(ScreenEffect):
             What it was drawn with: of mode ``'isosurface'``.
         to_data : array_like, optional
             ``(3, 3)``: directions in the world, in mm of which the hemisphere and the radius are, to those in the
-            volume's coordinates.
+            volume's coordinates. The same by default.
         radius : float
             mm of the world: what is farther does not occlude. Above 0.
         samples : int, default: 32
@@ -97,7 +97,7 @@ class RayOcclusionPass(ScreenEffect):
         """
         if casting.mode != "isosurface":
             raise EngineError(f"rays of occlusion start on surfaces; the picture is of mode {casting.mode!r}")
-        turn = np.asarray(to_data, np.float64)
+        turn = np.eye(3) if to_data is None else np.asarray(to_data, np.float64)
         uniforms = {
             "to_data": tuple(turn.T.ravel().tolist()),
             "radius": float(radius),
