@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import ctypes
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 from vtkmodules.vtkPythonContext2D import vtkPythonItem
@@ -24,6 +25,8 @@ from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.mappers.focusing import FOLLOWED, DepthOfField, Focusing, lens_of
+from pvfiblets.mappers.overlays import Overlay
+from pvfiblets.mappers.tiles import Margin, margin_of, shifted
 from pvfiblets.mappers.windows import WindowContext, context_of, contexts_with, gl_viewport, weak
 
 __all__ = ["DepthOfField", "Picture"]
@@ -51,7 +54,10 @@ class Picture:
         self._tone = Tone()
         self._depth_of_field: DepthOfField | None = None
         self._prop: _PictureProp | None = None
-        self._observer = 0
+        self._observers: list[int] = []
+        self._overlay = Overlay()
+        self._margin: Margin | None = None
+        self._shift = 0, 0
         self._error: BaseException | None = None
         self.focusing = Focusing()
 
@@ -104,12 +110,12 @@ class Picture:
             self._prop.hang(self)
             reference = weakref.ref(self)
 
-            def start(_caller: Any, _event: str) -> None:
+            def call(_caller: Any, event: str) -> None:
                 picture = reference()
                 if picture is not None:
-                    picture._first()  # noqa: SLF001  this class's own
+                    picture.stored(picture.start if event == "StartEvent" else picture.end)
 
-            self._observer = renderer.AddObserver("StartEvent", start)
+            self._observers = [renderer.AddObserver(event, call) for event in ("StartEvent", "EndEvent")]
             self._first()
         elif not self.on:
             self.release()
@@ -122,8 +128,9 @@ class Picture:
             return
         if not self.renderer.HasViewProp(self._prop):
             self.renderer.AddViewProp(self._prop)
-        props.RemoveItem(self._prop)
-        props.InsertItem(-1, self._prop)
+        if props.GetNumberOfItems() > 1:  # or there would be none to insert it before
+            props.RemoveItem(self._prop)
+            props.InsertItem(-1, self._prop)
 
     def release(self) -> None:
         """Leave the renderer and give everything on the GPU back; twice is harmless."""
@@ -132,7 +139,8 @@ class Picture:
             return
         renderer = self.renderer
         if renderer is not None:
-            renderer.RemoveObserver(self._observer)
+            for observer in self._observers:
+                renderer.RemoveObserver(observer)
             renderer.RemoveViewProp(prop)
         for context in contexts_with(prop):
             context.release(prop)
@@ -150,14 +158,47 @@ class Picture:
 
     # Drawing
 
-    def paint(self) -> None:
-        """Change the picture; called when all but what lies over it is drawn."""
+    def start(self) -> None:
+        """Get ready; called when the renderer is about to draw."""
+        renderer = self.renderer
+        if renderer is None or self._prop is None:
+            return
+        self._first()
+        self._overlay.hold(renderer)
+        if self._shift != (0, 0):
+            return
+        self._margin = None
+        if self._depth_of_field is not None and renderer.GetSelector() is None:
+            reach = int(self._depth_of_field.max_blur * renderer.GetRenderWindow().GetTileScale()[1]) + 1
+            self._margin = margin_of(renderer, reach)
+        if self._margin is not None:
+            self._draw_around(renderer, self._margin)
+
+    def _draw_around(self, renderer: Any, margin: Margin) -> None:
+        """Copy what lies around a tile; the tile itself is drawn after that."""
         try:
-            self._paint()
-        except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
+            for shift in margin.shifts():
+                self._shift = shift
+                with shifted(renderer.GetActiveCamera(), margin.size, shift):
+                    renderer.Render()
+        finally:
+            self._shift = 0, 0
+
+    def end(self) -> None:
+        """Draw what has been put off; called when the renderer has drawn."""
+        renderer = self.renderer
+        if renderer is not None:
+            self._overlay.let_go(renderer)
+
+    def stored(self, step: Callable[[], None]) -> None:
+        """Take a step of a frame; what it raises, VTK would swallow: see `raise_pending`."""
+        try:
+            step()
+        except Exception as error:  # noqa: BLE001
             self._error = error
 
-    def _paint(self) -> None:
+    def paint(self) -> None:
+        """Change the picture; called when all but what lies over it is drawn."""
         renderer, prop = self.renderer, self._prop
         if renderer is None or prop is None or renderer.GetSelector() is not None:
             return
@@ -172,9 +213,16 @@ class Picture:
                 slot.renderer = PictureEffects(context.ctx)
             effects = slot.renderer
             colour = _attachment(context, _COLOUR)
-            effects.copy(colour, None if wanted is None else _attachment(context, _DEPTH), viewport)
             if wanted is None:
+                effects.copy(colour, None, viewport)
                 effects.draw(colour, viewport, tone=self._tone)
+                return
+            depth, margin = _attachment(context, _DEPTH), self._margin
+            if margin is None or margin.size != viewport[2:]:
+                effects.copy(colour, depth, viewport)
+            else:
+                effects.copy(colour, depth, viewport, size=margin.padded, corner=margin.corner(self._shift))
+            if self._shift != (0, 0):
                 return
             lens = lens_of(renderer, viewport[2:])
             focus = self.focusing.focus(wanted, renderer, effects, lens)
@@ -216,7 +264,7 @@ class _Painter:
         """Be called when it is time to draw."""
         picture = self._picture()
         if picture is not None:
-            picture.paint()
+            picture.stored(picture.paint)
         return True
 
 

@@ -62,24 +62,27 @@ def area(radius):
 
 
 def gathered(colours, depths, radii, shade=None):
-    """Return the picture out of focus, float64: each pixel looks at all others."""
+    """Return the picture out of focus, float64: each pixel looks at all others that may reach it."""
+    reach = int(np.ceil(radii.max())) + 1
     height, width = depths.shape
     light = np.array(colours, np.float64)
     if shade is not None:
         light[..., :3] *= shade[..., None]
-    areas = np.array([area(radius) for radius in radii.ravel()]).reshape(radii.shape)
+    known = {radius: area(radius) for radius in np.unique(radii)}
+    areas = np.vectorize(known.get)(radii)
     y, x = np.mgrid[:height, :width]
     result = np.empty_like(light)
     for row in range(height):
         for column in range(width):
-            apart = np.hypot(y - row, x - column)
-            nearer = depths < depths[row, column]
-            front = np.where(nearer, covered(radii, apart) / areas, 0.0)
+            near = slice(max(row - reach, 0), row + reach + 1), slice(max(column - reach, 0), column + reach + 1)
+            apart = np.hypot(y[near] - row, x[near] - column)
+            nearer = depths[near] < depths[row, column]
+            front = np.where(nearer, covered(radii[near], apart) / areas[near], 0.0)
             back = np.where(nearer, 0.0, covered(radii[row, column], apart) / areas[row, column])
             if radii[row, column] <= 0.5:
                 back = np.where(apart == 0.0, 1.0, 0.0)
-            ahead = (front[..., None] * light).sum((0, 1))
-            behind = (back[..., None] * light).sum((0, 1)) / back.sum()
+            ahead = (front[..., None] * light[near]).sum((0, 1))
+            behind = (back[..., None] * light[near]).sum((0, 1)) / back.sum()
             result[row, column] = ahead + (1.0 - front.sum()) * behind if front.sum() < 1.0 else ahead / front.sum()
     return result
 

@@ -6,8 +6,9 @@
 //   origin     pixel of the attachments that becomes the target's pixel corner
 //   corner     pixel of the target
 //
-// Colours are the mean of a pixel's samples, as VTK's own resolve makes them. Of the depths the nearest counts: a pixel at
-// the edge of something belongs to what is in front, or an edge in focus would be blurred with what is behind it.
+// Colours are the mean of a pixel's samples, as VTK's own resolve makes them: of colours ^ 2.2, which are proportional to
+// light. Of the depths the nearest counts: a pixel at the edge of something belongs to what is in front, or an edge in
+// focus would be blurred with what is behind it.
 
 #version 430
 
@@ -15,6 +16,7 @@
 uniform sampler2DMS drawn;
 uniform sampler2DMS depths;
 uniform int samples;
+const vec4 LIGHT = vec4(2.2, 2.2, 2.2, 1.0);
 #else
 uniform sampler2D drawn;
 uniform sampler2D depths;
@@ -31,8 +33,8 @@ void main()
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner + origin;
 #if FEATURE_PICTURE_SAMPLES
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < samples; ++i) sum += texelFetch(drawn, pixel, i);
-    colour = sum / float(samples);
+    for (int i = 0; i < samples; ++i) sum += pow(texelFetch(drawn, pixel, i), LIGHT);
+    colour = pow(sum / float(samples), 1.0 / LIGHT);
 #if FEATURE_PICTURE_DEPTH
     depth = 1.0;
     for (int i = 0; i < samples; ++i) depth = min(depth, texelFetch(depths, pixel, i).r);
