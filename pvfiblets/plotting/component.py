@@ -7,7 +7,6 @@ either name. :class:`FibletsComponent` lives as long as its plotter; its life cy
 
 from __future__ import annotations
 
-import functools
 import inspect
 import weakref
 from collections.abc import Iterable
@@ -22,7 +21,7 @@ from pvfiblets.mappers import EngineOptions
 from pvfiblets.mappers.windows import borrowed_context
 from pvfiblets.plotting.actor import FibletActor
 from pvfiblets.plotting.colours import ColourSettings
-from pvfiblets.plotting.keeping import Keeping
+from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.picking import Picking
 from pvfiblets.plotting.sources import as_fiblets
 from pvfiblets.plotting.widgets import Widgets
@@ -61,6 +60,7 @@ class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
 
     def add(
         self,
+        /,
         source: Source,
         *,
         scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
@@ -283,7 +283,7 @@ class AddFiblets:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
 
-    @functools.wraps(FibletsComponent.add)
+    @same_as(FibletsComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> FibletActor:
         """Add streamlines; see :meth:`FibletsComponent.add`."""
         return self._plotter.fiblets.add(source, **arguments)

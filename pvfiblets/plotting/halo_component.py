@@ -7,7 +7,6 @@ name. :class:`HaloLinesComponent` lives as long as its plotter; its life cycle i
 
 from __future__ import annotations
 
-import functools
 import weakref
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -19,7 +18,7 @@ from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.halo_kinds import HaloLineActor
 from pvfiblets.plotting.halo_look import WIDTH_CUE, LookSettings
 from pvfiblets.plotting.halo_scalars import as_lines
-from pvfiblets.plotting.keeping import Keeping
+from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.printing import Printing
 
 if TYPE_CHECKING:
@@ -278,7 +277,7 @@ class AddHaloLines:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
 
-    @functools.wraps(HaloLinesComponent.add)
+    @same_as(HaloLinesComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> HaloLineActor:
         """Add lines with halos; see :meth:`HaloLinesComponent.add`."""
         return self._plotter.halo_lines.add(source, **arguments)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import weakref
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -14,7 +13,7 @@ from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.halo_kinds import HaloPointActor
 from pvfiblets.plotting.halo_look import WIDTH_CUE, LookSettings
 from pvfiblets.plotting.halo_scalars import as_points
-from pvfiblets.plotting.keeping import Keeping
+from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.printing import Printing
 
 if TYPE_CHECKING:
@@ -227,7 +226,7 @@ class AddHaloPoints:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
 
-    @functools.wraps(HaloPointsComponent.add)
+    @same_as(HaloPointsComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> HaloPointActor:
         """Add points with halos; see :meth:`HaloPointsComponent.add`."""
         return self._plotter.halo_points.add(source, **arguments)

@@ -8,12 +8,23 @@ plotter closes.
 
 from __future__ import annotations
 
+import functools
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Concatenate, Generic, ParamSpec, Protocol, TypeVar, cast
 
 import pyvista as pv
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+def same_as(
+    method: Callable[Concatenate[Any, _P], _R],
+) -> Callable[[Callable[..., Any]], Callable[Concatenate[Any, _P], _R]]:
+    """Give a method the arguments, types and docs of one of another class, for people and for type checkers."""
+    return cast("Any", functools.wraps(method))
 
 
 class Kept(Protocol):

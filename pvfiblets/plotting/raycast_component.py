@@ -7,7 +7,6 @@ name. :class:`RaycastVolumesComponent` lives as long as its plotter; its life cy
 
 from __future__ import annotations
 
-import functools
 import weakref
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -15,7 +14,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.colours import ColourSettings
-from pvfiblets.plotting.keeping import Keeping
+from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.raycast_actor import RaycastActor
 from pvfiblets.raycast.casting import MODES
 from pvfiblets.raycast.sources import as_raycast_volume
@@ -290,7 +289,7 @@ class AddRaycastVolume:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
 
-    @functools.wraps(RaycastVolumesComponent.add)
+    @same_as(RaycastVolumesComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> RaycastActor:
         """Add a volume; see :meth:`RaycastVolumesComponent.add`."""
         return self._plotter.raycast_volumes.add(source, **arguments)

@@ -7,7 +7,6 @@ either name. :class:`SplineTubesComponent` lives as long as its plotter; its lif
 
 from __future__ import annotations
 
-import functools
 import weakref
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -16,7 +15,7 @@ import pyvista as pv
 
 from pvfiblets.mappers import SplineOptions
 from pvfiblets.plotting.colours import ColourSettings
-from pvfiblets.plotting.keeping import Keeping
+from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.spline_actor import SplineTubeActor
 from pvfiblets.plotting.spline_scalars import as_tubes
 
@@ -262,7 +261,7 @@ class AddSplineTubes:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
 
-    @functools.wraps(SplineTubesComponent.add)
+    @same_as(SplineTubesComponent.add)
     def __call__(self, source: Source, **arguments: Any) -> SplineTubeActor:
         """Add spline tubes; see :meth:`SplineTubesComponent.add`."""
         return self._plotter.spline_tubes.add(source, **arguments)

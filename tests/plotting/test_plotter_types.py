@@ -1,0 +1,54 @@
+"""Type checkers and editors know what PyVista finds by entry points."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pyvista as pv
+
+from pvfiblets.plotting import plotter
+
+ROOT = Path(__file__).resolve().parents[2]
+STUB = Path(plotter.__file__).with_suffix(".pyi")
+
+USE = """
+from pvfiblets.plotting.plotter import Plotter
+
+plotter = Plotter(off_screen=True)
+reveal_type(plotter.add_fiblets("brain.trk"))
+reveal_type(plotter.raycast_volumes.add("t1.nii"))
+plotter.add_halo_lines("brain.trk", line_widht=2)
+plotter.add_mesh("brain.vtp")
+"""
+
+
+def test_the_class_is_pyvistas_own():
+    assert plotter.Plotter is pv.Plotter
+
+
+def test_the_stub_names_every_component_and_its_class():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    named = project["entry-points"]["pyvista.plotter_components"]
+    (kind,) = [node for node in ast.parse(STUB.read_text()).body if isinstance(node, ast.ClassDef)]
+    told = {method.name: method.returns.id for method in kind.body}
+    assert list(told) == list(named)
+    shown = pv.Plotter(off_screen=True)
+    for name, module in named.items():
+        assert type(getattr(shown, name)) is getattr(import_module(module), told[name])
+
+
+def test_a_checker_knows_what_comes_back(tmp_path):
+    script = tmp_path / "use.py"
+    script.write_text(USE)
+    command = [sys.executable, "-m", "mypy", "--ignore-missing-imports", "--follow-imports=silent", str(script)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    said = done.stdout
+    assert 'Revealed type is "pvfiblets.plotting.actor.FibletActor"' in said
+    assert 'Revealed type is "pvfiblets.plotting.raycast_actor.RaycastActor"' in said
+    assert 'Unexpected keyword argument "line_widht"' in said
+    assert "Found 1 error" in said
