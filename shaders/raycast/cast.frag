@@ -74,7 +74,11 @@ void main() {
 #else
     if (!find_surface(ray, step, start, hit, value)) return;
 #endif
+#if FEATURE_RAYCAST_NEAREST
+    vec3 g = gradient_at(floor(at(ray, hit) + 0.5));      // of the voxel, whichever of its sides shows
+#else
     vec3 g = gradient_at(at(ray, hit));
+#endif
     vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
     vec3 normal = size > 0.0 ? g / size : -way;
