@@ -35,6 +35,7 @@ def point_camera(plotter: Any, view: str) -> None:
     width, height = plotter.window_size
     matrix = camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
     seen = points @ np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]).T
-    reach = np.abs(seen[:, :2] / seen[:, 3:]).max()
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a scene with nothing in it
+        reach = np.abs(seen[:, :2] / seen[:, 3:]).max()
     if np.isfinite(reach) and reach > 0.0:
         camera.zoom(0.92 / reach)

@@ -18,7 +18,17 @@ if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
     from pvfiblets.web.shapes import Load
 
-__all__ = ["MOST_PLANES", "add_actor", "check_planes", "cut", "filter_as", "look_as", "remove_actor", "select_as"]
+__all__ = [
+    "MOST_PLANES",
+    "add_actor",
+    "check_planes",
+    "cut",
+    "filter_as",
+    "look_as",
+    "put_in_order",
+    "remove_actor",
+    "select_as",
+]
 
 MOST_PLANES = 6
 """That VTK cuts a mesh or tubes by."""
@@ -52,6 +62,18 @@ def add_actor(plotter: Any, layer: Layer, loaded: Loaded) -> Any:
 def remove_actor(plotter: Any, actor: Any) -> None:
     """Take an actor away; its GPU memory goes with it."""
     plotter.remove_actor(actor, reset_camera=False, render=False)
+
+
+def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
+    """Have a renderer draw actors in an order, whenever each was added: of things in one place the first shows."""
+    props = renderer.GetViewProps()
+    places = [props.IsItemPresent(actor) for actor in actors]  # from 1 on
+    if places != sorted(places):
+        # Of the collection alone: an actor that leaves the renderer would give back its GPU memory.
+        for actor in actors:
+            props.RemoveItem(actor)
+            props.AddItem(actor)
+        renderer.Modified()
 
 
 def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) -> Any:

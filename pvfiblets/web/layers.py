@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from pvfiblets.plotting.scalars import ORIENTATION
 from pvfiblets.web.document import KINDS, LINES, Layer
 from pvfiblets.web.properties import TYPES, Property
 from pvfiblets.web.tables import MESH, TRACTOGRAM, TUBES, VOLUME
@@ -114,13 +115,15 @@ def _coloured(s: Mapping[str, Any]) -> dict[str, Any]:
     """One colour, or numbers and their colours."""
     if s["scalars"] is None:
         return {"color": s["color"]}
+    if s["scalars"] == ORIENTATION:
+        return {"scalars": ORIENTATION}
     clim = None if s["clim"] is None else tuple(s["clim"])
     return {"scalars": s["scalars"], "cmap": s["cmap"], "clim": clim, "log_scale": s["log_scale"]}
 
 
 def _lines(s: Mapping[str, Any]) -> dict[str, Any]:
     found = _coloured(s)
-    if s["scalars"] is not None:
+    if "cmap" in found:
         found["nan_color"] = s["nan_color"]
     same = ("opacity", "transparency", "line_width", "lighting", "culling", "style")
     found |= {name: s[name] for name in same}
@@ -151,12 +154,14 @@ def _mesh(s: Mapping[str, Any]) -> dict[str, Any]:
     if s["scalars"] is not None:
         clim = None if s["clim"] is None else list(s["clim"])
         found = {"scalars": s["scalars"], "cmap": s["cmap"], "clim": clim, "log_scale": s["log_scale"]}
+    if s["representation"] == "wireframe" or s["show_edges"]:
+        found["line_width"] = s["line_width"]
+    if s["representation"] == "points":
+        found["point_size"] = s["point_size"]
     return found | {
         "opacity": s["opacity"],
         "style": s["representation"],
         "show_edges": s["show_edges"],
-        "line_width": s["line_width"],
-        "point_size": s["point_size"],
         "smooth_shading": s["smooth_shading"],
         "specular": s["specular"],
         "lighting": s["lighting"],

@@ -30,7 +30,7 @@ class Questions:
 
         layer: Callable[[str], Layer]
         actor: Callable[[str], Any]
-        data: Callable[[Layer], Loaded]
+        data: Callable[..., Loaded]
 
     def properties(self, layer_id: str) -> list[dict[str, Any]]:
         """Return all that can be set of a layer, and its present values; see :meth:`.Property.describe`."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.web import layers
-from pvfiblets.web.actors import add_actor, check_planes, cut, filter_as, look_as, remove_actor, select_as
+from pvfiblets.web.actors import add_actor, check_planes, cut, filter_as, look_as, put_in_order, remove_actor, select_as
 from pvfiblets.web.bars import Bars
 from pvfiblets.web.cameras import Cameras
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State
@@ -151,6 +151,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
                 del self._drawn[layer_id]
         for layer in state.layers:
             self._draw(layer, state.clips)
+        put_in_order(self.plotter.renderer, [self._drawn[layer.id].actor for layer in state.layers])
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         self._bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
@@ -173,28 +174,28 @@ class Scene(Showing, Selecting, Questions, Cameras):
             if drawn.layer.selected != layer.selected:
                 select_as(actor, layer.selected)
         if drawn.clips != clips:
-            cut(actor, layer, clips, self._shape)
+            cut(actor, layer, clips, self.shape_data)
         self._drawn[layer.id] = _Drawn(actor, layer, clips)
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
         try:
-            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self._shape)
+            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self.shape_data)
         except BaseException:  # some of it may be in force already
             drawn.actor.show_all()
-            filter_as(drawn.actor, Filters(), drawn.layer.filters, self._shape)
-            cut(drawn.actor, drawn.layer, drawn.clips, self._shape)
+            filter_as(drawn.actor, Filters(), drawn.layer.filters, self.shape_data)
+            cut(drawn.actor, drawn.layer, drawn.clips, self.shape_data)
             raise
 
     # Data ---------------------------------------------------------------------------------------
 
-    def data(self, layer: Layer) -> Loaded:
+    def data(self, layer: Layer, progress: Progress | None = None, cancel: Cancel | None = None) -> Loaded:
         """Return what a layer draws; it is read if it must be."""
         kind = "tractogram" if layer.kind in LINES else layer.kind
         key = kind, layer.source
         if key not in self._data:
             whole = replace(layer.source, ids=None)
             if (kind, whole) not in self._data:
-                self._data[kind, whole] = self.files.load(whole, kind)
+                self._data[kind, whole] = self.files.load(whole, kind, progress, cancel)
             loaded = self._data[kind, whole]
             if layer.source.ids is not None:
                 ids, total = layer.source.ids, loaded.data.n_streamlines
@@ -214,7 +215,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
                 needed |= {(family, source), (family, replace(source, ids=None))}
         self._data = {key: loaded for key, loaded in self._data.items() if key in needed}
 
-    def _shape(self, kind: str, path: str) -> Any:
+    def shape_data(self, kind: str, path: str) -> Any:
         """Return what a region is made of: the region of a mesh, or an image of labels."""
         if (kind, path) not in self._shapes:
             from pvfiblets.plotting.cutting import as_region

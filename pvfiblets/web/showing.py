@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.document import Clip, Filters, Layer, State
-from pvfiblets.web.shapes import CUTTING, check_condition, check_shape
+from pvfiblets.web.shapes import CUTTING, check_condition, check_shape, make_region
 from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 
 if TYPE_CHECKING:
@@ -29,7 +29,8 @@ class Showing:
 
         become: Callable[..., None]
         layer: Callable[[str], Layer]
-        data: Callable[[Layer], Loaded]
+        data: Callable[..., Loaded]
+        shape_data: Callable[[str, str], Any]
         _change: Callable[..., None]
         _lines: Callable[[str], Layer]
         _fresh_id: Callable[[], str]
@@ -73,7 +74,7 @@ class Showing:
             raise ValueError(f"there are {MOST_CLIPS} cuts, which is the most; remove one first")
         if kind not in CUTTING:
             raise ValueError(f"the kind of a cut is {shown(kind)}; choose one of {', '.join(CUTTING)}")
-        checked = check_shape({**self.usual_shape(kind), **shape}, "cut", CUTTING)
+        checked = self._checked_shape({**self.usual_shape(kind), **shape})
         label = f"{kind} {1 + sum(clip.shape['kind'] == kind for clip in self.state.clips)}"
         name = label if name is None else text(name, "name")
         clip = Clip(self._fresh_id().replace("layer", "clip"), name, checked, truth(inside, "inside"), True,
@@ -109,9 +110,7 @@ class Showing:
         if changes:
             kind = changes.get("kind", clip.shape["kind"])
             same = kind == clip.shape["kind"]
-            wanted["shape"] = check_shape(
-                {**(clip.shape if same else self.usual_shape(kind)), **changes}, "cut", CUTTING
-            )
+            wanted["shape"] = self._checked_shape({**(clip.shape if same else self.usual_shape(kind)), **changes})
         new = replace(clip, **wanted)
         clips = tuple(new if other is clip else other for other in self.state.clips)
         self.become(replace(self.state, clips=clips), f"cut {new.name}", ("clip", clip_id, *sorted(wanted)))
@@ -141,6 +140,12 @@ class Showing:
         if kind == "sphere":
             return {"kind": kind, "center": middle, "radius": 0.25 * max(sides)}
         return {"kind": kind}
+
+    def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the shape of a cut, of which a region can be made, even if there is nothing to cut yet."""
+        found = check_shape(shape, "cut", CUTTING)
+        make_region(found, self.shape_data)
+        return found
 
     def _checked_layers(self, ids: Any) -> tuple[str, ...] | None:
         if ids is None:

@@ -1,0 +1,336 @@
+"""A scene as a Python script with PyVista and nothing of a server in it, that makes the same picture."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import textwrap
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.web import layers
+from pvfiblets.web.bars import bar_arguments, bars_of
+from pvfiblets.web.document import LINES, Clip, Layer, Source
+from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
+
+if TYPE_CHECKING:
+    from pvfiblets.web.scene import Scene
+
+__all__ = ["as_script"]
+
+_UNSAID: dict[str, dict[str, Any]] = {
+    "tractogram": {
+        "scalars": "orientation", "clim": None, "log_scale": False, "nan_color": None, "opacity": 1.0,
+        "transparency": None, "lighting": True, "culling": "two-phase", "style": "surface", "halos": False,
+        "illuminated": False, "tube_shading": False, "tube_radius": None, "ambient_occlusion": False,
+        "depth_cue": False,
+    },
+    "tubes": {
+        "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0, "culling": "two-phase",
+        "solver": "auto", "silhouette": False, "ambient_occlusion": False, "depth_cue": False,
+    },
+    "volume": {
+        "mode": "composite", "values": None, "color": None, "clim": None, "thresholds": None,
+        "opacity_unit_distance": None, "peak": None, "smooth": None, "step": 0.5, "filter": "trilinear",
+        "refine": "regula-falsi", "integrator": "preintegrated", "jitter": False, "ambient_occlusion": False,
+        "depth_cue": False,
+    },
+    "mesh": {
+        "clim": None, "log_scale": False, "opacity": 1.0, "style": "surface", "show_edges": False,
+        "smooth_shading": False, "specular": 0.0, "lighting": True, "culling": None,
+    },
+}  # fmt: skip
+"""Looks that need not be said, because they are so anyhow."""
+_UNSAID["selection"] = _UNSAID["tractogram"]
+
+_SELECTION = {
+    "selection_color": ("color", None),
+    "selection_dim": ("dim", 0.8),
+    "selection_as_tubes": ("as_tubes", False),
+    "selection_radius": ("radius", 0.5),
+}
+_WIDEST = 110
+_LABELS = '''
+def labels_of(path, labels):
+    """Return the region of some labels of a volume."""
+    image = nib.load(path)
+    return regions.Labels(np.rint(np.asanyarray(image.dataobj)).astype(np.int64), image.affine, labels=labels)
+'''
+
+
+def as_script(scene: Scene, picture: str | None = None) -> str:
+    """Return a script that makes the picture of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it is, with its camera and the size of its picture.
+    picture : str, optional
+        A file that the script writes; by default it opens a window.
+
+    Returns
+    -------
+    str
+        Python. Where the scene has a root, the script takes paths from a ``FOLDER`` that stands at its top.
+    """
+    return _Writer(scene).write(picture)
+
+
+class _Writer:
+    """Collects lines, and what they need to be imported."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._plotter = scene.plotter
+        self._lines: list[str] = []
+        self._imports: set[str] = {"import pyvista as pv"}
+        self._names: dict[str, str] = {}
+        self._wholes: dict[Source, str] = {}
+        self._uses_folder = False
+        self._uses_labels = False
+
+    def write(self, picture: str | None) -> str:
+        state = self._scene.state
+        for layer in state.layers:
+            self._names[layer.id] = self._variable(layer.name)
+        self._start(picture is not None)
+        for layer in state.layers:
+            self._layer(layer)
+        for clip in state.clips:
+            self._clip(clip)
+        self._bars()
+        self._camera()
+        end = "plotter.show()" if picture is None else f"plotter.screenshot({picture!r})\nplotter.close()"
+        body = re.sub(r"\n{3,}", "\n\n", "\n".join([*self._lines, end]))
+        return "\n".join([*self._head(), body]) + "\n"
+
+    # Parts ----------------------------------------------------------------------------------------
+
+    def _head(self) -> list[str]:
+        order = sorted(self._imports, key=lambda line: (line.split()[1].startswith("pvfiblets"), line.split()[1]))
+        standard = ["from pathlib import Path", ""] if self._uses_folder else []
+        found = ['"""Made by pvfiblets."""', "", *standard, *order, ""]
+        if self._uses_folder:
+            found += ['FOLDER = Path(".")  # where the files are', ""]
+        return [*found, *_LABELS.splitlines(), "", ""] if self._uses_labels else found
+
+    def _start(self, off_screen: bool) -> None:
+        width, height = self._plotter.window_size
+        off = "off_screen=True, " if off_screen else ""
+        self._lines += [f"plotter = pv.Plotter({off}window_size=({width}, {height}))"]
+        self._lines += [f"plotter.set_background({self._scene.state.background!r})"]
+        window, renderer = self._plotter.render_window, self._plotter.renderer
+        if renderer.GetUseFXAA():
+            self._lines += ["plotter.enable_anti_aliasing('fxaa')"]
+        elif window is not None and window.GetMultiSamples() > 1:
+            theme, samples = self._plotter.theme, window.GetMultiSamples()
+            if theme.anti_aliasing not in (None, "msaa") or theme.multi_samples != samples:
+                self._lines += [f"plotter.enable_anti_aliasing('msaa', multi_samples={samples})"]
+        else:
+            self._lines += ["plotter.disable_anti_aliasing()"]
+        if renderer.GetUseDepthPeeling():
+            self._lines += ["plotter.enable_depth_peeling()"]
+        self._lines += [""]
+
+    def _layer(self, layer: Layer) -> None:
+        name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
+        unsaid = _UNSAID[layer.kind]
+        said = {key: value for key, value in looks.items() if key not in unsaid or unsaid[key] != value}
+        arguments = {
+            key: value for key, value in said.items() if layer.kind == "mesh" or key in layers.ARGUMENTS[layer.kind]
+        }
+        arguments["show_scalar_bar"] = False
+        method = {"tubes": "add_spline_tubes", "volume": "add_raycast_volume", "mesh": "add_mesh"}.get(
+            layer.kind, "add_fiblets"
+        )
+        self._call(f"{name} = plotter.{method}", self._source(layer), arguments)
+        self._lines += [f"{name}.{key} = {_code(value)}" for key, value in said.items() if key not in arguments]
+        if not layer.visible:
+            self._lines += [f"{name}.visibility = False"]
+        if layer.kind in LINES:
+            self._filters(name, layer)
+            self._selection(name, layer)
+        self._lines += [""]
+
+    def _source(self, layer: Layer) -> str:
+        """Return Python of what a layer draws."""
+        source = layer.source
+        loaded = self._scene.data(layer)
+        if source.demo == "head":
+            self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
+            return f"brain_like({source.size})"
+        if source.ids is None and source.demo == "tracts":
+            self._imports.add("from pvfiblets.synthetic import brain_streamlines")
+            return f"brain_streamlines({source.size}, 0.5)"
+        if source.ids is not None:
+            return f"{self._whole(source, loaded.kept)}.extract({self._ids(source.ids.runs)})"
+        assert source.path is not None
+        path = self._file(source.path)
+        if layer.kind == "mesh":
+            return f"pv.read({path})"
+        if layer.kind in LINES and loaded.kept:
+            return f"{path}, per_point={list(loaded.kept)}"
+        return path
+
+    def _whole(self, source: Source, kept: tuple[str, ...]) -> str:
+        """Return the name of the fiblets that a selection is a part of; they are made where they are not yet."""
+        whole = Source(source.path, source.demo, source.size)
+        for layer in self._scene.state.layers:
+            before = layer.kind == "tractogram" and layer.source == whole
+            if before and any(line.startswith(f"{self._names[layer.id]} = ") for line in self._lines):
+                return f"{self._names[layer.id]}.fiblets"
+        if whole not in self._wholes:
+            name = self._wholes[whole] = self._variable("fiblets")
+            self._imports.add("import pvfiblets")
+            keep = f", per_point={list(kept)}" if kept else ""
+            if source.demo is not None:
+                self._imports.add("from pvfiblets.synthetic import brain_streamlines")
+                made = f"pvfiblets.compress(brain_streamlines({source.size}, 0.5))"
+            elif str(source.path).lower().endswith(".fiblets"):
+                made = f"pvfiblets.FibletSet.open({self._file(str(source.path))})"
+            else:
+                made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}){keep})"
+            self._lines += [f"{name} = {made}"]
+        return self._wholes[whole]
+
+    def _filters(self, name: str, layer: Layer) -> None:
+        filters = layer.filters
+        for criterion, (low, high) in filters.criteria.items():
+            self._lines += [f"{name}.criterion({criterion!r}, ({_code(low)}, {_code(high)}))"]
+        if filters.groups is not None:
+            self._lines += [f"{name}.groups_shown = {list(filters.groups)}"]
+        if filters.subset is not None:
+            self._lines += [f"{name}.subset({', '.join(f'{k}={v!r}' for k, v in filters.subset.items())})"]
+        if filters.regions is not None:
+            for shape in shapes_in(filters.regions):
+                self._needs(shape)
+            self._imports.add("from pvfiblets import regions")
+            self._lines += [f"{name}.include({condition_code(filters.regions, self._file)})"]
+
+    def _selection(self, name: str, layer: Layer) -> None:
+        if layer.selected is None:
+            return
+        style = {
+            theirs: layer.settings[ours]
+            for ours, (theirs, usual) in _SELECTION.items()
+            if layer.settings[ours] != usual
+        }
+        if style:
+            self._lines += [f"{name}.selection_style({', '.join(f'{k}={v!r}' for k, v in style.items())})"]
+        self._lines += [f"{name}.select({self._ids(layer.selected.runs)})"]
+
+    def _clip(self, clip: Clip) -> None:
+        cut = [layer for layer in self._scene.state.layers if clip.cuts(layer)]
+        for layer in cut:
+            if layer.kind in (*LINES, "volume"):
+                continue
+            planes = planes_of(clip.shape, clip.inside) or []
+            self._imports.add("from vtkmodules.vtkCommonDataModel import vtkPlane")
+            for normal, origin in planes:
+                self._lines += [
+                    "plane = vtkPlane()",
+                    f"plane.SetNormal({normal})",
+                    f"plane.SetOrigin({origin})",
+                    f"{self._names[layer.id]}.mapper.AddClippingPlane(plane)",
+                    "",
+                ]
+        names = [self._names[layer.id] for layer in cut if layer.kind in (*LINES, "volume")]
+        if not names:
+            return
+        if clip.shape["kind"] == "mesh":
+            region = f"pv.read({self._file(clip.shape['path'])})"
+        else:
+            self._needs(clip.shape)
+            region = shape_code(clip.shape, self._file)
+        inside = "" if clip.inside else ", inside=False"
+        if len(names) == 1:
+            self._lines += [f"{names[0]}.clip({region}{inside})", ""]
+            return
+        self._lines += [
+            f"region = {region}",
+            f"for actor in ({', '.join(names)}):",
+            f"    actor.clip(region{inside})",
+            "",
+        ]
+
+    def _needs(self, shape: Mapping[str, Any]) -> None:
+        """Import what the Python of a shape uses."""
+        if shape["kind"] not in ("mesh", "labels"):
+            self._imports.add("from pvfiblets import regions")
+        elif shape["kind"] == "mesh" or shape["labels"] is None:
+            self._imports.add("from pvfiblets.plotting.cutting import as_region")
+        else:
+            self._imports |= {"import nibabel as nib", "import numpy as np", "from pvfiblets import regions"}
+            self._uses_labels = True
+
+    def _bars(self) -> None:
+        state = self._scene.state
+        drawn = [(layer, self._scene.actor(layer.id)) for layer in state.layers]
+        for place, (title, layer, actor) in enumerate(bars_of(drawn)):
+            arguments = bar_arguments(place, actor, state.background)
+            self._call("plotter.add_scalar_bar", repr(title), {}, f"mapper={self._names[layer.id]}.mapper", arguments)
+
+    def _camera(self) -> None:
+        camera = self._scene.camera()
+        self._lines += ["", "plotter.camera_position = ["]
+        self._lines += [f"    {tuple(camera[part])}," for part in ("position", "focal_point", "up")]
+        self._lines += ["]"]
+        self._lines += [f"plotter.camera.view_angle = {camera['view_angle']}"]
+        if camera["parallel"]:
+            self._lines += ["plotter.enable_parallel_projection()"]
+            self._lines += [f"plotter.camera.parallel_scale = {camera['parallel_scale']}"]
+        self._lines += ["plotter.renderer.reset_camera_clipping_range()"]
+
+    # Small things ---------------------------------------------------------------------------------
+
+    def _file(self, path: str) -> str:
+        """Return Python of a path."""
+        if self._scene.root is not None and not path.startswith("/") and not re.match(r"[A-Za-z]:", path):
+            self._uses_folder = True
+            return f"FOLDER / {path!r}"
+        return repr(path)
+
+    def _ids(self, runs: Any) -> str:
+        if len(runs) == 1:
+            return f"slice({runs[0, 0]}, {runs[0, 1]})"
+        self._imports.add("import numpy as np")
+        parts = [str(first) if after == first + 1 else f"{first}:{after}" for first, after in runs.tolist()]
+        line = f"np.r_[{', '.join(parts)}]"
+        if len(line) <= _WIDEST:
+            return line
+        lines = textwrap.wrap(", ".join(parts), _WIDEST, break_long_words=False)
+        return "\n    ".join(["np.r_[", *lines]) + "\n]"
+
+    def _variable(self, name: str) -> str:
+        """Return a name that Python takes and that is not taken."""
+        stem = re.sub(r"\W+", "_", name.lower().split(".")[0], flags=re.ASCII).strip("_")[:24] or "layer"
+        if stem[0].isdigit() or keyword.iskeyword(stem):
+            stem = f"layer_{stem}"
+        reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
+        reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
+        taken = {*reserved, *self._names.values(), *self._wholes.values()}
+        found, count = stem, 2
+        while found in taken:
+            found, count = f"{stem}_{count}", count + 1
+        return found
+
+    def _call(self, function: str, first: str, *parts: Mapping[str, Any] | str) -> None:
+        """Write a call, over several lines where it is long."""
+        arguments = [first]
+        for part in parts:
+            if isinstance(part, str):
+                arguments.append(part)
+            else:
+                arguments += [f"{key}={_code(value)}" for key, value in part.items()]
+        line = f"{function}({', '.join(arguments)})"
+        if len(line) <= _WIDEST or "\n" in first:
+            self._lines += [line]
+        else:
+            self._lines += [f"{function}(", *(f"    {argument}," for argument in arguments), ")"]
+
+
+def _code(value: Any) -> str:
+    """Return Python of a value."""
+    if isinstance(value, float) and value in (float("inf"), float("-inf")):
+        return f"float('{value}')"
+    return repr(value)

@@ -1,0 +1,351 @@
+"""Sessions as files: all that a scene shows and from where, as JSON.
+
+A session that was saved is as little trusted as a browser: it is read whole and checked against the data that it names
+before anything changes, and its paths are confined as all paths are.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pvfiblets.errors import FibletsError
+from pvfiblets.web import layers
+from pvfiblets.web.actors import check_planes
+from pvfiblets.web.cameras import check_camera
+from pvfiblets.web.document import KINDS, LINES, Clip, Filters, Ids, Layer, Source, State
+from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
+from pvfiblets.web.showing import MOST_CLIPS, check_filters
+from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
+
+if TYPE_CHECKING:
+    from pvfiblets.web.loading import Cancel, Progress
+    from pvfiblets.web.scene import Scene
+
+__all__ = ["VERSION", "Prepared", "SessionError", "apply", "from_dict", "load", "prepare", "save", "to_dict"]
+
+VERSION = 1
+LARGEST = 64_000_000  # bytes of a file
+_MOST_LAYERS = 64
+_MOST_RUNS = 4_000_000
+_ID = re.compile(r"[a-z]+[0-9]{1,9}")
+
+
+class SessionError(FibletsError, ValueError):
+    """A session cannot be taken over; the message says what is wrong with it, and the scene is as it was."""
+
+
+def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
+    """Return a scene as JSON.
+
+    Parameters
+    ----------
+    scene : Scene
+    folder : Path, optional
+        Of the file that it is for: paths are relative to it where files lie in it. By default they are relative to the
+        scene's root where they lie in that, and absolute elsewhere.
+
+    Returns
+    -------
+    dict
+        ``version``, ``layers``, ``clips``, ``background``, ``camera``; no numbers but finite ones.
+    """
+    state = scene.state
+
+    def path_of(path: str) -> str:
+        if folder is None:
+            return path
+        place = scene.files.resolve(path)
+        home = Path(folder).resolve()
+        return place.relative_to(home).as_posix() if place.is_relative_to(home) else path
+
+    def shape_of(shape: Mapping[str, Any]) -> dict[str, Any]:
+        return {**shape, "path": path_of(shape["path"])} if "path" in shape else dict(shape)
+
+    return {
+        "program": "pvfiblets",
+        "version": VERSION,
+        "background": state.background,
+        "camera": scene.camera(),
+        "layers": [_layer_to_dict(layer, path_of, shape_of) for layer in state.layers],
+        "clips": [
+            {
+                "id": clip.id,
+                "name": clip.name,
+                "shape": shape_of(clip.shape),
+                "inside": clip.inside,
+                "enabled": clip.enabled,
+                "layers": None if clip.layers is None else list(clip.layers),
+            }
+            for clip in state.clips
+        ],
+    }
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A session whose files are read and found to fit; :func:`apply` shows it."""
+
+    state: State
+    camera: dict[str, Any] | None
+
+
+def from_dict(scene: Scene, data: Any, folder: Path | None = None) -> None:
+    """Make a scene what a session says; one step for its history.
+
+    Parameters
+    ----------
+    scene : Scene
+    data : dict
+        Of :func:`to_dict`; not trusted.
+    folder : Path, optional
+        Of the file that it is from: paths are looked for there first, then under the scene's root.
+
+    Raises
+    ------
+    SessionError
+        If anything in it is malformed, its files are not there or not allowed, or do not fit; the scene is as it was.
+    """
+    apply(scene, prepare(scene, data, folder))
+
+
+def prepare(
+    scene: Scene,
+    data: Any,
+    folder: Path | None = None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Prepared:
+    """Read and check all that a session names; nothing is drawn, so that it may run in a thread of its own.
+
+    Arguments and errors as of :func:`from_dict` and :meth:`.Scene.load`.
+    """
+    with _as_session_error():
+        return _checked(scene, data, folder, progress, cancel)
+
+
+def apply(scene: Scene, prepared: Prepared) -> None:
+    """Show a session that was prepared for this scene."""
+    with _as_session_error():
+        scene.become(prepared.state, "open a session")
+    if prepared.camera is not None:
+        scene.set_camera(prepared.camera)
+
+
+@contextmanager
+def _as_session_error() -> Iterator[None]:
+    try:
+        yield
+    except (FibletsError, ValueError, KeyError, TypeError, OSError, OverflowError, RecursionError) as error:
+        said = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise SessionError(f"the session cannot be opened: {said}") from error
+
+
+def save(scene: Scene, path: str) -> Path:
+    """Write a session to a file under the scene's root; return its place."""
+    target = scene.files.resolve(path, new=True)
+    content = json.dumps(to_dict(scene, target.parent), allow_nan=False, indent=1)
+    fresh = target.with_name(target.name + ".part")
+    fresh.write_text(content, encoding="utf-8")
+    fresh.replace(target)
+    return target
+
+
+def load(scene: Scene, path: str) -> None:
+    """Make a scene what a file under its root says; see :func:`from_dict`."""
+    place = scene.files.resolve(path)
+    if place.stat().st_size > LARGEST:
+        raise SessionError(f"{path} has {place.stat().st_size:,} bytes; sessions have {LARGEST:,} at most")
+    try:
+        data = json.loads(place.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise SessionError(f"{path} is no session: it is no JSON ({error})") from error
+    from_dict(scene, data, place.parent)
+
+
+# To JSON --------------------------------------------------------------------------------------------
+
+
+def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
+    source = layer.source
+    found: dict[str, Any] = {"id": layer.id, "kind": layer.kind, "name": layer.name, "visible": layer.visible}
+    found["source"] = (
+        {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
+    )
+    if source.ids is not None:
+        found["source"]["ids"] = source.ids.runs.ravel().tolist()
+    found["settings"] = dict(layer.settings)
+    if layer.filters.active:
+        found["filters"] = _filters_to_dict(layer.filters, shape_of)
+    if layer.selected is not None:
+        found["selected"] = layer.selected.runs.ravel().tolist()
+    return found
+
+
+def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
+    def end(value: float) -> float | None:
+        return value if math.isfinite(value) else None
+
+    def condition_of(condition: Mapping[str, Any]) -> dict[str, Any]:
+        if "op" in condition:
+            return {"op": condition["op"], "of": [condition_of(part) for part in condition["of"]]}
+        return {"how": condition["how"], "region": shape_of(condition["region"])}
+
+    return {
+        "criteria": {name: [end(low), end(high)] for name, (low, high) in filters.criteria.items()},
+        "groups": None if filters.groups is None else list(filters.groups),
+        "subset": None if filters.subset is None else dict(filters.subset),
+        "regions": None if filters.regions is None else condition_of(filters.regions),
+    }
+
+
+# From JSON ------------------------------------------------------------------------------------------
+
+
+def _checked(
+    scene: Scene, data: Any, folder: Path | None, progress: Progress | None, cancel: Cancel | None
+) -> Prepared:
+    """Return the document and the camera of a session whose files are read and found to fit."""
+    if not isinstance(data, Mapping):
+        raise ValueError(f"it is {shown(data)} and no object")
+    if data.get("program") != "pvfiblets":
+        raise ValueError(f"its program is {shown(data.get('program'))}, not 'pvfiblets': it is no session")
+    version = data.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
+    mapping(data, "session", ("program", "version", "layers"), ("clips", "background", "camera"))
+    for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
+        if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
+            raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
+    paths = _Paths(scene, folder)
+    found = [_layer_from_dict(scene, item, paths, progress, cancel) for item in data["layers"]]
+    clips = [_clip_from_dict(item, paths) for item in data.get("clips", [])]
+    ids = [layer.id for layer in found] + [clip.id for clip in clips]
+    if twice := [name for name in ids if ids.count(name) > 1]:
+        raise ValueError(f"the id {twice[0]!r} stands twice")
+    state = State(tuple(found), tuple(clips), colour(data.get("background", "#000000"), "background"))
+    _check_cuts(scene, state)
+    camera = data.get("camera")
+    return Prepared(state, None if camera is None else check_camera(camera))
+
+
+class _Paths:
+    """Where files of a session are: beside it, or under the root."""
+
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
+        self._files, self._folder = scene.files, folder
+
+    def __call__(self, value: Any) -> str:
+        """Return a path as documents hold it, of a file that is there."""
+        path = text(value, "path", 4096)
+        if self._folder is not None and not Path(path).is_absolute():
+            beside = Path(self._folder) / path
+            try:
+                return self._files.name(self._files.resolve(str(beside)))
+            except (OSError, ValueError):
+                pass  # what is said of it under the root is easier to understand
+        return self._files.name(self._files.resolve(path))
+
+    def shape(self, shape: dict[str, Any]) -> dict[str, Any]:
+        return {**shape, "path": self(shape["path"])} if "path" in shape else shape
+
+    def condition(self, condition: Mapping[str, Any]) -> dict[str, Any]:
+        if "op" in condition:
+            return {"op": condition["op"], "of": [self.condition(part) for part in condition["of"]]}
+        return {"how": condition["how"], "region": self.shape(condition["region"])}
+
+
+def _layer_from_dict(
+    scene: Scene, value: Any, paths: _Paths, progress: Progress | None, cancel: Cancel | None
+) -> Layer:
+    mapping(value, "layer", ("id", "kind", "name", "source"), ("visible", "settings", "filters", "selected"))
+    kind = value["kind"]
+    if kind not in KINDS:
+        raise ValueError(f"the kind of a layer is {shown(kind)}; choose one of {', '.join(KINDS)}")
+    source = _source_from_dict(value["source"], paths)
+    if (kind == "selection") != (source.ids is not None):
+        raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
+    visible = truth(value.get("visible", True), "visible")
+    layer = Layer(_id(value["id"]), kind, text(value["name"], "name"), source, visible)
+    data = scene.data(layer, progress, cancel).data
+    settings = layers.defaults(kind)
+    for name, setting in mapping(value.get("settings", {}), "settings", (), tuple(settings)).items():
+        settings[name] = layers.check(kind, name, setting, data)
+    layer = replace(layer, settings=settings)
+    if kind not in LINES:
+        if value.get("filters") is not None or value.get("selected") is not None:
+            raise ValueError(f"{layer.name!r} is of kind {kind} and has filters or a selection; tractograms alone have")
+        return layer
+    if value.get("filters") is not None:
+        filters = check_filters(value["filters"], data)
+        if filters.regions is not None:
+            regions = paths.condition(filters.regions)
+            make_predicate(regions, scene.shape_data)
+            filters = replace(filters, regions=regions)
+        layer = replace(layer, filters=filters)
+    if value.get("selected") is not None:
+        selected = _ids(value["selected"], "selected")
+        if selected.highest >= data.n_streamlines:
+            raise ValueError(f"streamline {selected.highest} is selected, of {data.n_streamlines} in {layer.name!r}")
+        layer = replace(layer, selected=selected if len(selected) else None)
+    return layer
+
+
+def _source_from_dict(value: Any, paths: _Paths) -> Source:
+    mapping(value, "source", (), ("path", "demo", "size", "ids"))
+    ids = None if value.get("ids") is None else _ids(value["ids"], "ids")
+    if (value.get("path") is None) == (value.get("demo") is None):
+        raise ValueError("a source has either a path or a demo")
+    if value.get("path") is not None:
+        return Source(paths(value["path"]), ids=ids)
+    if value["demo"] not in ("tracts", "head"):
+        raise ValueError(f"demo is {shown(value['demo'])}; choose one of tracts, head")
+    most = 100_000 if value["demo"] == "tracts" else 256
+    return Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most), ids=ids)
+
+
+def _clip_from_dict(value: Any, paths: _Paths) -> Clip:
+    mapping(value, "clip", ("id", "name", "shape"), ("inside", "enabled", "layers"))
+    of = value.get("layers")
+    if of is not None and not (isinstance(of, list) and all(isinstance(item, str) for item in of)):
+        raise ValueError(f"layers of a cut is {shown(of)}; give a list of ids, or null")
+    return Clip(
+        _id(value["id"]),
+        text(value["name"], "name"),
+        paths.shape(check_shape(value["shape"], "cut", CUTTING)),
+        truth(value.get("inside", True), "inside"),
+        truth(value.get("enabled", True), "enabled"),
+        None if of is None else tuple(of),
+    )
+
+
+def _check_cuts(scene: Scene, state: State) -> None:
+    for clip in state.clips:
+        make_region(clip.shape, scene.shape_data)
+        for layer_id in clip.layers or ():
+            state.layer(layer_id)
+    for layer in state.layers:
+        if layer.kind not in (*LINES, "volume"):
+            check_planes(layer, [clip for clip in state.clips if clip.cuts(layer)])
+
+
+def _id(value: Any) -> str:
+    if not isinstance(value, str) or not _ID.fullmatch(value):
+        raise ValueError(f"an id is {shown(value)}; ids are letters and a number, such as 'layer1'")
+    return value
+
+
+def _ids(value: Any, name: str) -> Ids:
+    """Return streamlines of a flat list of runs."""
+    fine = isinstance(value, list) and len(value) % 2 == 0 and len(value) <= 2 * _MOST_RUNS
+    if not fine or not all(type(item) is int and 0 <= item < 2**62 for item in value):
+        raise ValueError(f"{name} is {shown(value)}; give first and behind the last of each run of streamlines")
+    return Ids(np.array(value, np.int64).reshape(-1, 2))

@@ -1,0 +1,531 @@
+"""Scenes: files become layers, settings pictures, and what is refused leaves everything as it was."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets
+from pvfiblets.errors import FibletsError
+from pvfiblets.formats.registry import UnknownFormatError
+from pvfiblets.web.loading import Cancelled
+from pvfiblets.web.scene import Scene
+
+
+@pytest.fixture
+def flat(scene):
+    """Return the scene with the sixty lines seen along z from above, 0.5 mm a pixel, without light or a bar."""
+    layer = scene.open("lines.trk")
+    scene.set(layer.id, "scalars", None)
+    scene.set(layer.id, "lighting", False)
+    scene.set_camera(
+        {"position": [30, 18, 300], "focal_point": [30, 18, 0], "up": [0, 1, 0], "view_angle": 30.0,
+         "parallel": True, "parallel_scale": 40.0}
+    )  # fmt: skip
+    scene.screenshot()
+    return scene
+
+
+def drawn(picture):
+    return (picture > 0).any(axis=-1)
+
+
+# Opening ------------------------------------------------------------------------------------------
+
+
+def test_a_layer_looks_as_the_plotters_own_actor(scene, folder):
+    layer = scene.open("lines.trk")
+    scene.set(layer.id, "scalars", "fa")
+    scene.set(layer.id, "line_width", 3)
+    scene.set(layer.id, "show_bar", False)
+    scene.view("coronal")
+    picture = scene.screenshot()
+    other = pv.Plotter(off_screen=True, window_size=(200, 160))
+    other.set_background("black")
+    other.disable_anti_aliasing()
+    other.add_fiblets(
+        folder / "lines.trk", scalars="fa", cmap="viridis", line_width=3, show_scalar_bar=False, per_point=["fa"]
+    )
+    other.camera_position = scene.plotter.camera_position
+    other.camera.view_angle = scene.plotter.camera.view_angle
+    other.renderer.reset_camera_clipping_range()
+    expected = other.screenshot(return_img=True)
+    other.close()
+    assert drawn(picture).sum() > 500
+    np.testing.assert_array_equal(picture, expected)
+
+
+def test_kinds_are_found_by_file(scene):
+    found = [scene.open(name).kind for name in ("lines.trk", "vessel.vtp", "head.nii.gz", "ball.ply")]
+    assert found == ["tractogram", "tubes", "volume", "mesh"]
+    assert scene.open("vessel.vtp", kind="tractogram").kind == "tractogram"
+    assert len({layer.id for layer in scene.layers}) == len({layer.name for layer in scene.layers}) == 5
+    for layer in scene.layers:
+        json.dumps(scene.info(layer.id), allow_nan=False)
+        json.dumps(scene.histogram(layer.id), allow_nan=False)
+    json.dumps(scene.legend, allow_nan=False)
+    scene.screenshot()
+
+
+def test_progress_is_told_and_a_load_can_be_cancelled(scene):
+    told = []
+    scene.load("lines.trk", progress=lambda what, share: told.append((what, share)))
+    assert {"surveying", "compressing", "measuring"} <= {what for what, _ in told}
+    assert all(0.0 <= share <= 1.0 for _, share in told)
+    for calls in range(1, len(told)):
+        left = iter([False] * calls)
+        with pytest.raises(Cancelled):
+            scene.open("lines.trk", cancel=lambda left=left: next(left, True))
+    assert scene.layers == ()
+    assert not list((scene.root).glob(".fiblets-*"))
+
+
+def test_the_error_of_a_compressed_file_is_measured(scene, lines):
+    info = scene.info(scene.open("lines.trk").id)
+    fiblets = scene.actor(scene.layers[0].id).fiblets
+    expected = np.linalg.norm(fiblets.decompress(dtype=np.float64).points - lines.points, axis=1).max()
+    assert info["error_mm"]["max"] == pytest.approx(expected, rel=0.05, abs=1e-6)
+    assert info["error_mm"]["max"] <= info["promise_mm"]
+    assert info["streamlines"] == {"total": 60, "shown": 60}
+
+
+@pytest.mark.parametrize(
+    "path", ["../secret.ply", "sub/../../secret.ply", "link.ply", "links/secret.ply", "/etc/passwd"]
+)
+def test_paths_do_not_lead_out_of_the_root(scene, folder, path):
+    secret = folder.parent / "secret.ply"
+    pv.Sphere().save(secret)
+    (folder / "link.ply").symlink_to(secret)
+    (folder / "links").symlink_to(folder.parent)
+    (folder / "link.trk").symlink_to(folder.parent / "secret.trk")
+    lines = scene.open("lines.fiblets").id
+    for refused in (
+        lambda: scene.open(path),
+        lambda: scene.add_clip("mesh", path=path),
+        lambda: scene.set_regions(lines, {"how": "passes", "region": {"kind": "mesh", "path": path}}),
+        lambda: scene.export(lines, path.replace(".ply", ".trk").replace("passwd", "x.trk"), what="all"),
+    ):
+        with pytest.raises(PermissionError, match="outside of the folder"):
+            refused()
+    assert len(scene.layers) == 1
+    assert not (folder.parent / "secret.trk").exists()
+    for bad in ("", "a\x00b", None, 3, "x" * 5000):
+        with pytest.raises(ValueError, match="path is"):
+            scene.open(bad)
+
+
+def test_named_files_outside_of_the_root_are_allowed(plotter, folder, tmp_path):
+    outside = tmp_path / "outside.ply"
+    pv.Sphere().save(outside)
+    scene = Scene(plotter, folder, allowed=[outside])
+    assert scene.open(outside).path == str(outside)
+    with pytest.raises(PermissionError, match="outside of the folder"):
+        scene.open(tmp_path / "other.ply")
+    scene.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "error"),
+    [
+        ("a.xyz", b"", UnknownFormatError),
+        ("a.trk", b"no tractogram", FibletsError),
+        ("a.fiblets", b"PK\x03\x04", FibletsError),
+        ("a.nii.gz", b"\x1f\x8b no", Exception),
+        ("nowhere.trk", None, FileNotFoundError),
+    ],
+)
+def test_bad_files_leave_nothing_behind(scene, folder, name, content, error):
+    if content is not None:
+        (folder / name).write_bytes(content)
+    with pytest.raises(error):
+        scene.open(name)
+    assert scene.layers == ()
+    assert list(scene.plotter.actors) == []
+
+
+# Layers -------------------------------------------------------------------------------------------
+
+
+def test_what_is_refused_changes_nothing(flat):
+    (layer,) = flat.layers
+    state, picture = flat.state, flat.screenshot()
+    for refused in (
+        lambda: flat.set(layer.id, "opacity", 7),
+        lambda: flat.set("layer99", "opacity", 1.0),
+        lambda: flat.set_filter(layer.id, "no such", 0, 1),
+        lambda: flat.set_filter(layer.id, "length", 5, 1),
+        lambda: flat.set_groups(layer.id, ["nobody"]),
+        lambda: flat.set_subset(layer.id, -1),
+        lambda: flat.set_regions(layer.id, {"how": "passes", "region": {"kind": "mesh", "path": "open.ply"}}),
+        lambda: flat.add_clip("mesh", path="open.ply"),
+        lambda: flat.add_clip("plane", normal=[0, 0, 0]),
+        lambda: flat.rename(layer.id, "\n"),
+        lambda: flat.set_background("no colour"),
+    ):
+        with pytest.raises((ValueError, KeyError)):
+            refused()
+        assert flat.state is state
+    np.testing.assert_array_equal(flat.screenshot(), picture)
+
+
+def test_a_filter_that_fails_halfway_is_taken_back(flat, monkeypatch):
+    (layer,) = flat.layers
+    flat.set_filter(layer.id, "length", 20, 30)
+    actor, picture = flat.actor(layer.id), flat.screenshot()
+
+    def fail(*_, **__):
+        raise MemoryError("no more")
+
+    monkeypatch.setattr(actor, "subset", fail)
+    with pytest.raises(MemoryError):
+        flat.set_subset(layer.id, 0.5)
+    monkeypatch.undo()
+    assert dict(actor.criteria) == {"length": (20.0, 30.0)}
+    np.testing.assert_array_equal(flat.screenshot(), picture)
+
+
+def test_layers_are_shown_hidden_duplicated_renamed_and_removed(flat):
+    (layer,) = flat.layers
+    before = flat.screenshot()
+    flat.show(layer.id, False)
+    assert not drawn(flat.screenshot()).any()
+    twin = flat.duplicate(layer.id)
+    flat.show(twin.id, True)
+    np.testing.assert_array_equal(flat.screenshot(), before)
+    flat.rename(twin.id, "twin")
+    assert [other.name for other in flat.layers] == ["lines.trk", "twin"]
+    assert flat.data(twin).data is flat.data(flat.layers[0]).data
+    flat.remove(twin.id)
+    flat.remove(layer.id)
+    assert flat.layers == ()
+    assert list(flat.plotter.fiblets) == []
+    assert not drawn(flat.screenshot()).any()
+
+
+def test_meshes_are_coloured_and_show_edges(scene):
+    ball = scene.open("ball.ply")
+    scene.set(ball.id, "color", "#ff0000")
+    scene.set(ball.id, "lighting", False)
+    picture = scene.screenshot()
+    colours = {tuple(c) for c in picture[drawn(picture)].tolist()}
+    assert colours == {(255, 0, 0)}
+    assert scene.actor(ball.id).prop.color.hex_rgb == "#ff0000"
+    scene.set(ball.id, "representation", "wireframe")
+    assert 0 < drawn(scene.screenshot()).sum() < drawn(picture).sum()
+
+
+def test_volumes_show_what_their_mode_says(scene):
+    head = scene.open("head.nii.gz")
+    surface = drawn(scene.screenshot())
+    scene.set(head.id, "mode", "composite")
+    light = drawn(scene.screenshot())
+    assert 0 < surface.sum() < light.sum()  # at the middle value, and from the least on
+    scene.set(head.id, "values", [0.7])
+    scene.set(head.id, "mode", "isosurface")
+    assert 0 < drawn(scene.screenshot()).sum() < surface.sum()
+
+
+# What is shown ------------------------------------------------------------------------------------
+
+
+def test_criteria_groups_and_subsets_add_up(flat, lines):
+    (layer,) = flat.layers
+    length = lines.lengths()
+    flat.set_filter(layer.id, "length", 30.25, None)
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, length >= 30.25)
+    flat.set_filter(layer.id, "length", 30.25, 50.25)
+    expected = (length >= 30.25) & (length <= 50.25)
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
+    flat.set_subset(layer.id, every=3)
+    expected &= np.arange(60) % 3 == 0
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
+    assert flat.info(layer.id)["streamlines"] == {"total": 60, "shown": int(expected.sum())}
+    flat.remove_filter(layer.id, "length")
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, np.arange(60) % 3 == 0)
+    flat.remove_filter(layer.id)
+    assert flat.actor(layer.id).shown.all()
+
+
+def test_groups_of_a_file_are_shown(scene):
+    layer = scene.open("lines.fiblets")
+    scene.set_groups(layer.id, ["far"])
+    np.testing.assert_array_equal(scene.actor(layer.id).shown, np.arange(60) >= 30)
+    scene.set_groups(layer.id, None)
+    assert scene.actor(layer.id).shown.all()
+
+
+def test_regions_are_joined_by_and_or_not(flat, lines):
+    (layer,) = flat.layers
+    box = {"kind": "box", "bounds": [-1, 100, -1, 9, -1, 100]}
+    far = {"kind": "plane", "normal": [1, 0, 0], "origin": [40.25, 0, 0]}
+    ball = {"kind": "mesh", "path": "ball.ply"}
+    y, ends = np.array([line[0, 1] for line in lines]), np.array([line[-1, 0] for line in lines])
+    mesh = pv.Sphere(radius=8.0, center=(20.0, 18.0, 10.0))
+    inside = pv.PolyData(lines.points.astype(float)).select_interior_points(mesh)["selected_points"].astype(bool)
+    through = np.array([inside[a:b].any() for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)])
+    passes = {"how": "passes", "region": box}
+    reaches = {"how": "ends_in", "region": far}
+    hits = {"how": "passes", "region": ball}
+    flat.set_regions(layer.id, {"op": "and", "of": [passes, {"op": "not", "of": [reaches]}]})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) & ~(ends >= 40.25))
+    flat.set_regions(layer.id, {"op": "or", "of": [passes, hits]})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) | through)
+    flat.set_regions(layer.id, {"how": "stays_in", "region": box})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, y <= 9)
+    flat.set_regions(layer.id, {"how": "both_ends_in", "region": far})
+    assert not flat.actor(layer.id).shown.any()
+    flat.set_regions(layer.id, {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (ends >= 14.3) & (ends < 30.3))
+    flat.set_regions(layer.id, None)
+    assert flat.actor(layer.id).shown.all()
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        {},
+        [],
+        {"how": "passes"},
+        {"how": "flies over", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0], "radius": 1}},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 0}},
+        {"how": "passes", "region": {"kind": "box", "bounds": [1, 0, 0, 1, 0, 1]}},
+        {"how": "passes", "region": {"kind": "mesh", "path": "../ball.ply"}},
+        {"op": "xor", "of": []},
+        {"op": "not", "of": [{}, {}]},
+    ],
+)
+def test_conditions_that_are_none_are_refused(flat, condition):
+    with pytest.raises((ValueError, PermissionError)):
+        flat.set_regions(flat.layers[0].id, condition)
+    nested = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}}
+    for _ in range(50):
+        nested = {"op": "not", "of": [nested]}
+    with pytest.raises(ValueError, match="nested"):
+        flat.set_regions(flat.layers[0].id, nested)
+
+
+def test_cuts_leave_the_side_that_they_say(flat):
+    (layer,) = flat.layers
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    right = drawn(flat.screenshot())
+    flat.set_clip(clip.id, inside=False)
+    left = drawn(flat.screenshot())
+    column = 100 + round((20 - 30) / 0.5)  # of 200, at half a millimetre a pixel
+    assert not right[:, : column - 1].any()
+    assert not left[:, column + 2 :].any()
+    assert right.any()
+    assert left.any()
+    assert (whole == (right | left)).mean() > 0.99
+    flat.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+    flat.set_clip(clip.id, enabled=True, origin=[30.0, 0.0, 0.0])
+    assert drawn(flat.screenshot())[:, 80:98].any()
+    flat.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+
+
+def test_cuts_are_for_the_layers_that_they_name(flat):
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)  # by default, lines only
+    flat.set_clip(clip.id, layers=[ball.id])
+    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    flat.set(ball.id, "opacity", 0.99)  # of meshes another actor, cut all the same
+    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    with pytest.raises(ValueError, match="planes"):
+        flat.set_clip(clip.id, kind="sphere")
+    with pytest.raises(ValueError, match="VTK allows 6"):
+        flat.add_clip("box", layers=[ball.id])
+    flat.remove(ball.id)
+    assert flat.state.clips[0].layers == ()
+
+
+# Selection ----------------------------------------------------------------------------------------
+
+
+def test_a_pixel_picks_the_line_that_is_there(flat):
+    # From above, line 50 + j lies over those below at y = 4 j; x = 10 mm is 40 columns left of the middle.
+    row = 80 + round((4 * 3 - 18) / 0.5)
+    found = flat.pick_at(100 + round((55 - 30) / 0.5), row)
+    assert found["streamline"] == 53
+    assert found["position"][0] == pytest.approx(55.0, abs=0.6)
+    assert flat.layers[0].selected.array().tolist() == [53]
+    other = 80 + round((4 * 7 - 18) / 0.5)
+    assert flat.pick_at(100, other, mode="add")["streamline"] == 57
+    assert flat.layers[0].selected.array().tolist() == [53, 57]
+    flat.pick_at(100, row, mode="toggle")
+    assert flat.layers[0].selected.array().tolist() == [57]
+    assert flat.pick_at(2, 2) is None
+    assert flat.count() == 0
+
+
+def test_boxes_and_lassos_select_what_they_hold(flat, lines):
+    (layer,) = flat.layers
+    x0 = 100 + round((50 - 30) / 0.5)
+    reach = np.array([line[-1, 0] for line in lines])
+    flat.select_box(x0, 0, 199, 159, through=True)
+    beyond = set(np.flatnonzero(reach > 51).tolist())
+    found = set(flat.layers[0].selected.array().tolist())
+    assert beyond <= found <= set(np.flatnonzero(reach >= 49).tolist())
+    before = flat.count()
+    flat.select_polygon([[x0, 0], [199, 0], [199, 80], [x0, 80]], mode="remove", through=True)
+    y = np.array([line[0, 1] for line in lines])
+    assert set(flat.layers[0].selected.array().tolist()) == {i for i in found if y[i] > 18}
+    assert 0 < flat.count() < before
+    flat.deselect()
+    assert flat.layers[0].selected is None
+    assert len(flat.actor(layer.id).selection) == 0
+    with pytest.raises(ValueError, match="lasso"):
+        flat.select_polygon([[0, 0]])
+    with pytest.raises(ValueError, match="mode"):
+        flat.select_box(0, 0, 9, 9, mode="perhaps")
+
+
+def test_the_table_says_what_is_selected(scene, lines):
+    layer = scene.open("lines.fiblets")
+    scene.set(layer.id, "scalars", "fa")
+    scene.select(layer.id, [7, 31, 59])
+    table = scene.table()
+    assert table["total"] == 3
+    assert [row["streamline"] for row in table["rows"]] == [7, 31, 59]
+    np.testing.assert_allclose([row["length"] for row in table["rows"]], lines.lengths()[[7, 31, 59]], atol=0.1)
+    assert [row["points"] for row in table["rows"]] == lines.counts[[7, 31, 59]].tolist()
+    np.testing.assert_allclose([row["value"] for row in table["rows"]], 0.5, atol=0.01)
+    assert [row["groups"] for row in table["rows"]] == [["near"], ["far"], ["far"]]
+    assert [row["streamline"] for row in scene.table(first=1, limit=1)["rows"]] == [31]
+    json.dumps(table, allow_nan=False)
+    profile = scene.profile(layer.id, n=5)
+    np.testing.assert_allclose(profile["mean"], [0, 0.25, 0.5, 0.75, 1], atol=0.01)
+    assert (profile["name"], profile["count"]) == ("fa", 3)
+    for ids in ([60], [-1], [0.5]):
+        with pytest.raises(ValueError, match="streamlines are"):
+            scene.select(layer.id, ids)
+
+
+@pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtp", ".vtk", ".fiblets"])
+def test_exports_hold_what_was_selected(scene, lines, suffix):
+    layer = scene.open("lines.fiblets")
+    with pytest.raises(ValueError, match="nothing"):
+        scene.export(layer.id, f"some{suffix}")
+    scene.select(layer.id, [3, 10, 11, 40])
+    said = scene.export(layer.id, f"some{suffix}")
+    assert (said["path"], said["streamlines"]) == (f"some{suffix}", 4)
+    place = scene.root / f"some{suffix}"
+    found = pvfiblets.FibletSet.open(place).decompress() if suffix == ".fiblets" else pvfiblets.read(place)
+    assert len(found) == 4
+    np.testing.assert_allclose(found.points, lines[[3, 10, 11, 40]].points, atol=0.06)
+    with pytest.raises(FileExistsError):
+        scene.export(layer.id, f"some{suffix}")
+    scene.set_groups(layer.id, ["far"])
+    assert scene.export(layer.id, f"some{suffix}", what="shown", overwrite=True)["streamlines"] == 30
+    with pytest.raises(ValueError, match="end in one of"):
+        scene.export(layer.id, "some.txt")
+
+
+def test_what_is_selected_becomes_a_layer_of_its_own(scene, lines):
+    layer = scene.open("lines.fiblets")
+    scene.select(layer.id, np.arange(20, 50))
+    part = scene.keep_selection(layer.id)
+    assert part.kind == "selection"
+    scene.select(part.id, [0, 5, 29], mode="replace")
+    nested = scene.keep_selection(part.id)
+    assert nested.source.ids.array().tolist() == [20, 25, 49]
+    np.testing.assert_allclose(
+        scene.actor(nested.id).fiblets.decompress().points, lines[[20, 25, 49]].points, atol=0.06
+    )
+    scene.remove(layer.id)
+    scene.screenshot()
+
+
+# Questions ----------------------------------------------------------------------------------------
+
+
+def test_histograms_count_as_numpy_does(scene, lines):
+    layer = scene.open("lines.fiblets")
+    found = scene.histogram(layer.id, "length", bins=6)
+    counts, edges = np.histogram(lines.lengths(), bins=6)
+    np.testing.assert_allclose(found["edges"], edges, atol=0.1)
+    assert found["counts"] == counts.tolist()
+    assert (found["missing"], found["share"]) == (0, 1.0)
+    head = scene.open("head.nii.gz")
+    values = scene.data(head).data.values
+    assert scene.histogram(head.id, bins=4)["counts"] == np.histogram(values, bins=4)[0].tolist()
+    with pytest.raises(ValueError, match="no such"):
+        scene.histogram(layer.id, "no such")
+
+
+def test_bars_are_of_visible_layers_and_say_their_values(scene):
+    one, two = scene.open("lines.fiblets"), scene.open("lines.trk")
+    assert list(scene.plotter.scalar_bars.keys()) == []  # directions have no values
+    scene.set(one.id, "scalars", "length")
+    scene.set(two.id, "scalars", "length")
+    scene.set(two.id, "clim", [0, 5])
+    assert list(scene.plotter.scalar_bars.keys()) == ["length [mm]", "length [mm], lines.trk"]
+    assert scene.actor(one.id).clim == pytest.approx((10.0, 69.0), abs=0.1)  # bars do not make layers share a range
+    ranges = [bar.GetLookupTable().GetTableRange() for bar in scene.plotter.scalar_bars.values()]
+    assert ranges[0] == pytest.approx((10.0, 69.0), abs=0.1)
+    assert ranges[1] == (0.0, 5.0)
+    scene.show(one.id, False)
+    assert list(scene.plotter.scalar_bars.keys()) == ["length [mm]"]
+    assert [entry["name"] for entry in scene.legend] == ["lines.trk"]
+    scene.set(two.id, "show_bar", False)
+    assert list(scene.plotter.scalar_bars.keys()) == []
+    scene.show(one.id, True)
+    scene.remove(one.id)
+    assert list(scene.plotter.scalar_bars.keys()) == []
+
+
+@pytest.mark.parametrize(
+    ("view", "edges"),
+    [("axial", "LRAP"), ("coronal", "RLSI"), ("sagittal", "APSI"), ("right", "PASI"), ("posterior", "LRSI")],
+)
+def test_views_know_their_sides(scene, view, edges):
+    scene.open("ball.ply")
+    scene.view(view)
+    found = scene.edges()
+    assert "".join(found[side] for side in ("left", "right", "top", "bottom")) == edges
+    scene.parallel = True
+    assert scene.camera()["parallel"] is True
+    picture = scene.screenshot(scale=2)
+    assert picture.shape == (320, 400, 3)
+    with pytest.raises(ValueError, match="scale"):
+        scene.screenshot(scale=100)
+
+
+def test_a_closed_scene_leaves_nothing(plotter, folder, monkeypatch, tmp_path):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    import tempfile
+
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    scene = Scene(plotter, folder)
+    scene.open("lines.trk")
+    scene.screenshot()
+    made = [name for name in os.listdir(tmp_path) if name.startswith("pvfiblets-")]
+    assert len(made) == 1
+    scene.close()
+    scene.close()
+    assert [name for name in os.listdir(tmp_path) if name.startswith("pvfiblets-")] == []
+    assert list(plotter.fiblets) == []
+
+
+def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
+    """Of two layers in one place, the first shows; also when it was taken away and came back."""
+    (first,) = flat.layers
+    flat.set(first.id, "color", "#ff0000")
+    second = flat.duplicate(first.id)
+    flat.set(second.id, "color", "#00ff00")
+    state, picture = flat.state, flat.screenshot()
+    bytes_before = flat.info(second.id)["gpu_bytes"]
+    flat.remove(first.id)
+    assert {tuple(c) for c in flat.screenshot()[drawn(picture)].tolist()} == {(0, 255, 0)}
+    flat.become(state)
+    np.testing.assert_array_equal(flat.screenshot(), picture)
+    assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0

@@ -1,0 +1,108 @@
+"""Scripts: plain Python that makes the same picture, run as anybody would."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.web.script import as_script
+
+
+def tracts(scene):
+    """Lines that are coloured, filtered, cut and picked, a mesh that is cut, and a hidden layer."""
+    lines = scene.open("lines.trk")
+    scene.set(lines.id, "scalars", "fa")
+    scene.set(lines.id, "cmap", "plasma_r")
+    scene.set(lines.id, "line_width", 2)
+    scene.set(lines.id, "illuminated", True)
+    scene.set_filter(lines.id, "length", 15, None)
+    scene.set_subset(lines.id, 0.9)
+    labels = {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}}
+    ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}}
+    anything = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 30}}
+    scene.set_regions(lines.id, {"op": "or", "of": [labels, ball, {"op": "not", "of": [anything]}, anything]})
+    scene.select(lines.id, [*range(10, 20), 40, 45])
+    scene.set(lines.id, "selection_color", "#00ff00")
+    scene.set(lines.id, "selection_dim", 0.4)
+    mesh = scene.open("ball.ply")
+    scene.set(mesh.id, "color", "#ff8800")
+    scene.set(mesh.id, "show_edges", True)
+    scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 3], layers=[lines.id, mesh.id])
+    scene.add_clip("sphere", inside=False, center=[10, 0, 0], radius=6)
+    scene.show(scene.duplicate(lines.id).id, False)
+    scene.view("coronal")
+
+
+def anatomy(scene):
+    """A volume, tubes, a selection on its own and tubes in the style of ink; parallel, on white."""
+    lines = scene.open("lines.fiblets")
+    scene.set(lines.id, "scalars", "length")
+    scene.set(lines.id, "opacity", 0.6)
+    scene.set(lines.id, "transparency", "layers")
+    scene.set_groups(lines.id, ["near"])
+    scene.select(lines.id, [5, 6, 7, 50, 52])
+    part = scene.keep_selection(lines.id)
+    scene.set(part.id, "scalars", None)
+    scene.set(part.id, "color", "#cc0000")
+    scene.set(part.id, "tube_radius", 1.0)
+    scene.deselect()
+    head = scene.open("head.nii.gz")
+    scene.set(head.id, "mode", "composite")
+    scene.set(head.id, "opacity", "sigmoid_5")
+    scene.set(head.id, "opacity_unit_distance", 20.0)
+    tubes = scene.open("vessel.vtp")
+    scene.set(tubes.id, "scalars", "radius")
+    scene.set(tubes.id, "silhouette", True)
+    ink = scene.duplicate(part.id)
+    scene.set(ink.id, "style", "halo")
+    scene.set_background("white")
+    scene.view("sagittal")
+    scene.parallel = True
+
+
+@pytest.mark.parametrize("fill", [tracts, anatomy])
+def test_a_script_makes_the_same_picture(scene, folder, fill):
+    fill(scene)
+    scene.screenshot()
+    picture = scene.screenshot()
+    script = as_script(scene, "again.png")
+    assert str(folder) not in script
+    assert "trame" not in script
+    assert "pvfiblets.web" not in script
+    (folder / "again.py").write_text(script)
+    done = subprocess.run(
+        [sys.executable, "again.py"], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr + script
+    again = np.asarray(pv.read(folder / "again.png").active_scalars).reshape(160, 200, -1)[::-1]
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
+    differ = (again != picture).any(axis=-1)
+    assert differ.sum() == 0, f"{differ.sum()} of {differ.size} pixels differ"
+
+
+def test_a_script_can_be_read(scene):
+    layer = scene.open("lines.fiblets")
+    scene.rename(layer.id, "class: arcuate (left) #1")
+    scene.rename(scene.duplicate(layer.id).id, "class_arcuate_left_1")
+    scene.select(layer.id, np.arange(0, 60, 2))
+    script = as_script(scene)
+    compile(script, "script", "exec")
+    assert max(map(len, script.splitlines())) <= 120
+    call = "plotter.add_fiblets(FOLDER / 'lines.fiblets', line_width=1.0, show_scalar_bar=False)\n"
+    assert f"\nclass_arcuate_left_1 = {call}" in script
+    assert "\nclass_arcuate_left_1_2 = plotter.add_fiblets(" in script
+    assert script.rstrip().endswith("plotter.show()")
+
+
+def test_demos_are_made_in_a_script(scene):
+    tracts, head = scene.add_demo(50, 8)
+    assert tracts.visible
+    assert not head.visible
+    script = as_script(scene)
+    assert "brain_streamlines(50, 0.5)" in script
+    assert "brain_like(8)" in script
+    compile(script, "script", "exec")
