@@ -22,7 +22,7 @@ def test_sides_of_voxels_have_one_normal_each(gl, camera):
     volume = RaycastVolume(values.astype(np.float32), affine)
     matrix = camera(SIZE, eye=(30.0, -70.0, 25.0), target=(0.0, 0.0, 0.0), near=5.0, far=200.0)
     renderer = RaycastRenderer(gl, volume)
-    casting = Casting(values=(3.0,), filter="nearest", step=0.25, iterations=12)
+    casting = Casting(values=(3.0,), filter="nearest", step=0.02, iterations=8)
     buffer = renderer.render(View(SIZE, matrix), RaycastStyle(casting=casting))
     key = np.frombuffer(buffer.depth.read(), "u4").reshape(SIZE[::-1])
     normal = unpacked_tangent(np.frombuffer(buffer.across.read(), "u4").reshape(SIZE[::-1]))
