@@ -73,11 +73,12 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
     casting = Casting(values=(value,), step=options.step)
     matrix = camera(volume, options.size, away)
     try:
-        buffer = renderer.render(View(tuple(options.size), matrix), RaycastStyle(casting=casting))
+        view = View(tuple(options.size), matrix)
+        buffer = renderer.render(view, RaycastStyle(casting=casting))
         shown = np.frombuffer(buffer.depth.read(), "u4") != 0xFFFFFFFF
 
         def openness(samples: int, seed: int) -> np.ndarray:
-            texture = occlusion.draw(renderer, buffer, casting, radius=options.radius, samples=samples, seed=seed)
+            texture = occlusion.draw(renderer, buffer, casting, view, radius=options.radius, samples=samples, seed=seed)
             return np.frombuffer(texture.read(), "f2")[shown].astype(np.float64) / samples
 
         seeds, most = options.many

@@ -1,4 +1,4 @@
-"""`RayOcclusion`: surfaces of a volume are darker where rays from them meet the volume again, as an extra of its mapper."""
+"""`RayOcclusion`, an extra of a mapper: surfaces of a volume are darker where rays from them meet it again."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class RayOcclusion:
 
     From every pixel's point of a surface rays are cast into the hemisphere around its normal, the more the steeper. The
     colour is darkened by the share of them that crosses any of the surfaces within a radius. Clipping planes and the
-    box of the volume hold for them; other things in the scene, and the camera's near plane, do not.
+    box of the volume hold for them, and regions as far as the picture shows where they end; other things in the scene,
+    and the camera's near plane, do not.
 
     Parameters
     ----------
@@ -78,7 +79,14 @@ class RayOcclusion:
         radius = extent(draw) / 20.0 if self.radius is None else self.radius
         to_data = np.linalg.inv(draw.frame.model[:3, :3])
         texture = kept.draw(
-            draw.engine, draw.buffer, draw.style.casting, to_data, radius=radius, samples=self.samples, seed=self.seed
+            draw.engine,
+            draw.buffer,
+            draw.style.casting,
+            draw.view,
+            to_data,
+            radius=radius,
+            samples=self.samples,
+            seed=self.seed,
         )
         return {"fibletRayOcclusionMap": texture}
 

@@ -5,7 +5,7 @@
 //
 // for n directions w_i whose density is (N.w) / pi. V(w) is 0 where a ray from the point crosses any of the surfaces within a
 // radius, else 1. Rays end where planes of the caller's and the box cut the volume: beyond, nothing is there. The near and the far
-// plane of the camera end none, so that what they hide does not change the light.
+// plane of the camera end none, so that what they hide does not change the light. What the caller's region takes away does not occlude.
 //
 // Directions are points of a square (u, v), as even as the two-dimensional golden ratio has them (Roberts' R2, additive recurrence),
 // moved around by a hash of pixel and seed (Cranley and Patterson 1976), and taken to the disc below the hemisphere by r^2 = u
@@ -30,6 +30,19 @@
 #include "raycast/field.glsl"
 #include "raycast/ray.glsl"
 #include "raycast/nodes.glsl"
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+
+uniform mat4 to_clip;               // voxels -> clip coordinates, of any scale
+
+// Whether a place in voxels is in the caller's region. Where that ends is drawn for the picture's pixels: beside them all is there.
+bool is_there(vec3 p) {
+    vec4 clip = to_clip * vec4(p, 1.0);
+    vec2 size = 2.0 * vec2(ray_size.w, ray_table.z), pixel = (0.5 * clip.xy / clip.w + 0.5) * size;
+    if (clip.w <= 0.0 || any(lessThan(pixel, vec2(0.0))) || any(greaterThanEqual(pixel, size))) return true;
+    return region_keeps(ivec2(pixel), clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0));
+}
+#endif
 
 const float LIFT = {{ lift }};      // voxels
 const float BESIDE = 0.1;           // voxels
@@ -111,7 +124,11 @@ bool is_open(Ray ray, float low, float high) {
         do {
             t = min(t + step, ray.last);
             float v = value_at(at(ray, t));
+#if FEATURE_CLIP_REGION
+            if ((v < low || v >= high) && is_there(at(ray, t))) return false;
+#else
             if (v < low || v >= high) return false;
+#endif
         } while (t < end && t < ray.last);
     }
     return true;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pvfiblets import regions
 from pvfiblets.engine import EngineError, View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
 from pvfiblets.engine.raycast.occlusion import LIFT, RayOcclusionPass, turns_of_ray
@@ -40,11 +41,12 @@ def occluded(gl):
     """Return a function that draws a volume and its occlusion."""
     kept = []
 
-    def draw(volume, casting, matrix, *, to_data=None, planes=(), **settings):
+    def draw(volume, casting, matrix, *, to_data=None, planes=(), region=None, **settings):
         renderer, occlusion = RaycastRenderer(gl, volume), RayOcclusionPass(gl)
         kept.extend([renderer, occlusion])
-        buffer = renderer.render(View(SIZE, matrix, planes), RaycastStyle(casting=casting))
-        texture = occlusion.draw(renderer, buffer, casting, to_data, **settings)
+        view = View(SIZE, matrix, planes, region)
+        buffer = renderer.render(view, RaycastStyle(casting=casting))
+        texture = occlusion.draw(renderer, buffer, casting, view, to_data, **settings)
         return Shown(buffer, texture, settings.get("samples", 32), matrix)
 
     yield draw
@@ -232,6 +234,22 @@ def test_as_the_reference(occluded, camera, case):
     assert np.quantile(off, 0.9) < 3 * slack
 
 
+def test_what_a_region_takes_away_does_not_occlude(occluded, camera):
+    matrix = camera(SIZE, eye=(30, -25, 40), target=(-5, 0, -10), near=5, far=200, angle=50)
+    casting, rays = Casting(values=(-10.3,)), {"radius": 12.0, "samples": 64}
+    whole = occluded(corner(), casting, matrix, **rays)
+    floor = whole.there & (np.abs(whole.place[..., 2] + 10.3) < 1e-2) & (whole.place[..., 0] > -5.0)
+    assert whole.open[floor].min() < 0.8
+    # The wall is where x is below -10.3, and all in the picture, whose pixels are 2 mm.
+    cut = occluded(corner(), casting, matrix, region=regions.Slab((1, 0, 0), (10, 0, 0), 34.0), **rays)
+    same = floor & cut.there & (np.abs(cut.place - whole.place).max(axis=-1) < 1e-2)
+    assert same.sum() > 40
+    assert cut.open[same].min() == 1.0
+    kept = occluded(corner(), casting, matrix, region=~regions.Sphere((20, 20, 20), 3.0), **rays)
+    both = kept.there & whole.there
+    assert (kept.open[both] == whole.open[both]).mean() > 0.99
+
+
 # ---------------------------------------------------------------------------------------------------- the same again
 
 
@@ -299,8 +317,9 @@ def test_drawn_anew_only_when_something_changed(gl, camera, monkeypatch):
     monkeypatch.setattr(renderer, "bind_field", lambda program: (runs.append(1), bind(program)))
 
     def draw(how="perspective", **settings):
-        buffer = renderer.render(View(SIZE, around(camera, volume, how)), style)
-        return occlusion.draw(renderer, buffer, style.casting, **({"radius": 9.0, "samples": 4} | settings))
+        view = View(SIZE, around(camera, volume, how))
+        buffer = renderer.render(view, style)
+        return occlusion.draw(renderer, buffer, style.casting, view, **({"radius": 9.0, "samples": 4} | settings))
 
     assert draw() is draw()
     assert len(runs) == 1

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ...raycast.casting import Casting
     from ...raycast.volume import RaycastVolume
     from ..gbuffer import GBuffer
+    from ..view import View
 
 __all__ = ["GOLDEN", "LIFT", "MAX_SAMPLES", "RayOcclusionPass"]
 
@@ -26,8 +27,8 @@ MAX_SAMPLES = 2048
 """Rays of a pixel: the most that float16 counts one by one."""
 
 MOST_TURNS = 20_000
-"""Turns of loops in one draw of a pixel. Mesa's software OpenGL leaves all loops after 65,535 without a word, lanes of a
-vector do not turn together, and other drivers kill what draws for seconds: more rays are cast in several draws."""
+"""Turns of loops in one draw of a pixel. Mesa's software OpenGL leaves all loops after 65,535 without a word, lanes of
+a vector do not turn together, and other drivers kill what draws for seconds: more rays are cast in several draws."""
 
 LIFT = 0.25
 """Voxels by which rays start above the surface: shading has smoother normals than the field has surfaces, and rays that
@@ -59,6 +60,7 @@ class RayOcclusionPass(ScreenEffect):
         renderer: RaycastRenderer,
         buffer: GBuffer,
         casting: Casting,
+        view: View,
         to_data: npt.ArrayLike | None = None,
         *,
         radius: float,
@@ -75,6 +77,9 @@ class RayOcclusionPass(ScreenEffect):
             The picture.
         casting : Casting
             What it was drawn with: of mode ``'isosurface'``.
+        view : View
+            Where it was drawn from. What its region takes away of the volume occludes nothing, as far as that is in the
+            picture: where the region ends is known of its pixels alone.
         to_data : array_like, optional
             ``(3, 3)``: directions in the world, in mm of which the hemisphere and the radius are, to those in the
             volume's coordinates. The same by default.
@@ -107,8 +112,13 @@ class RayOcclusionPass(ScreenEffect):
         texture = self._target(_NAME, buffer.size, "f2")
 
         def rays() -> None:
-            program, array = self._programs.screen("raycast/occlusion.frag", FEATURES_OF_FILTER[casting.filter])
+            cut = [] if view.region is None else ["CLIP_REGION"]
+            features = [*FEATURES_OF_FILTER[casting.filter], *cut]
+            program, array = self._programs.screen("raycast/occlusion.frag", features)
             renderer.bind_field(program)
+            if cut:
+                clip = view.model_view_projection @ renderer.volume.affine
+                program["to_clip"] = tuple((clip / np.abs(clip).max()).T.ravel().tolist())
             read = {"shown_depth": buffer.depth, "shown_position": buffer.position}
             for unit, (name, of_picture) in enumerate(read.items(), start=FIRST_UNIT + 8):
                 of_picture.use(unit)

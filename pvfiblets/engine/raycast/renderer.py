@@ -226,7 +226,8 @@ class RaycastRenderer:
         return self._volume
 
     def bind_field(self, program: moderngl.Program) -> None:
-        """Bind the volume, its octree and the rays of the last picture for another pass over that picture."""
+        """Bind the volume, its octree, its cuts and the rays of the last picture for another pass over that picture."""
+        self._cuts.bind(program)
         voxels, block = self._alive()
         block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
         voxels.texture.use(VOXELS_UNIT)
