@@ -1,0 +1,161 @@
+"""A server in a process of its own, and pages of it in Chromium, for tests.
+
+The fixtures are in conftest.py: ``served`` starts servers, ``visit`` opens pages and fails a test whose page wrote an
+error to its console.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+FLAGS = (
+    "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-quic", "--no-first-run",
+)  # fmt: skip
+PATIENCE = 60_000  # ms: machines that run tests are busy
+
+
+def chromium() -> str | None:
+    """Return where Chromium is, if it is."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    given = os.environ.get("CHROMIUM")
+    return given or next((found for name in names if (found := shutil.which(name))), None)
+
+
+class Served:
+    """``pvfiblets serve`` with some arguments, on a port of its own."""
+
+    def __init__(self, *arguments, root):
+        self.root = Path(root)
+        self.log = self.root.parent / f"serve-{time.monotonic_ns()}.log"
+        command = [sys.executable, "-m", "pvfiblets.cli", "serve", *map(str, arguments), "--port", "0", "--root", str(root)]
+        with self.log.open("w") as log:
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
+        line = self.process.stdout.readline()
+        found = re.search(r"http://\S+", line)
+        assert found, self.log.read_text()
+        self.url = found.group()
+        self.base = self.url.partition("?")[0].rstrip("/")
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        try:
+            self.process.wait(30)
+        finally:
+            self.process.kill()
+            self.process.stdout.close()
+
+
+class Visit:
+    """One page in a browser of its own: cookies are not shared with others."""
+
+    def __init__(self, browser, served, *, width=1280, height=720, **options):
+        self.served = served
+        self.context = browser.new_context(viewport={"width": width, "height": height}, accept_downloads=True, **options)
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE)
+        self.errors = []
+        self.requests = []
+        self.received = []
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("console", lambda said: self.errors.append(said.text) if said.type == "error" else None)
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("websocket", lambda socket: socket.on("framereceived", lambda data: self.received.append(len(data))))
+
+    def open(self):
+        """Open the page and wait for the first picture with something in it."""
+        self.page.goto(self.served.url)
+        return self.ready()
+
+    def ready(self):
+        self.page.wait_for_selector("#pv-view img[src^=blob]")
+        self.wait(lambda: self.layers() and self.picture().std() > 1.0, "a picture with something in it")
+        return self
+
+    def wait(self, until, what):
+        """Wait until a function says so."""
+        end = time.monotonic() + PATIENCE / 1000.0
+        while not (found := until()):
+            assert time.monotonic() < end, f"waited in vain for {what}; the server said:\n{self.served.log.read_text()}"
+            self.page.wait_for_timeout(100)
+        return found
+
+    def picture(self):
+        """Return what the view shows, ``(height, width, 3)``, as the browser has it, without what lies over it."""
+        from PIL import Image
+
+        data = self.page.evaluate(
+            """() => {
+                const image = document.querySelector('#pv-view img');
+                const canvas = document.createElement('canvas');
+                canvas.width = image.naturalWidth || 1; canvas.height = image.naturalHeight || 1;
+                if (image.naturalWidth) canvas.getContext('2d').drawImage(image, 0, 0);
+                return canvas.toDataURL('image/png').split(',')[1];
+            }"""
+        )
+        return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")).astype(np.int16)
+
+    def rests(self):
+        """Wait until no picture has come for a while, and return the last."""
+        count = -1
+        while len(self.received) != count:
+            count = len(self.received)
+            self.page.wait_for_timeout(700)
+        return self.picture()
+
+    def changed(self, before, what="another picture", least=0.05):
+        """Wait until the picture differs from one before, and is at rest."""
+
+        def differs():
+            now = self.picture()
+            return now.shape != before.shape or np.abs(now - before).mean() > least
+
+        self.wait(differs, what)
+        return self.rests()
+
+    def state(self, name):
+        return self.page.evaluate(f"window.trame.state.get('{name}')")
+
+    def layers(self):
+        return self.page.locator("[data-layer]").count()
+
+    def drag(self, start=(0.4, 0.5), end=(0.65, 0.6), *, steps=12):
+        """Drag over the view, from and to shares of it."""
+        box = self.page.locator("#pv-view").bounding_box()
+        at = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)]
+        self.page.mouse.move(*at[0])
+        self.page.mouse.down()
+        self.page.mouse.move(*at[1], steps=steps)
+        self.page.mouse.up()
+
+    def choose(self, name, title):
+        """Choose from the list of a property."""
+        self.page.click(f"[data-property={name}] .v-select .v-field")
+        self.page.click(f".v-overlay--active .v-list-item:has-text('{title}')")
+
+    def tab(self, name):
+        self.page.click(f"[data-tab={name}]")
+        self.page.wait_for_selector(f"#tab-{name}")
+
+    def press(self, key):
+        self.page.keyboard.press(key)
+
+    def toast(self):
+        return self.page.locator("[data-toast]").inner_text()
+
+    def close(self):
+        try:
+            self.context.request.post(f"{self.served.base}/end", headers={"Origin": self.served.base})
+        finally:
+            self.context.close()

@@ -1,0 +1,207 @@
+"""Pages of ``pvfiblets serve`` in a real browser."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def test_a_page_opens_turns_and_rests(visit):
+    here = visit("lines.fiblets")
+    assert here.state("layers")[0]["name"] == "lines.fiblets"
+    before = here.rests()
+    assert before.shape[0] > 400  # as large as the place for it
+    here.drag()
+    after = here.changed(before)
+    assert after.shape == before.shape
+    # At rest nothing is drawn and nothing is sent.
+    count, frame = len(here.received), here.state("frame")
+    here.page.wait_for_timeout(1500)
+    assert len(here.received) == count
+    assert here.state("frame") == frame
+    # Everything comes from the server itself.
+    assert all(url.startswith((here.served.base, "blob:", "data:")) for url in here.requests)
+    assert not any("token=" in url for url in here.requests[1:])
+    assert "token" not in here.page.url
+
+
+def test_pictures_are_coarse_in_motion_and_fine_at_rest(visit):
+    here = visit("lines.fiblets")
+    here.rests()
+    here.page.evaluate(
+        """() => { window.sizes = []; const real = URL.createObjectURL;
+            URL.createObjectURL = (blob) => { window.sizes.push(blob.size); return real.call(URL, blob); }; }"""
+    )
+    here.drag(steps=20)
+    here.rests()
+    sizes = here.page.evaluate("window.sizes")
+    assert len(sizes) >= 2
+    assert sizes[-1] > 1.5 * min(sizes[:-1])
+
+
+def test_properties_change_the_picture_and_are_undone(visit):
+    here = visit("lines.fiblets")
+    here.press("2")
+    first = here.rests()
+    here.choose("scalars", "length")
+    coloured = here.changed(first)
+    assert here.page.locator("[data-property=clim] .pv-chart, [data-property=clim] svg").count()
+    here.page.fill("[data-property=line_width] input.pv-num", "6")
+    here.press("Tab")
+    wide = here.changed(coloured)
+    assert (wide.max(axis=2) > 40).sum() > 1.5 * (coloured.max(axis=2) > 40).sum()
+    here.page.click("[data-action=undo]")
+    here.page.click("[data-action=undo]")
+    assert np.abs(here.changed(wide) - first).mean() < 0.5
+    here.page.fill("[data-property=line_width] input.pv-num", "a lot")
+    here.press("Tab")
+    here.wait(lambda: "not a number" in here.toast(), "a sentence on what was typed")
+    assert here.page.input_value("[data-property=line_width] input.pv-num") == "1"
+
+
+def test_layers_are_hidden_renamed_duplicated_and_removed(visit):
+    here = visit("lines.fiblets")
+    full = here.rests()
+    here.page.click("[data-action=eye]")
+    here.wait(lambda: here.picture().std() < 0.5, "an empty picture")
+    here.page.click("[data-action=eye]")
+    here.changed(np.zeros_like(full))
+    here.page.click("[data-action=more]")
+    here.page.click(".v-overlay--active .v-list-item:has-text('Rename')")
+    here.page.fill("#rename", "corticospinal")
+    here.press("Enter")
+    here.wait(lambda: here.state("layers")[0]["name"] == "corticospinal", "the new name")
+    here.page.click("[data-action=more]")
+    here.page.click(".v-overlay--active .v-list-item:has-text('Duplicate')")
+    here.wait(lambda: here.layers() == 2, "a second layer")
+    here.press("Delete")
+    here.wait(lambda: here.layers() == 1, "one layer")
+
+
+def test_cuts_and_filters_leave_less_to_see(visit):
+    here = visit("lines.fiblets")
+    here.press("2")
+    full = here.rests()
+
+    def lit(picture):
+        return (picture.max(axis=2) > 40).mean()
+
+    here.page.click("[data-cut=plane]")
+    cut = here.changed(full)
+    assert 0.2 < lit(cut) / lit(full) < 0.9
+    here.page.click("[data-clip] [data-action=side]")
+    other = here.changed(cut)
+    assert abs(lit(cut) + lit(other) - lit(full)) < 0.25 * lit(full)
+    here.press("Control+z")
+    here.press("Control+z")
+    here.changed(other)
+    here.tab("filter")
+    here.page.click("#tab-filter .v-select:has(#add-criterion) .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('length')")
+    least = here.page.locator("[data-criterion=length] input.pv-num").first
+    least.fill("40")
+    here.press("Tab")
+    # Lines of 10 to 69 mm, one of each length.
+    here.wait(lambda: here.page.inner_text("[data-value=counted]") == "30 of 60 streamlines", "30 streamlines")
+    assert lit(here.rests()) < 0.9 * lit(full)
+
+
+def test_what_is_picked_fills_the_table_and_is_exported(visit):
+    import pvfiblets
+
+    here = visit("lines.fiblets")
+    here.press("2")
+    before = here.rests()
+    here.press("b")
+    here.drag((0.02, 0.02), (0.98, 0.98))
+    here.wait(lambda: here.state("selection")["count"] > 0, "a selection")
+    here.changed(before)
+    count = here.state("selection")["count"]
+    assert here.page.locator("#picked tbody tr").count() == count
+    assert here.page.locator("#profile svg").count() == 1
+    here.page.click("[data-action=export]")
+    here.page.click("[data-export='.trk']")
+    here.page.wait_for_selector("[data-action=download]")
+    with here.page.expect_download() as download:
+        here.page.click("[data-action=download]")
+    path = here.served.root / download.value.suggested_filename
+    assert path.read_bytes() == download.value.path().read_bytes()
+    assert len(pvfiblets.read(path)) == count
+
+
+def test_sessions_are_saved_loaded_and_survive_a_reload(visit):
+    here = visit("lines.fiblets")
+    here.choose("scalars", "length")
+    here.press("1")
+    here.page.wait_for_timeout(300)
+    kept = here.rests()
+    here.press("s")
+    with here.page.expect_download() as download:
+        here.page.click("[data-action=save-session]")
+    file = here.served.root / "kept.json"
+    download.value.save_as(file)
+    here.page.keyboard.press("Escape")
+    here.page.reload()
+    here.ready()
+    assert np.abs(here.rests() - kept).mean() < 0.5
+    here.choose("scalars", "orientation")
+    here.press("2")
+    other = here.changed(kept)
+    here.press("s")
+    here.page.set_input_files("[data-session]", file)
+    assert np.abs(here.changed(other) - kept).mean() < 0.5
+    file.write_text('{"version": 1, "layers": "none"}')
+    here.press("s")
+    here.page.set_input_files("[data-session]", file)
+    here.wait(lambda: here.state("toast_open") and here.toast(), "why it is no session")
+    assert np.abs(here.rests() - kept).mean() < 0.5
+
+
+def test_files_are_opened_uploaded_and_refused(visit, tmp_path, lines):
+    import pvfiblets
+
+    here = visit("lines.fiblets")
+    here.press("o")
+    here.page.click("[data-entry='ball.ply']")
+    here.wait(lambda: here.layers() == 2, "the mesh")
+    assert here.state("layers")[1]["kind"] == "mesh"
+    (here.served.root / "bad.trk").write_bytes(b"TRACK" + bytes(2000))
+    here.press("o")
+    here.page.click("[data-entry='bad.trk']")
+    here.wait(lambda: "bad.trk" in here.toast(), "why it was not opened")
+    assert here.layers() == 2
+    pvfiblets.write(tmp_path / "sent.tck", lines)
+    here.press("o")
+    here.page.set_input_files("[data-upload]", tmp_path / "sent.tck")
+    here.wait(lambda: here.layers() == 3, "the upload")
+    assert (here.served.root / "sent.tck").read_bytes() == (tmp_path / "sent.tck").read_bytes()
+
+
+def test_two_browsers_are_two_sessions(visit):
+    one, other = visit("lines.fiblets"), visit("lines.fiblets")
+    still = other.rests()
+    before = one.rests()
+    one.choose("scalars", "length")
+    one.drag()
+    one.changed(before)
+    assert np.array_equal(other.rests(), still)
+    assert other.state("undo_label") != one.state("undo_label")
+
+
+def test_a_shared_view_is_one_for_all(visit):
+    one, other = visit("lines.fiblets", "--shared"), visit("lines.fiblets", "--shared")
+    before = other.rests()
+    one.drag()
+    other.changed(before)
+    one.choose("scalars", "length")
+    other.wait(lambda: "scalars" in other.state("undo_label"), "what the other one did")
+    assert np.array_equal(one.rests(), other.rests())
+
+
+def test_a_page_for_a_tablet_has_the_picture_first(visit):
+    here = visit("lines.fiblets", width=820, height=1180, has_touch=True)
+    box = here.page.locator("#pv-view").bounding_box()
+    assert box["width"] >= 800
+    before = here.rests()
+    assert before.shape[1] >= 800
+    here.press("3")
+    here.changed(before)
