@@ -83,6 +83,44 @@ class Cameras:
             "left": _letters(-right), "right": _letters(right), "top": _letters(up), "bottom": _letters(-up),
         }  # fmt: skip
 
+    def place_at(self, x: float, y: float) -> list[float] | None:
+        """Return where the surface or line is that a pixel of the last picture shows.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel, from the lower left corner.
+
+        Returns
+        -------
+        list of float or None
+            mm; ``None`` where there is nothing.
+        """
+        width, height = self.plotter.window_size
+        column = int(number(x, "x", 0, width - 1))
+        row = int(number(y, "y", 0, height - 1))
+        renderer = self.plotter.renderer
+        depth = renderer.GetZ(column, row)
+        if not depth < 1.0:
+            return None
+        renderer.SetDisplayPoint(column + 0.5, row + 0.5, depth)
+        renderer.DisplayToWorld()
+        *place, w = renderer.GetWorldPoint()
+        return [float(part / w) for part in place]
+
+    def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
+        """Return the straight distance between what two pixels show.
+
+        Returns
+        -------
+        dict or None
+            ``mm``, ``from`` and ``to`` (mm); ``None`` where one of them shows nothing.
+        """
+        begin, end = self.place_at(x0, y0), self.place_at(x1, y1)
+        if begin is None or end is None:
+            return None
+        return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
+
     def screenshot(self, path: str | Path | None = None, *, scale: int = 1, transparent: bool = False) -> np.ndarray:
         """Return a picture.
 

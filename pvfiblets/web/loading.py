@@ -5,6 +5,8 @@ Nothing here draws or knows a plotter: :meth:`Files.load` may run in a thread of
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -108,7 +110,7 @@ class Files:
         self.root = None if root is None else Path(root).resolve(strict=True)
         self.allowed = [Path(path).resolve() for path in allowed]
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._made = 0
+        self._numbers = itertools.count(1)  # two threads may load at once
 
     def resolve(self, path: Any, *, new: bool = False) -> Path:
         """Return the place of a file.
@@ -208,17 +210,19 @@ class Files:
             return Loaded("tractogram", source, name, fiblets, facts)
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
-        self._made += 1
-        target = Path(self._folder.name) / f"{self._made}.fiblets"
+        target = Path(self._folder.name) / f"{next(self._numbers)}.fiblets"
         kept = tuple(facts.get("per_point") or ())
         try:
             result = compress_file(place, target, per_point=kept, progress=watch)
         except BaseException:
             target.unlink(missing_ok=True)
             raise
+        fiblets = FibletSet.open(target)
+        with contextlib.suppress(OSError):  # it stays mapped until nobody needs it; Windows keeps the name until then
+            target.unlink()
         error = {key: result[key] for key in ("error_mm", "error_steps")}
         facts = {**facts, "dropped": result["dropped"]}
-        return Loaded("tractogram", source, name, FibletSet.open(target), facts, error, kept)
+        return Loaded("tractogram", source, name, fiblets, facts, error, kept)
 
     def close(self) -> None:
         """Remove what was made of files; twice is harmless."""

@@ -19,6 +19,8 @@ __all__ = ["Questions"]
 MOST_POINTS = 4_000_000
 """That a histogram looks at; of larger data an even share."""
 
+_KEPT = 64  # histograms
+
 
 class Questions:
     """The part of :class:`~pvfiblets.web.scene.Scene` that answers; nothing changes."""
@@ -30,6 +32,7 @@ class Questions:
 
         layer: Callable[[str], Layer]
         actor: Callable[[str], Any]
+        _histograms: dict[tuple[Any, ...], dict[str, Any]]
         data: Callable[..., Loaded]
 
     def properties(self, layer_id: str) -> list[dict[str, Any]]:
@@ -84,6 +87,14 @@ class Questions:
             array = colours if colours in known else (known or [""])[0]
         if array not in known:
             raise ValueError(f"there are no values {shown(array)} in {layer.name!r}; there are {', '.join(known)}")
+        key = layer.kind, layer.source, array, count
+        if key not in self._histograms:
+            if len(self._histograms) >= _KEPT:
+                self._histograms.pop(next(iter(self._histograms)))
+            self._histograms[key] = self._count(layer, array, count)
+        return self._histograms[key]
+
+    def _count(self, layer: Layer, array: str, count: int) -> dict[str, Any]:
         values, share = _values(layer, self.data(layer).data, array)
         fine = values[np.isfinite(values)]
         counts, edges = np.histogram(fine, bins=count) if len(fine) else (np.zeros(count), np.linspace(0, 1, count + 1))

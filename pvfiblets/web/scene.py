@@ -76,6 +76,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         self._shapes: dict[tuple[str, str], Any] = {}
         self._bars = Bars(plotter)
         self._listeners: list[Callable[[Change], None]] = []
+        self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
 
     # The document -------------------------------------------------------------------------------
@@ -250,6 +251,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""
         self._data[loaded.kind, loaded.source] = loaded
+        self._histograms = {key: found for key, found in self._histograms.items() if key[1] != loaded.source}
         layer = Layer(
             self._fresh_id(),
             loaded.kind,

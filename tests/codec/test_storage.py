@@ -238,6 +238,27 @@ def test_conversion_of_nothing(tmp_path: Path) -> None:
     assert len(pf.read(tmp_path / "a.fiblets")) == 0
 
 
+def test_conversion_tells_how_far_it_is_and_can_be_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pf.write(tmp_path / "a.tck", smooth(20, 50))
+    monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
+    told: list[tuple[str, float]] = []
+    pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets", progress=lambda *step: told.append(step))
+    for what in ("compressing", "measuring"):
+        shares = [share for stage, share in told if stage == what]
+        np.testing.assert_allclose(shares, np.arange(20) / 20)
+    assert [what for what, _ in told[:20]] == ["surveying"] * 20
+
+    def stop(what: str, share: float) -> None:
+        if what == "compressing" and share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        pf.compress_file(tmp_path / "a.tck", tmp_path / "b.fiblets", progress=stop)
+    assert sorted(os.listdir(tmp_path)) == ["a.fiblets", "a.tck"]
+
+
 def test_conversion_refuses_unknown_values(tmp_path: Path) -> None:
     pf.write(tmp_path / "a.tck", smooth(2, 10))
     with pytest.raises(ValueError, match="no per-point array 'fa'; the streamlines have: none"):

@@ -500,6 +500,24 @@ def test_views_know_their_sides(scene, view, edges):
         scene.screenshot(scale=100)
 
 
+def test_distances_are_between_what_pixels_show(scene):
+    """A ball of 8 mm around (20, 18, 10), from above at a quarter of a millimetre a pixel."""
+    scene.open("ball.ply")
+    scene.set_camera(
+        {"position": [20, 18, 100], "focal_point": [20, 18, 10], "up": [0, 1, 0], "view_angle": 30.0,
+         "parallel": True, "parallel_scale": 20.0}
+    )  # fmt: skip
+    scene.screenshot()
+    np.testing.assert_allclose(scene.place_at(100, 80), [20.125, 18.125, 18.0], atol=0.1)
+    found = scene.measure(100 - 16, 80, 100 + 16, 80)
+    assert found["mm"] == pytest.approx(8.0, abs=0.1)
+    assert found["from"][2] == pytest.approx(10 + np.sqrt(64 - 16), abs=0.15)  # of facets
+    assert scene.place_at(0, 0) is None
+    assert scene.measure(0, 0, 100, 80) is None
+    with pytest.raises(ValueError, match="x is"):
+        scene.place_at(1000, 0)
+
+
 def test_a_closed_scene_leaves_nothing(plotter, folder, monkeypatch, tmp_path):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     import tempfile
