@@ -29,6 +29,10 @@ closed_mesh = pv.Sphere(radius=60)
 centrelines = pv.Spline([(0, 0, 0), (9, 2, 0), (9, 9, 4)], 20)
 centrelines["radius"] = [1.0 + 0.02 * i for i in range(20)]
 ids = [1, 2, 3]
+import nibabel, numpy as np
+numbers = np.random.default_rng(0).integers(0, 1200, (12, 12, 12)).astype(np.int16)
+for name in ("T1", "angiogram"):
+    nibabel.save(nibabel.Nifti1Image(numbers, np.diag([12.0, 12.0, 12.0, 1.0])), f"{name}.nii.gz")
 """,
     "docs/exploring.md": BRAIN + """
 import numpy as np
@@ -42,6 +46,7 @@ ids = [1, 2, 3]
 """,
     "docs/tubes.md": "",
     "docs/halos.md": "",
+    "docs/volumes.md": "",
     "docs/tutorial.md": "",
     "docs/howto.md": BRAIN + """
 pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))

@@ -319,3 +319,42 @@ def test_cuts_stay_in_the_world_when_the_volume_moves(plotter):
 def _rendered(plotter):
     plotter.render()
     return plotter.screenshot(None)
+
+
+RED, BLUE, KAPPA = np.array([1.0, 0.2, 0.0]), np.array([0.0, 0.4, 1.0]), 0.06
+
+
+def _two_fogs(shift, peeling, order):
+    """The colour of two fogs of 20 mm, the blue one shifted away from the eye."""
+    plotter = pv.Plotter(off_screen=True, window_size=(30, 30))
+    plotter.disable_anti_aliasing()
+    plotter.set_background("black")
+    if peeling:
+        plotter.enable_depth_peeling(8)
+    for which in order:
+        place = np.diag([5.0, 5.0, 5.0, 1.0])
+        place[:3, 3] = -10.0, -10.0 + shift * which, -10.0
+        light = {"opacity": 1.0 - np.exp(-KAPPA), "opacity_unit_distance": 1.0, "clim": (0, 2), "stop": 1.0}
+        fog = (np.ones((5, 5, 5), np.uint8), place)
+        plotter.add_raycast_volume(fog, color=(RED, BLUE)[which], show_scalar_bar=False, **light)
+    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = 8
+    plotter.camera.clipping_range = 20, 300
+    colour = plotter.screenshot(None)[15, 15].astype(float)
+    plotter.close()
+    return colour
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_two_volumes_in_a_pixel_are_what_the_docs_say(order):
+    """Without depth peeling right in one place, with it one behind the other; whatever the order."""
+    left = np.exp(-KAPPA * 20.0)
+    together = 255.0 * (1.0 - left**2) * (RED + BLUE) / 2.0
+    behind = 255.0 * (1.0 - left) * (RED + left * BLUE)
+    assert _two_fogs(0.0, False, order) == pytest.approx(together, abs=1.5)
+    for shift in (20.0, 30.0):
+        assert _two_fogs(shift, True, order) == pytest.approx(behind, abs=1.5)
+    # Neither is right between: the docs tell how far off.
+    assert np.abs(_two_fogs(30.0, False, order) - behind).max() == pytest.approx(62.0, abs=3.0)
+    assert np.abs(_two_fogs(0.001, True, order) - together).max() == pytest.approx(62.0, abs=3.0)
