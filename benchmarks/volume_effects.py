@@ -126,18 +126,17 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
     lines = [
         "## The paper's Table I",
         "",
-        f"`plotter.add_raycast_volume` of {rows[0]['data']}, {rows[0]['mode']}; with and without take turns. *×*: as "
-        "many times as many frames with it, by the clock and by the processor's time. *differing*: pixels that it "
-        f"changes by more than {DIFFERS} of 255, by more than 1 in brackets. *paper*: its frames a second, with and "
-        "without.",
+        f"`plotter.add_raycast_volume`, {rows[0]['mode']}; with and without take turns. *×*: as many times as many "
+        "frames with it, by the clock and by the processor's time. *differing*: pixels that it changes by more than "
+        f"{DIFFERS} of 255, by more than 1 in brackets. *paper*: its frames a second, with and without.",
         "",
         *(f"- *{effect}*: {ABOUT[effect]}." for effect in used),
         "",
-        "| effect | view | ms with | without | CPU ms with | without | × | × CPU | differing | rms | paper |",
-        "|---|---|---|---|---|---|---|---|---|---|---|",
+        "| data | effect | view | ms with | without | CPU ms with | without | × | × CPU | differing | rms | paper |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
-        head = f"| {row['effect']} | {row['view']} | "
+        head = f"| {row['data']} | {row['effect']} | {row['view']} | "
         paper = PAPER.get(row["effect"], {}).get(row["view"])
         said = "" if paper is None else f"{paper[0]:.2f}, {paper[1]:.2f}"
         if "unmeasured" in row:

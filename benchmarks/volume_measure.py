@@ -105,7 +105,7 @@ def run(
         try:
             row = {"mode": mode, "way": name, "step": options.step, "error": way.error(of)}
             row["circle"] = timed(way.draw, cameras, options.seconds)
-            if name in STATIC_TOO:
+            if name in STATIC_TOO and affordable(row["circle"], options):
                 row["static"] = timed(way.draw, static, options.seconds)
             row["gpu_bytes"] = way.bytes()
             report = build.report()
@@ -122,6 +122,11 @@ def run(
     return rows
 
 
+def affordable(circle: dict[str, Any], options: Any) -> bool:
+    """Say whether a frame of the static view will not take too long, judged by one of the other view."""
+    return 1e-3 * circle["ms"] * (options.still / options.size) ** 2 <= options.longest
+
+
 def print_row(row: dict[str, Any]) -> None:
     """Say how far it is, on the standard error: the standard output is the result's."""
     print({key: value for key, value in row.items() if key != "passes"}, file=sys.stderr, flush=True)
@@ -136,10 +141,10 @@ def equal(
     step, error, reached = search(way, of, target, (same["step"], same["error"]), options.search)
     row = {"mode": mode, "way": EQUAL, "step": step, "error": error, "target": target, "reached": reached}
     if step == same["step"]:
-        return {**row, **{key: same[key] for key in ("circle", "static")}}
+        return {**row, **{key: same[key] for key in ("circle", "static") if key in same}}
     way.step(step)
     row["circle"] = timed(way.draw, cameras, options.seconds)
-    if reached:
+    if reached and affordable(row["circle"], options):
         row["static"] = timed(way.draw, static, options.seconds)
     return row
 

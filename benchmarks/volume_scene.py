@@ -25,6 +25,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "shared" / "data"
 """Where the template of a brain may lie."""
 
 GOLDEN = 360.0 * (1.0 - 2.0 / (1.0 + math.sqrt(5.0)))  # degrees: however few frames are drawn, they lie all around
+NEARER = 0.65  # of the distance from which all of the box is seen however it is turned
 TOLERANCE = 1e-5  # of the reference's light
 UNIT = 1.0  # mm, of which the opacities are
 ENTRIES = 256
@@ -100,11 +101,14 @@ def look_of(volume: RaycastVolume, mode: str) -> Look:
 
 
 def circle(volume: RaycastVolume, frames: int, size: tuple[int, int]) -> list[Camera]:
-    """Return cameras all around a volume that see all of it; successive ones lie far apart, so any few are fair."""
+    """Return cameras all around a volume; successive ones lie far apart, so that any few are fair.
+
+    A face of the volume's box fills three quarters of the picture; its corners may lie outside.
+    """
     box = np.array(volume.bounds).reshape(3, 2)
     centre, radius = box.mean(axis=1), 0.5 * float(np.linalg.norm(np.ptp(box, axis=1)))
     narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
-    distance = radius / math.sin(math.atan(narrow))
+    distance = NEARER * radius / math.sin(math.atan(narrow))
     up = math.radians(ELEVATION)
     cameras = []
     for turn in np.radians(20.0 + GOLDEN * np.arange(frames)):

@@ -33,8 +33,9 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         "*error*: root mean square of colours from 0 to 1 against rays in float64, of pixels whose rays meet the "
         f"volume; bytes alone cost {BYTES:.4f}. *ms*: median of the frames by the clock, 10th to 90th percentile in "
         "brackets; *CPU*: the processor's time of all threads. *bytes*: all that the context holds, pictures of the "
-        "static view included. *build*: until the first picture is there, without drawing it, from voxels in memory. "
-        "*skipped*: of the octree's leaves; *octree*: its bytes over the voxels'.",
+        "static view included, which is left out where a frame of it would take more than "
+        f"{about['longest']:g} s. *build*: until the first picture is there, without drawing it, from voxels in "
+        "memory. *skipped*: of the octree's leaves; *octree*: its bytes over the voxels'.",
         "",
         *(f"- *{way}*: {text}." for way, text in ABOUT.items()),
     ]
@@ -82,7 +83,7 @@ def compared(results: list[dict[str, Any]]) -> list[dict[str, Any]]:
         if way != "plotter" or theirs is None:
             continue
         for view in VIEWS:
-            other = theirs.get(view, found[data, mode, "vtk-gpu"].get(view))
+            other = theirs.get(view, None if theirs["reached"] else found[data, mode, "vtk-gpu"].get(view))
             if view in ours and other is not None:
                 rows.append({"data": data, "mode": mode, "view": view, "reached": theirs["reached"],
                              "times": other["ms"] / ours[view]["ms"],
