@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import closing
 from os import PathLike
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -88,8 +89,10 @@ def compress_file(
     found = survey(_shown(chunks(), None, "surveying", progress), per_point)
     encoder = Encoder(Parameters.choose(found, max_error), effort)
     folder = Path(target).resolve().parent
-    with tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch:
-        spool = _Spool(Path(scratch))
+    with (
+        tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
+        closing(_Spool(Path(scratch))) as spool,  # before its folder goes, whatever happens
+    ):
         whole = _Whole()
         for chunk in _shown(chunks(), found.n_points, "compressing", progress):
             records = encoder.add(chunk)
