@@ -26,7 +26,7 @@ from pvfiblets.web.picks import SelectionActions
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
-from pvfiblets.web.wire import Doors
+from pvfiblets.web.wire import EXPECTED, Doors, sentence
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -277,5 +277,6 @@ class Explorer(TrameApp):
 
     def _done(self, task: asyncio.Task[Any]) -> None:
         if not task.cancelled() and (error := task.exception()) is not None:
-            logger.error("a task failed", exc_info=error)
-            self.complain(f"{error}")
+            if not isinstance(error, EXPECTED):
+                logger.error("a task failed", exc_info=error)
+            self.complain(sentence(error))

@@ -13,6 +13,7 @@ from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.confined import ConfinedError
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
+from pvfiblets.web.wire import EXPECTED, sentence
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
 LATEST = 0.2  # seconds between two reports of progress
@@ -47,7 +48,7 @@ class FileActions:
             try:
                 await self.open(path, kind)
             except Exception as error:  # noqa: BLE001 - the others are opened all the same
-                self._app.complain(f"{Path(path).name}: {error}")
+                self._app.complain(str(error))
         if self._app.options.demo:
             self.open_demo()
 
@@ -82,6 +83,8 @@ class FileActions:
             except Cancelled:
                 app.say(f"{name} was not opened: cancelled.")
                 return
+            except EXPECTED as error:
+                raise ValueError(f"{name} was not opened: {sentence(error)}") from error
             finally:
                 await asyncio.sleep(0)  # let the last report of the thread come first
                 with app.state:

@@ -31,14 +31,19 @@ def layers(app: Any) -> None:
                 with v3.Template(v_slot_prepend=True):
                     with v3.VBtn(
                         icon=True, size="x-small", variant="text", aria_label=("layer.visible ? 'Hide' : 'Show'",),
-                        click_stop=(app.show, "[layer.id, !layer.visible]"), data_action="eye",
+                        v_on_click_stop=(app.show, "[layer.id, !layer.visible]"), data_action="eye",
                     ):  # fmt: skip
                         v3.VIcon(icon=("layer.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
                     v3.VIcon(icon=(f"({ICONS!r})[layer.kind]",), size=16, classes="mx-1", title=("layer.kind",))
                 v3.VListItemTitle("{{ layer.name }}", title=("layer.name",), style="font-size: 13px")
                 with v3.Template(v_slot_append=True):
                     with v3.VBtn(
-                        icon=True, size="x-small", variant="text", aria_label="More", click_stop="", data_action="more"
+                        icon=True,
+                        size="x-small",
+                        variant="text",
+                        aria_label="More",
+                        v_on_click_stop="0",
+                        data_action="more",
                     ):
                         v3.VIcon("mdi-dots-vertical", size=18)
                         with v3.VMenu(activator="parent"):

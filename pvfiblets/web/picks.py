@@ -79,25 +79,11 @@ class SelectionActions:
         self._app.refresh()
 
     def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
-        import numpy as np
-
-        ends = [self._position(*pixel) for pixel in (first, last)]
-        if ends[0] is None or ends[1] is None:
+        found = self._app.scene.measure(*first, *last)
+        if found is None:
             self._app.say("Begin and end on something that is drawn.")
             return
-        length = float(np.linalg.norm(np.subtract(ends[1], ends[0])))
-        self._app.page.measured = f"{short(length)} mm"
-
-    def _position(self, x: float, y: float) -> Any:
-        from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
-
-        renderer = self._app.plotter.renderer
-        depth = renderer.GetZ(round(x), round(y))
-        if depth >= 1.0:
-            return None
-        picker = vtkWorldPointPicker()
-        picker.Pick(x, y, 0.0, renderer)
-        return picker.GetPickPosition()
+        self._app.page.measured = f"{short(found['mm'])} mm"
 
     # The tab
 

@@ -13,9 +13,12 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from pvfiblets.errors import FibletsError
+
 logger = logging.getLogger("pvfiblets.web")
 
-LONGEST_TEXT = 10_000
+LONGEST_TEXT = 600_000  # a session file is the longest
+LONGEST_STATE = 1000  # characters of a text that is kept
 LARGEST_SIDE = 8192  # pixels of a picture
 MOST_PIXELS = 4096 * 2304
 LISTENED = 64  # keys of one state change, arguments of one call
@@ -36,6 +39,10 @@ LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", 
 
 Check = Callable[..., list[Any] | None]
 """From what was sent to the arguments of a method; ``None``: there is nothing to do."""
+
+
+# What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.
+EXPECTED = (FibletsError, OSError, ValueError, KeyError)
 
 
 class MalformedError(ValueError):
@@ -177,6 +184,10 @@ class Doors:
                 result = function(target, *checked)
                 if inspect.isawaitable(result):
                     result = await result
+            except EXPECTED as error:
+                logger.info("%s: %s", name, sentence(error))
+                self._complain(sentence(error))
+                return None
             except Exception as error:
                 logger.exception("%s failed", name)
                 self._complain(sentence(error))
@@ -203,6 +214,8 @@ class Doors:
                 raise MalformedError(f"the state {key[:40]!r} is not a browser's to set")
             if kind is float and isinstance(value, int) and not isinstance(value, bool):
                 value = float(value)
+            if isinstance(value, str) and len(value) > LONGEST_STATE:
+                raise MalformedError(f"the state {key!r} is a text of {len(value)} characters")
             if not isinstance(value, kind):
                 raise MalformedError(f"the state {key!r} is a {kind.__name__}, found {type(value).__name__}")
             allowed.append({"key": key, "value": value})

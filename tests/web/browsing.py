@@ -39,7 +39,17 @@ class Served:
     def __init__(self, *arguments, root):
         self.root = Path(root)
         self.log = self.root.parent / f"serve-{time.monotonic_ns()}.log"
-        command = [sys.executable, "-m", "pvfiblets.cli", "serve", *map(str, arguments), "--port", "0", "--root", str(root)]
+        command = [
+            sys.executable,
+            "-m",
+            "pvfiblets.cli",
+            "serve",
+            *map(str, arguments),
+            "--port",
+            "0",
+            "--root",
+            str(root),
+        ]
         with self.log.open("w") as log:
             self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
         line = self.process.stdout.readline()
@@ -62,7 +72,9 @@ class Visit:
 
     def __init__(self, browser, served, *, width=1280, height=720, **options):
         self.served = served
-        self.context = browser.new_context(viewport={"width": width, "height": height}, accept_downloads=True, **options)
+        self.context = browser.new_context(
+            viewport={"width": width, "height": height}, accept_downloads=True, **options
+        )
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
         self.errors = []
@@ -71,7 +83,9 @@ class Visit:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", lambda said: self.errors.append(said.text) if said.type == "error" else None)
         self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.on("websocket", lambda socket: socket.on("framereceived", lambda data: self.received.append(len(data))))
+        self.page.on(
+            "websocket", lambda socket: socket.on("framereceived", lambda data: self.received.append(len(data)))
+        )
 
     def open(self):
         """Open the page and wait for the first picture with something in it."""

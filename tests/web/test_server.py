@@ -165,7 +165,9 @@ def test_foreign_pages_and_names_are_refused(tmp_path, caplog):
 def test_paths_that_climb_never_reach_a_session(tmp_path):
     async def raw(port, path, cookies):
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookies}\r\nConnection: close\r\n\r\n".encode())
+        writer.write(
+            f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookies}\r\nConnection: close\r\n\r\n".encode()
+        )
         answer = await reader.read()
         writer.close()
         return answer
@@ -175,7 +177,13 @@ def test_paths_that_climb_never_reach_a_session(tmp_path):
             await browser.enter()
             cookies = "; ".join(f"{cookie.key}={cookie.value}" for cookie in browser.http.cookie_jar)
             assert b"200 OK" in (await raw(server.port, "/fine", cookies))
-            for path in ("/../../etc/passwd", "/a/%2e%2e/%2e%2e/etc/passwd", "/a/..%2f..%2fetc", "/%252e%252e/x", "/a\\..\\b"):
+            for path in (
+                "/../../etc/passwd",
+                "/a/%2e%2e/%2e%2e/etc/passwd",
+                "/a/..%2f..%2fetc",
+                "/%252e%252e/x",
+                "/a\\..\\b",
+            ):
                 answer = await raw(server.port, path, cookies)
                 assert b" 404 " in answer.partition(b"\r\n")[0]
                 assert b"pid" not in answer
@@ -241,7 +249,12 @@ def test_shared_sessions_are_one_process(tmp_path):
 
 def test_beyond_the_limit_there_is_a_page_until_a_place_is_free(tmp_path):
     async def test():
-        async with gate(tmp_path, limit=2) as server, Browser(server) as one, Browser(server) as two, Browser(server) as three:
+        async with (
+            gate(tmp_path, limit=2) as server,
+            Browser(server) as one,
+            Browser(server) as two,
+            Browser(server) as three,
+        ):
             pid = await one.enter()
             await two.enter()
             status, text = await three.get(f"/?token={TOKEN}")
