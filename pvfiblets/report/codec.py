@@ -13,7 +13,7 @@ import numpy.typing as npt
 from pvfiblets.streamlines import Streamlines
 
 from .data import SMALL, DataSet, data_sets
-from .measure import distances, error_figures, median_step, timed
+from .measure import Turns, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
 from .rivals.directions import PaperFiblets, QFib
 from .rivals.linearised import linearised
@@ -24,6 +24,7 @@ __all__ = ["STUDY", "CodecStudy", "Way", "ways"]
 
 PROMISES = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
 QUICK_PROMISES = (0.05, 0.1, 0.2)
+LOOK_AHEAD_PROMISES = (0.05, 0.1, 0.2)  # it takes ten times as long
 DEFAULT_PROMISE = 0.1
 RECORD_POINTS = (15, 30)  # besides 60
 QUICK_POINTS = 20_000
@@ -109,7 +110,7 @@ def ways(quick: bool) -> list[Way]:
     if not quick:
         found += [
             Way("fiblets, look-ahead", f"{promise} steps", _fiblets(promise, "high"), ours=True)
-            for promise in PROMISES
+            for promise in LOOK_AHEAD_PROMISES
             if promise != DEFAULT_PROMISE
         ]
     return found
@@ -166,7 +167,7 @@ class CodecStudy:
     ) -> Iterator[Record]:
         points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
         step = median_step(points, offsets)
-        done, late = 0, []
+        turns, done, late = Turns(), [], []
         for way in chosen:
             if way.name in missing:
                 continue
@@ -174,30 +175,35 @@ class CodecStudy:
                 late.append(f"{way.name} {way.setting}".strip())
                 continue
             try:
-                yield measured(data, way, points, offsets, step, options)
-                done += 1
+                done.append(measured(data, way, points, offsets, step, turns, options.machine))
             except ImportError as error:
                 missing.add(way.name)
                 left_out.append(LeftOut(way.name, f"{error.name or error} is not installed"))
             except ValueError as error:
                 left_out.append(LeftOut(f"{data.name}: {way.name} {way.setting}".strip(), str(error)))
+        turns.run(options.repeats, options.budget.allows)
+        for record, numbers in done:
+            record.times = {name: turns.timing(number, len(points)) for name, number in numbers.items()}
+            yield record
         if late:
             what = "everything" if not done else ", ".join(late)
             left_out.append(LeftOut(f"{data.name}: {what}", "the time given was used up"))
-        options.log(f"codec: {data.name}: {done} ways")
+        options.log(f"codec: {data.name}: {len(done)} ways")
 
 
-def measured(data: DataSet, way: Way, points: Points, offsets: Offsets, step: float, options: Options) -> Record:
-    """Pack, unpack, and measure one way on one data set."""
+def measured(
+    data: DataSet, way: Way, points: Points, offsets: Offsets, step: float, turns: Turns, machine: str
+) -> tuple[Record, dict[str, int]]:
+    """Pack and unpack in one way; return a record of errors and bytes, and the numbers of what is to be timed."""
     pack = way.make(step)
-    packed, compressing = timed(lambda: pack(points, offsets), options.repeats, len(points))
-    times = {"compress": compressing}
+    packed = pack(points, offsets)
+    numbers = {"compress": turns.add(lambda: pack(points, offsets))}
     if hasattr(packed, "points"):
-        decoded, times["decompress"] = timed(packed.points, options.repeats, len(points))
-        apart = distances(points, decoded)
+        apart = distances(points, packed.points())
+        numbers["decompress"] = turns.add(packed.points)
     else:
         apart = packed.distances(points, offsets)
-    return Record(
+    record = Record(
         data=data.name,
         group=data.group,
         approximation="points of streamlines",
@@ -205,11 +211,11 @@ def measured(data: DataSet, way: Way, points: Points, offsets: Offsets, step: fl
         setting=way.setting,
         errors=error_figures(apart, step),
         costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
-        times=times,
         ours=way.ours,
         default=way.default,
-        machine=options.machine,
+        machine=machine,
     )
+    return record, numbers
 
 
 @contextmanager

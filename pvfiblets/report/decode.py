@@ -13,7 +13,7 @@ from pvfiblets.codec.reference import first_frame
 from pvfiblets.codec.tables import CAP_DEGREES, quaternions
 
 from . import decoders
-from .measure import error_figures, timed
+from .measure import Turns, error_figures
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 
@@ -123,15 +123,20 @@ class DecodeStudy:
         sets = [("steps", step, USUAL_CAP) for step in steps] + [("caps", USUAL_STEP, cap) for cap in caps]
         for group, step, cap in sets:
             name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
-            fiblets, done = made(n, cap, step, options.seed), 0
+            fiblets = made(n, cap, step, options.seed)
             right = exact(fiblets)
+            turns, records = Turns(), []
             for combination in combinations():
                 if not options.budget.allows():
                     left_out.append(LeftOut(f"{name}: {', '.join(combination)}", "the time given was used up"))
                     continue
-                yield measured(fiblets, right, combination, name, group, options)
-                done += 1
-            options.log(f"decode: {name}: {done} ways")
+                records.append(measured(fiblets, right, combination, turns))
+            turns.run(REPEATS * options.repeats, options.budget.allows)
+            for number, record in enumerate(records):
+                record.data, record.group, record.machine = name, group, options.machine
+                record.times = {"decode": turns.timing(number, n * decoders.POINTS)}
+                yield record
+            options.log(f"decode: {name}: {len(records)} ways")
 
 
 def combinations() -> list[tuple[str, str, str, str]]:
@@ -140,10 +145,8 @@ def combinations() -> list[tuple[str, str, str, str]]:
     return sorted(every, key=lambda way: way[2:] != ("quaternions", "table"))
 
 
-def measured(
-    fiblets: Made, right: Any, combination: tuple[str, str, str, str], name: str, group: str, options: Options
-) -> Record:
-    """Decode in one way, and measure it."""
+def measured(fiblets: Made, right: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
+    """Decode in one way; return a record of errors, and add the call to those that are timed."""
     order, number, algebra, source = combination
     dtype = NUMBERS[number]
     arrays = [np.ascontiguousarray(a.astype(dtype)) for a in (fiblets.anchors, fiblets.frames)]
@@ -156,23 +159,22 @@ def measured(
     def run() -> None:
         decoders.decode(*arrays, fiblets.codes, fiblets.cap, step, how, tables, scratch, out)
 
-    _, timing = timed(run, REPEATS * options.repeats, out.shape[0] * out.shape[1])
+    run()
     apart = np.sqrt(((out - right) ** 2).sum(axis=2)).astype(np.float64)
     errors = error_figures(apart.ravel(), fiblets.step)
     for i in DRIFT_AT:
         errors[f"mean at point {i}"] = Figure(float(apart[:, i].mean()) / fiblets.step, "steps")
+    turns.add(run)
     own = (algebra, source) == ("quaternions", "table")
     return Record(
-        data=name,
-        group=group,
+        data="",
+        group="",
         approximation="decoded points",
         way=f"{order}, {number}",
         setting=f"{algebra}, {source}",
         errors=errors,
-        times={"decode": timing},
         ours=own and (order, number) != ("prefix", "float64"),
         default=own and (order, number) == ("sequential", "float32"),
-        machine=options.machine,
     )
 
 

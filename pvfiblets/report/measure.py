@@ -5,17 +5,15 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable
-from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from .record import Figure, Timing
 
-__all__ = ["distances", "error_figures", "median_step", "timed"]
+__all__ = ["Turns", "distances", "error_figures", "median_step"]
 
 Floats = npt.NDArray[np.floating]
-Result = TypeVar("Result")
 
 
 def distances(original: Floats, decoded: Floats) -> npt.NDArray[np.float64]:
@@ -65,39 +63,64 @@ def error_figures(apart: npt.NDArray[np.float64], step: float, unit: str = "mm")
     return figures | {f"{name} in steps": Figure(value * scale, "steps") for name, value in numbers.items()}
 
 
-def timed(
-    function: Callable[[], Result],
-    repeats: int,
-    items: float,
-    item: str = "point",
-    clock: Callable[[], float] = time.process_time,
-    clock_name: str = "cpu",
-) -> tuple[Result, Timing]:
-    """Call a function some times, and return its first result and how long the calls after that took.
+class Turns:
+    """Times of several calls that take turns, so that what else the machine does meets all of them alike.
 
     Calls that are much shorter than the clock's grain are put together; of calls longer than half a second three are
     enough.
+
+    Parameters
+    ----------
+    clock : callable
+        Returns seconds.
+    clock_name : str
+        As in :class:`.Timing`.
     """
-    result = function()
-    collecting = gc.isenabled()
-    gc.disable()  # a collection that falls into one call is not that call's cost
-    try:
-        begun = clock()
-        function()
-        once = clock() - begun
+
+    def __init__(self, clock: Callable[[], float] = time.process_time, clock_name: str = "cpu") -> None:
+        self._clock = clock
+        self._name = clock_name
+        self._calls: list[tuple[Callable[[], object], int]] = []
+        self._seconds: list[list[float]] = []
+
+    def add(self, function: Callable[[], object]) -> int:
+        """Take in a call that has been made before (so that it is compiled and warm), time it once, and number it."""
+        once = self._once(function, 1)
         inner = 1 if once >= _GRAIN else int(min(np.ceil(_GRAIN / max(once, 1e-6)), 1000))
-        wanted = max(repeats, 1) if once < _LONG else min(max(repeats, 1), 3)
-        seconds = [once] if inner == 1 else []
-        while len(seconds) < wanted:
-            begun = clock()
+        self._calls.append((function, inner))
+        self._seconds.append([once])
+        return len(self._calls) - 1
+
+    def run(self, repeats: int, go_on: Callable[[], bool] = lambda: True) -> None:
+        """Time all calls until each has been ``repeats`` times, as long as ``go_on()`` says so before a call."""
+        for turn in range(1, repeats):
+            for (function, inner), seconds in zip(self._calls, self._seconds, strict=True):
+                if turn >= 3 and seconds[0] > _LONG:
+                    continue
+                if not go_on():
+                    return
+                if turn == 1 and inner > 1:
+                    seconds.clear()  # the first was too short to be told
+                seconds.append(self._once(function, inner))
+
+    def timing(self, number: int, items: float, item: str = "point") -> Timing:
+        """Return what was found of one call, which handles so many items."""
+        seconds = self._seconds[number]
+        return Timing(
+            float(np.median(seconds)), min(seconds), max(seconds), len(seconds), float(items), item, self._name
+        )
+
+    def _once(self, function: Callable[[], object], inner: int) -> float:
+        collecting = gc.isenabled()
+        gc.disable()  # a collection that falls into one call is not that call's cost
+        try:
+            begun = self._clock()
             for _ in range(inner):
                 function()
-            seconds.append((clock() - begun) / inner)
-    finally:
-        if collecting:
-            gc.enable()
-    timing = Timing(float(np.median(seconds)), min(seconds), max(seconds), len(seconds), items, item, clock_name)
-    return result, timing
+            return (self._clock() - begun) / inner
+        finally:
+            if collecting:
+                gc.enable()
 
 
 _GRAIN = 2e-3  # s: shorter calls are put together until they take about as long

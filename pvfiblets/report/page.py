@@ -92,7 +92,7 @@ def _defaults(study: StudyResult) -> list[str]:
     label = next(record.label for record in study.records if record.default)
     lines = [
         f"By default: **{label}**. At each pair of figures: its own two, and after a colon the ways that beat it "
-        "in both.",
+        "in both, in time by more than repeats differ.",
         "",
         "| data | " + " | ".join(heads) + " |",
         "|---|" + "---|" * len(heads),
@@ -106,13 +106,22 @@ def _defaults(study: StudyResult) -> list[str]:
                 other.label
                 for other in shown
                 if (other.data, other.machine) == (record.data, record.machine)
-                and other is not record
-                and other.value(pair.x) < x
-                and other.value(pair.y) < y
+                and all(_less(other, record, path) for path in (pair.x, pair.y))
             ]
             cells.append(f"{_number(y)} / {_number(scale * x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
         lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
     return lines
+
+
+def _less(a: Record, b: Record, path: str) -> bool:
+    """Whether a record's figure is less than another's; of times, by more than both spread."""
+    if not a.value(path) < b.value(path):
+        return False
+    name = path.partition("/")[2]
+    return (
+        not path.startswith("times/")
+        or a.times[name].high / a.times[name].items < b.times[name].low / b.times[name].items
+    )
 
 
 def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:

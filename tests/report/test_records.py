@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pvfiblets.errors import FormatError
 from pvfiblets.report.front import mark_fronts, pareto
-from pvfiblets.report.measure import distances, error_figures, median_step, timed
+from pvfiblets.report.measure import Turns, distances, error_figures, median_step
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
 
 
@@ -134,39 +134,50 @@ class Clock:
         return self.now
 
 
-def test_times_are_medians_of_repeats_after_a_first_call():
-    clock, calls = Clock(), []
+def taking(clock, seconds):
+    """A call that takes such times, the last one for ever, and how often it was made."""
+    calls = []
 
     def work():
-        calls.append(None)
-        clock.now += [50.0, 0.1, 0.3, 0.2, 0.4, 0.2][len(calls) - 1]
-        return len(calls)
+        clock.now += seconds[min(len(calls), len(seconds) - 1)]
+        calls.append(clock.now)
 
-    result, timing = timed(work, 5, 10, "ray", clock, "fake")
-    assert result == 1
-    assert len(calls) == 6
-    assert timing == Timing(0.2, pytest.approx(0.1), pytest.approx(0.4), 5, 10, "ray", "fake") or (
-        timing.median == pytest.approx(0.2) and timing.repeats == 5 and timing.clock == "fake"
-    )
+    return work, calls
+
+
+def test_times_are_medians_of_calls_that_take_turns():
+    clock = Clock()
+    turns = Turns(clock, "fake")
+    (first, at_first), (second, at_second) = taking(clock, [0.1, 0.3, 0.2, 0.4, 0.2]), taking(clock, [0.05])
+    assert [turns.add(first), turns.add(second)] == [0, 1]
+    turns.run(5)
+    timing = turns.timing(0, 10, "ray")
+    assert (timing.repeats, timing.items, timing.item, timing.clock) == (5, 10.0, "ray", "fake")
+    assert (timing.median, timing.low, timing.high) == pytest.approx((0.2, 0.1, 0.4))
     assert timing.each == pytest.approx(0.02)
+    order = sorted([(at, 0) for at in at_first] + [(at, 1) for at in at_second])
+    assert [which for _, which in order] == [0, 1] * 5
 
 
 def test_short_calls_are_put_together_and_long_ones_made_less_often():
-    clock, calls = Clock(), []
+    clock = Clock()
+    turns = Turns(clock)
+    (short, shorts), (long, longs) = taking(clock, [1e-3, 1e-5]), taking(clock, [2.0])
+    turns.add(short)
+    turns.add(long)
+    turns.run(9)
+    assert turns.timing(0, 1).high == pytest.approx(1e-5)  # what could not be told from the grain is forgotten
+    assert turns.timing(0, 1).repeats == 8
+    assert len(shorts) == 1 + 8 * 2
+    assert turns.timing(1, 1).repeats == len(longs) == 3
 
-    def short():
-        calls.append(None)
-        clock.now += 1e-5
 
-    _, timing = timed(short, 3, 1, clock=clock)
-    assert timing.median == pytest.approx(1e-5)
-    assert len(calls) > 3 * 100
-    calls.clear()
-
-    def long():
-        calls.append(None)
-        clock.now += 2.0
-
-    _, timing = timed(long, 9, 1, clock=clock)
-    assert timing.repeats == 3
-    assert len(calls) == 4
+def test_turns_stop_when_they_are_told_to():
+    clock = Clock()
+    turns = Turns(clock)
+    work, _ = taking(clock, [0.1])
+    turns.add(work)
+    turns.run(9, lambda: clock.now < 0.35)
+    assert turns.timing(0, 1).repeats == 4
+    turns.run(9, lambda: False)
+    assert turns.timing(0, 1).repeats == 4
