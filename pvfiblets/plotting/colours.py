@@ -118,6 +118,8 @@ def update_table(
     labels = scalars.categories is not None
     usual = label_colours(len(scalars.categories)) if scalars.categories else theme.cmap
     cmap = usual if settings.cmap is None else settings.cmap
+    if isinstance(cmap, (list, tuple)) and not cmap:
+        raise ValueError("cmap is an empty list; give at least one colour, or the name of a colour map")
     if isinstance(cmap, pv.LookupTable):
         table.DeepCopy(cmap)
     else:

@@ -10,12 +10,25 @@ from typing import Any
 import numpy as np
 from pyvista.plotting.tools import opacity_transfer_function
 
-__all__ = ["is_number", "opacities", "surface_values", "value_limits"]
+__all__ = ["is_number", "number", "opacities", "surface_values", "value_limits"]
 
 
 def is_number(given: Any) -> bool:
     """Whether something is one number."""
     return isinstance(given, Real) or (isinstance(given, np.ndarray) and given.ndim == 0 and given.dtype.kind in "iuf")
+
+
+def number(name: str, given: Any, expected: str) -> float:
+    """Return what is to be one number.
+
+    Raises
+    ------
+    ValueError
+        If it is not; the message names it and says what was expected.
+    """
+    if not is_number(given):
+        raise ValueError(f"{name} is {given!r}; give {expected}")
+    return float(given)
 
 
 def opacities(given: Any, n_colors: int) -> np.ndarray:

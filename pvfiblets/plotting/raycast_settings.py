@@ -10,7 +10,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.colours import make_colouring, update_table
-from pvfiblets.plotting.raycast_opacity import opacities, surface_values, value_limits
+from pvfiblets.plotting.raycast_opacity import number, opacities, surface_values, value_limits
 from pvfiblets.raycast import Transfer
 from pvfiblets.raycast.casting import Casting
 from pvfiblets.raycast.transfer import LARGEST_PREINTEGRATED
@@ -145,7 +145,9 @@ class RaySettings(Coloured):
     @property
     def peak(self) -> float:
         """The least value of a peak, for ``"local-mip"``; ``None`` sets the middle of the volume's values."""
-        return surface_values(None, self._volume.value_range)[0] if self._peak is None else float(self._peak)
+        if self._peak is None:
+            return surface_values(None, self._volume.value_range)[0]
+        return number("peak", self._peak, "the least value of a peak")
 
     @peak.setter
     def peak(self, peak: float | None) -> None:
@@ -171,7 +173,9 @@ class RaySettings(Coloured):
     @property
     def opacity_unit_distance(self) -> float:
         """Length, mm, of which ``opacity`` says how opaque it is; ``None`` sets the volume's mean spacing."""
-        return float(self._volume.spacing.mean()) if self._unit is None else float(self._unit)
+        if self._unit is None:
+            return float(self._volume.spacing.mean())
+        return number("opacity_unit_distance", self._unit, "a length above 0, mm")
 
     @opacity_unit_distance.setter
     def opacity_unit_distance(self, mm: float | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,9 @@ INTEGRATORS = ("preintegrated", "exponential", "riemann", "simpson", "rk4")
 
 MAX_VALUES = 8
 """Isosurfaces of one volume."""
+
+LARGEST = (2.0 - 2.0**-23) * 2.0**127
+"""The largest number that float32 holds."""
 
 
 @dataclass(frozen=True)
@@ -105,27 +109,36 @@ class Casting:
             if getattr(self, name) not in known:
                 raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {known}")
         object.__setattr__(self, "values", tuple(float(value) for value in self.values))
-        right = 1 <= len(self.values) <= MAX_VALUES and all(map(math.isfinite, self.values))
+        right = 1 <= len(self.values) <= MAX_VALUES and all(abs(value) <= LARGEST for value in self.values)
         if self.mode == "isosurface" and not right:
-            raise ValueError(f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers")
+            raise ValueError(
+                f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers that float32 holds"
+            )
         if self.mode == "composite" and self.transfer is None:
             raise ValueError("mode 'composite' needs transfer: colours and opacities by value")
         if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:
             raise ValueError(f"the thresholds are {self.low} and {self.high}; give the lower one first")
-        self._check("step", 1e-3 <= self.step <= 1e3, "a number of voxels from 0.001 to 1000")
-        self._check("stop", 0.0 < self.stop <= 1.0, "an opacity above 0, at most 1")
-        self._check("homogeneous", 0.0 <= self.homogeneous < math.inf, "a difference of values, 0 or more")
-        self._check("sparse", self.sparse in (1, 2, 4), "1, 2 or 4 pixels")
-        self._check("sparse_threshold", 0.0 <= self.sparse_threshold <= 1.0, "a number from 0 to 1")
-        self._check("iterations", 1 <= self.iterations <= 64, "a whole number from 1 to 64")
+        self._check("step", lambda: 1e-3 <= self.step <= 1e3, "a number of voxels from 0.001 to 1000")
+        self._check("stop", lambda: 0.0 < self.stop <= 1.0, "an opacity above 0, at most 1")
+        self._check("homogeneous", lambda: 0.0 <= self.homogeneous < math.inf, "a difference of values, 0 or more")
+        self._check("sparse", lambda: self.sparse in (1, 2, 4), "1, 2 or 4 pixels")
+        self._check("sparse_threshold", lambda: 0.0 <= self.sparse_threshold <= 1.0, "a number from 0 to 1")
+        self._check("iterations", lambda: self.iterations in range(1, 65), "a whole number from 1 to 64")
         if math.isnan(self.threshold):
             raise ValueError("threshold is nan; give a number")
         if self.box is not None:
-            box = tuple(float(side) for side in self.box)
+            try:
+                box = tuple(float(side) for side in self.box)
+            except (TypeError, ValueError):
+                box = ()
             if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
-                raise ValueError(f"box is {self.box}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
+                raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
             object.__setattr__(self, "box", box)
 
-    def _check(self, name: str, right: bool, expected: str) -> None:
-        if not right:
-            raise ValueError(f"{name} is {getattr(self, name)}; give {expected}")
+    def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
+        try:
+            fine = bool(right())
+        except (TypeError, ValueError):  # what cannot be compared
+            fine = False
+        if not fine:
+            raise ValueError(f"{name} is {getattr(self, name)!r}; give {expected}")

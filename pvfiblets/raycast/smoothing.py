@@ -89,7 +89,10 @@ def gaussian(values: npt.NDArray[Any], sigma: Any) -> Floats:
 
 
 def _checked(sigma: Any) -> npt.NDArray[np.float64]:
-    deviations = np.asarray(sigma, np.float64)
+    try:
+        deviations = np.asarray(sigma, np.float64)
+    except (TypeError, ValueError):
+        deviations = np.array(np.nan)
     if deviations.shape not in ((), (3,)) or not np.isfinite(deviations).all() or (deviations < 0.0).any():
         raise ValueError(f"sigma={sigma!r}; expected one or three finite numbers, 0 or above")
     return np.broadcast_to(deviations, (3,))

@@ -358,3 +358,30 @@ def test_two_volumes_in_a_pixel_are_what_the_docs_say(order):
     # Neither is right between: the docs tell how far off.
     assert np.abs(_two_fogs(30.0, False, order) - behind).max() == pytest.approx(62.0, abs=3.0)
     assert np.abs(_two_fogs(0.001, True, order) - together).max() == pytest.approx(62.0, abs=3.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "wrong", "told"),
+    [
+        ("step", "x", "step is 'x'; give a number of voxels from 0.001 to 1000"),
+        ("stop", "x", "stop is 'x'; give an opacity above 0, at most 1"),
+        ("homogeneous", "x", "homogeneous is 'x'; give a difference of values"),
+        ("iterations", 2.5, "iterations is 2.5; give a whole number from 1 to 64"),
+        ("iterations", "x", "iterations is 'x'"),
+        ("box", "corner", "box is 'corner'; give \\(xmin"),
+        ("peak", "x", "peak is 'x'; give the least value of a peak"),
+        ("opacity_unit_distance", "x", "opacity_unit_distance is 'x'; give a length above 0, mm"),
+        ("smooth", "x", "sigma='x'; expected one or three finite numbers"),
+        ("values", 1e40, "finite numbers that float32 holds"),
+        ("cmap", [], "cmap is an empty list"),
+    ],
+)
+def test_words_and_numbers_out_of_range_are_refused_by_name(setting, wrong, told):
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_raycast_volume(BALL, mode="isosurface" if setting == "values" else "composite")
+    with pytest.raises(ValueError, match=told):
+        plotter.add_raycast_volume(BALL, mode=actor.mode, **{setting: wrong})
+    with pytest.raises(ValueError, match=told):
+        setattr(actor, setting, wrong)
+    assert len(plotter.raycast_volumes) == 1
+    plotter.close()
