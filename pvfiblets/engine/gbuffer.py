@@ -12,8 +12,11 @@ texture        format    content
                          over half the width, in -1..1; positive to the left of the tangent on the screen
   of tubes     r32ui     their surface's unit normal, packed as the tangent is
   of halos     r16f      1 where a line shows, 0 where its halo does, between at the edge between them
-``colours``    rgba8     only of spline tubes and lines with halos whose points have colours
+``colours``    rgba8     only of spline tubes and lines with halos whose points have colours, and of volumes' light
 =============  ========  ======================================================================================
+
+Of volumes that rays are cast through ``position`` holds the place along the ray, mm, and the value there, of surfaces
+``ids`` a tangent and ``across`` a normal as of tubes, and ``colours`` light that is not multiplied by its opacity.
 
 ``ids``, ``position`` and ``across`` are undefined where ``depth`` is empty.
 
@@ -55,7 +58,7 @@ class GBuffer:
     size : tuple of int
     depth, ids, position : moderngl.Texture
     owner : moderngl.Texture
-        r32ui, the engine's own: index of the fiblet that each pixel belongs to.
+        r32ui, the engine's own: index of the fiblet that each pixel belongs to; of volumes, of the voxel.
     across, colours : moderngl.Texture or None
         See :meth:`want_relief` and :meth:`want_colours`.
     generation : int

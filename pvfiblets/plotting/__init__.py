@@ -2,9 +2,10 @@
 
 ``plotter.add_fiblets(...)``, ``plotter.fiblets``, ``plotter.add_spline_tubes(...)``,
 ``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
-``plotter.add_halo_points(...)``, ``plotter.halo_points`` and ``polydata.fiblets`` need no import:
-PyVista finds them by entry points (see ``pyproject.toml``), which name the modules ``component``,
-``spline_component``, ``halo_component``, ``halo_point_component`` and ``accessor`` here. ``files``
+``plotter.add_halo_points(...)``, ``plotter.halo_points``, ``plotter.add_raycast_volume(...)``,
+``plotter.raycast_volumes`` and ``polydata.fiblets`` need no import: PyVista finds them by entry
+points (see ``pyproject.toml``), which name the modules ``component``, ``spline_component``,
+``halo_component``, ``halo_point_component``, ``raycast_component`` and ``accessor`` here. ``files``
 serves ``pyvista.read`` and ``save``. The actor's colours are found in ``scalars`` and made into a
 look-up table in ``colours``; the drawing is the mapper's.
 """
@@ -16,6 +17,8 @@ from pvfiblets.plotting.component import AddFiblets, FibletsComponent
 from pvfiblets.plotting.halo_component import AddHaloLines, HaloLinesComponent
 from pvfiblets.plotting.halo_kinds import HaloLineActor, HaloPointActor
 from pvfiblets.plotting.halo_point_component import AddHaloPoints, HaloPointsComponent
+from pvfiblets.plotting.raycast_actor import RaycastActor
+from pvfiblets.plotting.raycast_component import AddRaycastVolume, RaycastVolumesComponent
 from pvfiblets.plotting.spline_actor import SplineTubeActor
 from pvfiblets.plotting.spline_component import AddSplineTubes, SplineTubesComponent
 
@@ -23,6 +26,7 @@ __all__ = [
     "AddFiblets",
     "AddHaloLines",
     "AddHaloPoints",
+    "AddRaycastVolume",
     "AddSplineTubes",
     "FibletActor",
     "FibletsComponent",
@@ -30,6 +34,8 @@ __all__ = [
     "HaloLinesComponent",
     "HaloPointActor",
     "HaloPointsComponent",
+    "RaycastActor",
+    "RaycastVolumesComponent",
     "SplineTubeActor",
     "SplineTubesComponent",
 ]

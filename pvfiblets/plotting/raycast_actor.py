@@ -160,7 +160,9 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``mode``; ``voxels_total``; ``nodes`` of the octree, and ``skipped``: the
-            share of its leaves with nothing to see, ``None`` before the first picture; ``clips``.
+            share of its leaves with nothing to see; ``octree``: its ``bytes``, their ``share`` of
+            the volume's, and ``ms`` that building it took. ``None`` before the first picture;
+            ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -172,6 +174,7 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
             "voxels_total": self._volume.n_points,
             "nodes": latest.get("nodes"),
             "skipped": latest.get("skipped"),
+            "octree": latest.get("octree"),
             "clips": list(self._clips),
         }
 

@@ -79,11 +79,14 @@ class RaySettings(Coloured):
     refine = _Setting("How a surface is refined: ``'regula-falsi'``, ``'newton'`` or ``'none'``.")
     iterations = _Setting("Steps of that refinement, 1 to 64.")
     integrator = _Setting(
-        "How light is added up: ``'preintegrated'``, ``'exponential'``, ``'riemann'``, ``'simpson'`` or ``'rk4'``."
+        "How light is added up: ``'adaptive'``, ``'preintegrated'``, ``'exponential'``, ``'riemann'``, ``'simpson'``, "
+        "``'romberg'`` or ``'rk4'``."
     )
     jitter = _Setting("Whether each ray starts at a place of its own in its first step: noise instead of rings.")
     octree = _Setting("Whether parts with nothing to see are skipped; the picture is the same.")
     homogeneous = _Setting("Difference of values up to which parts of the volume are taken as their mean; 0 for none.")
+    sparse = _Setting("Pixels along each axis for which there is one ray at first: 1, 2 or 4.")
+    sparse_threshold = _Setting("Difference between those rays from which on pixels between have their own, 0 to 1.")
     stop = _Setting("Opacity at which a ray ends, up to 1.")
     box = _Setting("(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; ``None`` for all.")
 
@@ -251,7 +254,7 @@ class RaySettings(Coloured):
             own["transfer"] = self._transfer(alpha)
         casting = replace(self._casting, **own)
         if mode == LIGHT:
-            if casting.integrator == "preintegrated" and len(alpha) > LARGEST_PREINTEGRATED:
+            if casting.integrator in ("adaptive", "preintegrated") and len(alpha) > LARGEST_PREINTEGRATED:
                 raise ValueError(
                     f"n_colors is {len(alpha)}; light that is integrated beforehand has {LARGEST_PREINTEGRATED} "
                     "colours at most: give fewer, or integrator='exponential'"

@@ -20,7 +20,7 @@ MODES = ("isosurface", "composite", "mip", "local-mip")
 REFINEMENTS = ("none", "regula-falsi", "newton")
 """How the place of a crossing is refined (paper: equations 3 and 4)."""
 
-INTEGRATORS = ("preintegrated", "exponential", "riemann", "simpson", "rk4")
+INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
 """How the rendering equation is integrated over a step."""
 
 MAX_VALUES = 8
@@ -57,7 +57,8 @@ class Casting:
     iterations : int
         Steps of the refinement, 1 to 64.
     integrator : str
-        Of `INTEGRATORS`.
+        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` where one look-up a step is enough
+        (:func:`pvfiblets.raycast.steepness.is_steep`), and else halves steps until their halves agree.
     octree : bool
         Whether nodes in which there is nothing to see are skipped. It changes no pixel.
     homogeneous : float
@@ -94,7 +95,7 @@ class Casting:
     filter: str = "trilinear"
     refine: str = "regula-falsi"
     iterations: int = 5
-    integrator: str = "preintegrated"
+    integrator: str = "adaptive"
     octree: bool = True
     homogeneous: float = 0.0
     sparse: int = 1

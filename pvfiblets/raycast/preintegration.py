@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
 
-__all__ = ["preintegrate"]
+__all__ = ["preintegrate", "unit_depths"]
 
 LARGEST_DEPTH = 24.0 * np.log(2.0)  # as of transfer.py, which loads this module only when it is needed
 SPENT = 40.0  # optical depth behind which nothing is seen: exp(-40) is 4e-18
@@ -50,6 +50,12 @@ def preintegrate(rgba: Array, units: float) -> npt.NDArray[np.float32]:
         rgba, units, _depths(alpha, x), weights, _depths(alpha, graded), shares, _depths(alpha, np.ones(1))[:, 0], out
     )
     return out
+
+
+def unit_depths(alpha: Array) -> Array:
+    """Optical depth of each piece between two opacities, which is linear there, were the piece one unit long."""
+    depths: Array = _depths(np.ascontiguousarray(alpha, np.float64), np.ones(1))[:, 0]
+    return depths
 
 
 @kernel
@@ -94,43 +100,56 @@ def _pairs(
     whole: Array,
     out: Any,
 ) -> None:
+    """Fill the table by how many pieces lie between front and back: how long each then is does not depend on where."""
     n = len(rgba)
-    for front in numba.prange(n):
-        for back in range(n):
-            if front == back:
-                opacity = -math.expm1(-units * _unit_depth(rgba[front, 3]))
+    for apart in numba.prange(n):
+        if apart == 0:
+            for entry in range(n):
+                opacity = -math.expm1(-units * _unit_depth(rgba[entry, 3]))
                 for c in range(3):
-                    out[front, back, c] = rgba[front, c] * opacity
-                out[front, back, 3] = opacity
+                    out[entry, entry, c] = rgba[entry, c] * opacity
+                out[entry, entry, 3] = opacity
+            continue
+        length = units / apart
+        taken = np.empty(n - 1)
+        lost = np.empty((2, n - 1))  # 1 - exp(-tau) from the piece's beginning, its mean over the piece: up, down
+        for piece in range(n - 1):
+            depth = length * whole[piece]
+            taken[piece] = -math.expm1(-depth)
+            lost[0, piece] = lost[1, piece] = 0.0
+            if depth <= 0.0:
                 continue
-            way = 1 if back > front else -1
-            length = units / abs(back - front)
-            passed = 0.0
-            red = green = blue = 0.0
-            for begin in range(front, back, way):
-                end = begin + way
-                piece = min(begin, end)
-                depth = length * whole[piece]
-                if depth > 0.0 and passed < SPENT:
-                    # 1 - exp(-tau) from the piece's beginning: its mean over the piece. Against the pieces' direction
-                    # depths count from the other end; the quadrature's places are symmetric.
-                    lost = 0.0
-                    if depth < THICK:
-                        for q in range(len(thin_weights)):
-                            t = thin[piece, q] if way > 0 else whole[piece] - thin[piece, q]
-                            lost -= thin_weights[q] * math.expm1(-length * t)
-                    else:
-                        for q in range(len(graded_weights)):
-                            t = graded[piece, q] if way > 0 else whole[piece] - graded[piece, q]
-                            lost -= graded_weights[q] * math.expm1(-length * t)
-                    left = math.exp(-passed)
-                    taken = -math.expm1(-depth)
-                    red += left * (rgba[end, 0] * taken - (rgba[end, 0] - rgba[begin, 0]) * lost)
-                    green += left * (rgba[end, 1] * taken - (rgba[end, 1] - rgba[begin, 1]) * lost)
-                    blue += left * (rgba[end, 2] * taken - (rgba[end, 2] - rgba[begin, 2]) * lost)
-                passed += depth
-            opacity = -math.expm1(-passed)
-            out[front, back, 0] = min(max(red, 0.0), opacity)
-            out[front, back, 1] = min(max(green, 0.0), opacity)
-            out[front, back, 2] = min(max(blue, 0.0), opacity)
-            out[front, back, 3] = opacity
+            # Against the pieces' direction depths count from the other end; the quadrature's places are symmetric.
+            if depth < THICK:
+                for q in range(len(thin_weights)):
+                    t = thin[piece, q]
+                    lost[0, piece] -= thin_weights[q] * math.expm1(-length * t)
+                    lost[1, piece] -= thin_weights[q] * math.expm1(-length * (whole[piece] - t))
+            else:
+                for q in range(len(graded_weights)):
+                    t = graded[piece, q]
+                    lost[0, piece] -= graded_weights[q] * math.expm1(-length * t)
+                    lost[1, piece] -= graded_weights[q] * math.expm1(-length * (whole[piece] - t))
+        for front in range(n):
+            for down in range(2):
+                way = -1 if down else 1
+                back = front + way * apart
+                if back < 0 or back >= n:
+                    continue
+                passed = 0.0
+                red = green = blue = 0.0
+                for begin in range(front, back, way):
+                    end = begin + way
+                    piece = min(begin, end)
+                    if whole[piece] > 0.0 and passed < SPENT:
+                        left = math.exp(-passed)
+                        much, less = taken[piece], lost[down, piece]
+                        red += left * (rgba[end, 0] * much - (rgba[end, 0] - rgba[begin, 0]) * less)
+                        green += left * (rgba[end, 1] * much - (rgba[end, 1] - rgba[begin, 1]) * less)
+                        blue += left * (rgba[end, 2] * much - (rgba[end, 2] - rgba[begin, 2]) * less)
+                    passed += length * whole[piece]
+                opacity = -math.expm1(-passed)
+                out[front, back, 0] = min(max(red, 0.0), opacity)
+                out[front, back, 1] = min(max(green, 0.0), opacity)
+                out[front, back, 2] = min(max(blue, 0.0), opacity)
+                out[front, back, 3] = opacity

@@ -13,7 +13,7 @@ something is does not depend on how finely rays are sampled.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,18 @@ PREINTEGRATED = 256
 
 LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
+
+PLACES = 4080
+"""Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
+
+KEPT = 4
+"""Pre-integrated tables that are kept, for whoever comes back to one: each takes a moment to make."""
+
+ALLOWED = 1e-3
+"""Difference of light between a stretch and its halves up to which ``'adaptive'`` does not halve it again."""
+
+FINEST = 64
+"""Parts of two steps below which it does not."""
 
 Array = npt.NDArray[np.float64]
 
@@ -165,7 +177,7 @@ class Transfer:
         ndarray
             ``(n, n, 4)`` float32: for the value at the step's front, first, and back, second, each evenly over
             ``clim``, the RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of
-            the table is among the values.
+            the table is among the values. Not to be written to: it is kept for the next who asks for it.
 
         Raises
         ------
@@ -178,8 +190,6 @@ class Transfer:
         (1 - alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
         int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
         """
-        from .preintegration import preintegrate
-
         if not 0.0 < step < np.inf:
             raise ValueError(f"the step is {step!r} mm; expected a finite length above 0")
         k = len(self.table)
@@ -189,8 +199,49 @@ class Transfer:
                 "pre-integrated: give a shorter one"
             )
         n = (k - 1) * -(-(PREINTEGRATED - 1) // (k - 1)) + 1
-        rgba = self.lookup(np.linspace(*self.clim, n))
-        return preintegrate(rgba, step / self.unit)
+        return _preintegrated(self.table.tobytes(), n, step / self.unit)
+
+    def media(self, least: int = PLACES) -> tuple[npt.NDArray[np.float32], int]:
+        """What light of stretches in which the value is linear is calculated from (``shaders/raycast/adaptive.glsl``).
+
+        Parameters
+        ----------
+        least : int
+            Least number of places, at which kappa is known; there are as many between all entries of the table.
+
+        Returns
+        -------
+        media : ndarray
+            ``(2, n, 4)`` float32. First the table, RGBA, at places evenly over ``clim``; then the integral of
+            extinction, 1/mm, over places from the first on, in two numbers of which the second is what the first
+            lacks, the extinction, and 0.
+        places : int
+            From each entry of the table to the next.
+        """
+        from .preintegration import unit_depths
+
+        pieces = len(self.table) - 1
+        places = -(-least // pieces)
+        rgba = self.lookup(np.linspace(*self.clim, pieces * places + 1))
+        depth = np.append(0.0, np.cumsum(unit_depths(rgba[:, 3]))) / self.unit
+        first = depth.astype(np.float32)
+        made = np.zeros((2, len(rgba), 4), np.float32)
+        made[0] = rgba
+        made[1, :, :3] = np.column_stack([first, depth - first, _depth(rgba[:, 3]) / self.unit])
+        return made, places
+
+
+@lru_cache(maxsize=KEPT)
+def _preintegrated(table: bytes, n: int, units: float) -> npt.NDArray[np.float32]:
+    """Table of n entries, made of those of a user, by the length of a step in units of opacity."""
+    from .preintegration import preintegrate
+
+    rgba = np.frombuffer(table, np.float32).reshape(-1, 4).astype(np.float64)
+    where = np.linspace(0.0, len(rgba) - 1.0, n)
+    fine = np.column_stack([np.interp(where, np.arange(len(rgba)), column) for column in rgba.T])
+    made = preintegrate(fine, units)
+    made.flags.writeable = False
+    return made
 
 
 def _depth(alpha: Array) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...raycast.casting import MAX_VALUES, Casting
+from ...raycast.transfer import ALLOWED, FINEST
 from ...raycast.volume import RaycastVolume
 from ..errors import EngineError
 from ..shaders import BLOCKS
@@ -19,7 +20,12 @@ __all__ = ["CONSTANTS", "MAX_LEVELS", "RayBlock"]
 MAX_LEVELS = 12
 """Levels of an octree: leaves of 8 voxels in a volume of up to 16,384 along an axis."""
 
-CONSTANTS = {"max_planes": MAX_CLIP_PLANES + 2, "max_levels": MAX_LEVELS}
+CONSTANTS: dict[str, Any] = {
+    "max_planes": MAX_CLIP_PLANES + 2,
+    "max_levels": MAX_LEVELS,
+    "adaptive_error": ALLOWED,
+    "finest": FINEST,
+}
 """Of the shaders."""
 
 _LAYOUT: list[Any] = [

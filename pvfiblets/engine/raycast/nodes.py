@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import moderngl
@@ -34,15 +35,19 @@ class NodeList:
         (n_levels, 4) int64: nodes along each axis, and place of the first.
     skipped : float
         Share of the leaves in which there is nothing to see; 0 of peaks, for which it depends on the ray.
+    octree : dict
+        What the octree costs: its ``bytes``, their ``share`` of the volume's, and ``ms`` that building it took.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: OpenGL, volume: RaycastVolume) -> None:
         self._ctx, self._gl, self._volume = ctx, gl, volume
         self._octrees: dict[int, Octree] = {}
+        self._took: dict[int, float] = {}
         self._made_for: object = None
         self._lists: dict[str, tuple[moderngl.Buffer, BufferTexture]] = {}
         self.levels: npt.NDArray[np.int64] = np.zeros((0, 4), np.int64)
         self.skipped = 0.0
+        self.octree: dict[str, float] = {}
 
     def make(self, casting: Casting) -> None:
         """Bring the list up to date.
@@ -60,8 +65,12 @@ class NodeList:
             return
         margin = 2 if casting.filter == "tricubic" else 1
         if margin not in self._octrees:
+            start = time.perf_counter()
             self._octrees[margin] = build_octree(self._volume, margin)
+            self._took[margin] = 1e3 * (time.perf_counter() - start)
         octree = self._octrees[margin]
+        share = octree.nbytes / self._volume.values.nbytes
+        self.octree = {"bytes": octree.nbytes, "share": share, "ms": self._took[margin]}
         numbers = _numbers(octree, casting)
         starts = np.cumsum([0, *(level.size for level in numbers)])[:-1]
         self.levels = np.array([[*of.shape, start] for of, start in zip(numbers, starts, strict=True)], np.int64)

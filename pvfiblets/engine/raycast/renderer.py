@@ -38,10 +38,12 @@ _OF_MODE = {
 FEATURES_OF_FILTER = {"nearest": ["RAYCAST_NEAREST"], "trilinear": [], "tricubic": ["RAYCAST_TRICUBIC"]}
 _OF_REFINEMENT = {"none": ["RAYCAST_UNREFINED"], "regula-falsi": [], "newton": ["RAYCAST_NEWTON"]}
 _OF_INTEGRATOR = {
+    "adaptive": ["RAYCAST_PREINTEGRATED"],  # where that does
     "preintegrated": ["RAYCAST_PREINTEGRATED"],
     "exponential": [],
     "riemann": ["RAYCAST_RIEMANN"],
     "simpson": ["RAYCAST_SIMPSON"],
+    "romberg": ["RAYCAST_ROMBERG"],
     "rk4": ["RAYCAST_RK4"],
 }
 
@@ -85,7 +87,7 @@ class RaycastRenderer:
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._nodes = NodeList(ctx, self._gl, volume)
-        self._tables = Tables(ctx)
+        self._tables = Tables(ctx, volume)
         self._cuts = RayCuts(ctx, self._gl, self._programs, volume)
         self._voxels: VolumeTexture | None = None
         self._block: RayBlock | None = None
@@ -239,13 +241,12 @@ class RaycastRenderer:
         program["ray_stride"] = stride
         program["last_pixel"] = size[0] - 1, size[1] - 1
 
-    @staticmethod
-    def _features_of(casting: Casting, outside: bool) -> list[str]:
+    def _features_of(self, casting: Casting, outside: bool) -> list[str]:
         features = [*_OF_MODE[casting.mode], *FEATURES_OF_FILTER[casting.filter]]
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
-            features += _OF_INTEGRATOR[casting.integrator]
+            features += ["RAYCAST_ADAPTIVE"] if self._tables.steep else _OF_INTEGRATOR[casting.integrator]
             features += ["RAYCAST_HOMOGENEOUS"] if casting.homogeneous > 0.0 and casting.octree else []
         return [*features, *(["RAYCAST_JITTER"] if casting.jitter else []), *(["OUTSIDE"] if outside else [])]
 
@@ -275,7 +276,8 @@ class RaycastRenderer:
         -------
         dict
             ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``voxels_total``, ``nodes`` of the octree,
-            ``skipped``: share of its leaves in which there is nothing to see.
+            ``skipped``: share of its leaves in which there is nothing to see, ``octree``: what it costs, ``bytes``,
+            their ``share`` of the volume's, and ``ms`` that building it took.
         """
         sizes = {} if self._voxels is None else {"voxels": self._voxels.nbytes}
         if self._block is not None:
@@ -292,6 +294,7 @@ class RaycastRenderer:
             "voxels_total": self._volume.n_points,
             "nodes": sum(int(x) * int(y) * int(z) for x, y, z, _ in self._nodes.levels),
             "skipped": self._nodes.skipped,
+            "octree": dict(self._nodes.octree),
         }
 
     def release(self) -> None:

@@ -8,15 +8,18 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ...raycast.steepness import is_steep, typical_bend
+
 if TYPE_CHECKING:
     from ...raycast.casting import Casting
+    from ...raycast.volume import RaycastVolume
 
 __all__ = ["Tables"]
 
 SIZE = 1024
 """Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
 
-_UNITS = {"colours": 12, "segments": 13}
+_UNITS = {"colours": 12, "segments": 13, "media": 9}
 
 
 class Tables:
@@ -25,18 +28,29 @@ class Tables:
     Parameters
     ----------
     ctx : moderngl.Context
+    volume : RaycastVolume
+
+    Attributes
+    ----------
+    steep : bool
+        Whether stretches must be halved where they are steep, for one look-up a step would not do.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
+        self._ctx, self._volume = ctx, volume
+        self._bend: float | None = None
         self._made_for: object = None
         self._textures: dict[str, moderngl.Texture] = {}
+        self._numbers: dict[str, float] = {}
+        self.steep = False
 
     def make(self, casting: Casting, step: float) -> None:
         """Bring them up to date for steps of some mm."""
         transfer = casting.transfer if casting.mode == "composite" else None
-        beforehand = step if casting.integrator == "preintegrated" else None
-        if self._made_for == (transfer, beforehand):
+        adaptive = casting.integrator == "adaptive"
+        beforehand = step if casting.integrator == "preintegrated" or adaptive else None
+        key = transfer, beforehand, adaptive, casting.low, casting.high
+        if self._made_for == key:
             return
         self.release()
         if transfer is not None:
@@ -45,7 +59,18 @@ class Tables:
             self._textures["colours"] = self._texture(medium[None])
             if beforehand is not None:
                 self._textures["segments"] = self._texture(transfer.preintegrated(beforehand).transpose(1, 0, 2))
-        self._made_for = transfer, beforehand
+            self.steep = adaptive and is_steep(transfer, step, casting.low, casting.high, self._chord(casting))
+            if self.steep:
+                media, places = transfer.media()
+                self._numbers = {"places_per_entry": float(places), "opacity_unit": transfer.unit}
+                self._textures["media"] = self._texture(media)
+        self._made_for = key
+
+    def _chord(self, casting: Casting) -> float:
+        """Return how far values within a step typically are from its chord."""
+        if self._bend is None:
+            self._bend = typical_bend(self._volume)
+        return 0.25 * min(casting.step, 1.0) * self._bend
 
     def _texture(self, rows: npt.NDArray[Any]) -> moderngl.Texture:
         height, width = rows.shape[:2]
@@ -60,6 +85,9 @@ class Tables:
             if name in program:
                 texture.use(_UNITS[name])
                 program[name] = _UNITS[name]
+        for name, number in self._numbers.items():
+            if name in program:
+                program[name] = number
 
     @property
     def sizes(self) -> dict[str, int]:

@@ -1,0 +1,160 @@
+"""Light is within a hundredth of the float64 reference by default: thin to dense, whatever the transfer function."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets.engine import View
+from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
+from pvfiblets.raycast import reference
+from pvfiblets.raycast.casting import Casting
+from pvfiblets.raycast.steepness import is_steep, typical_bend
+from pvfiblets.raycast.transfer import Transfer
+from pvfiblets.raycast.volume import RaycastVolume
+
+SIZE = (48, 36)
+STEP = 0.5
+EMPTY = 0xFFFFFFFF
+DENSE = 0.9  # opacity of a unit where tables are densest
+X, ENTRY = np.linspace(0.0, 1.0, 256), np.arange(256)
+ORANGE, BLUE = np.array([1.0, 0.6, 0.1]), np.array([0.1, 0.3, 1.0])
+
+
+def table(colours, opacities):
+    return np.column_stack([np.broadcast_to(colours, (256, 3)), opacities])
+
+
+TABLES = {
+    "ramp": table(BLUE + X[:, None] * (ORANGE - BLUE), DENSE * X),
+    "edge": table(ORANGE, np.where(X > 0.37, DENSE, 0.0)),
+    "peak": table(ORANGE, np.where(ENTRY == 97, DENSE, 0.0)),
+    "peaks": table(np.where((ENTRY // 16 % 2)[:, None] == 0, ORANGE, BLUE), np.where(ENTRY % 16 == 8, DENSE, 0.0)),
+}
+
+
+def field(name, n=16):
+    at = np.stack(np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij"), axis=-1)
+    far = np.linalg.norm(at, axis=-1)
+    if name == "slope":
+        values = 0.5 + 0.5 * at @ [0.6, 0.3, 0.1]
+    elif name == "ball":
+        values = np.clip(1 - far / 1.2, 0, 1)
+    else:
+        values = np.random.default_rng(0).random((n, n, n))
+    return RaycastVolume(values.astype(np.float32), np.eye(4))
+
+
+def steep_transfer(name, kappa_step):
+    """One whose largest extinction times a step is a number."""
+    return Transfer(TABLES[name], (0.0, 1.0), -STEP * np.log1p(-DENSE) / kappa_step)
+
+
+def light(renderer, matrix, casting):
+    buffer = renderer.render(View(SIZE, matrix), RaycastStyle(casting=casting))
+    there = np.frombuffer(buffer.depth.read(), "u4").reshape(SIZE[::-1]) != EMPTY
+    rgba = np.frombuffer(buffer.colours.read(), "u1").reshape(*SIZE[::-1], 4) / 255.0
+    rgba[..., :3] *= rgba[..., 3:]
+    return np.where(there[..., None], rgba, 0.0)
+
+
+def matrix_of(camera, volume):
+    middle = (np.array(volume.shape) - 1) / 2
+    return camera(SIZE, eye=middle + [20, -27, 15], target=middle, near=3, far=120)
+
+
+@pytest.mark.parametrize("name", ["slope", "ball"])
+def test_light_is_within_a_hundredth_from_thin_to_dense(gl, camera, name):
+    volume = field(name)
+    matrix = matrix_of(camera, volume)
+    through = reference.rays(matrix, SIZE, volume)
+    renderer = RaycastRenderer(gl, volume)
+    for look in TABLES:
+        for kappa_step in (1e-3, 0.1, 10.0, 1e3):
+            transfer = steep_transfer(look, kappa_step)
+            found = light(renderer, matrix, Casting("composite", transfer=transfer, step=STEP, stop=0.9999))
+            right = reference.composite(volume, transfer, through).reshape(found.shape)
+            assert np.abs(found - right).max() < 1e-2, (look, kappa_step)  # 8 bits of colours and of opacity are in it
+    renderer.release()
+
+
+def test_the_same_of_noise_but_for_few_pixels(gl, camera):
+    volume = field("noise")
+    matrix = matrix_of(camera, volume)
+    through = reference.rays(matrix, SIZE, volume)
+    renderer = RaycastRenderer(gl, volume)
+    for look in ("ramp", "peak"):
+        for kappa_step in (1e-2, 1.0, 100.0):
+            transfer = steep_transfer(look, kappa_step)
+            found = light(renderer, matrix, Casting("composite", transfer=transfer, step=STEP, stop=0.9999))
+            off = np.abs(found - reference.composite(volume, transfer, through).reshape(found.shape)).max(axis=-1)
+            assert (off < 1e-2).mean() > 0.998
+            assert off.max() < 5e-2
+    renderer.release()
+
+
+def test_values_beyond_thresholds_are_left_out_exactly(gl, camera):
+    volume = field("slope")
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    for kappa_step in (0.1, 100.0):
+        transfer = steep_transfer("ramp", kappa_step)
+        casting = Casting("composite", transfer=transfer, low=0.4, high=0.6, step=STEP, stop=0.9999)
+        right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume), low=0.4, high=0.6)
+        assert np.abs(light(renderer, matrix, casting) - right.reshape(*SIZE[::-1], 4)).max() < 1e-2
+    renderer.release()
+
+
+def test_the_octree_changes_no_pixel_of_it(gl, camera):
+    volume = field("ball", 24)
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    transfer = steep_transfer("peak", 3.0)
+    pictures = [light(renderer, matrix, Casting("composite", transfer=transfer, octree=octree)) for octree in (0, 1)]
+    assert np.abs(pictures[0] - pictures[1]).max() < 5e-3  # rays are cut to cells at other places
+    assert pictures[0].max() > 0.5
+    renderer.release()
+
+
+def test_only_what_is_steep_pays_for_it(gl, camera):
+    volume = field("ball")
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    gentle = Transfer(np.linspace(0, 1, 256)[:, None] * np.ones(4), (0, 1), 1.0)
+    light(renderer, matrix, Casting("composite", transfer=gentle))
+    assert "RAYCAST_PREINTEGRATED" in renderer.explain()["features"]
+    assert "media" not in {buffer["name"] for buffer in renderer.explain()["buffers"]}
+    light(renderer, matrix, Casting("composite", transfer=steep_transfer("peak", 1.0)))
+    assert "RAYCAST_ADAPTIVE" in renderer.explain()["features"]
+    light(renderer, matrix, Casting("composite", transfer=steep_transfer("peak", 1.0), integrator="preintegrated"))
+    assert "RAYCAST_ADAPTIVE" not in renderer.explain()["features"]
+    renderer.release()
+
+
+@pytest.mark.parametrize("integrator", ["simpson", "romberg", "rk4"])
+def test_rules_of_higher_order_are_right_where_light_is_smooth(gl, camera, integrator):
+    volume = field("ball")
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    transfer = steep_transfer("ramp", 0.3)
+    found = light(renderer, matrix, Casting("composite", transfer=transfer, integrator=integrator, stop=0.9999))
+    right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume))
+    assert np.abs(found - right.reshape(found.shape)).max() < 1e-2
+    renderer.release()
+
+
+def test_what_is_steep():
+    assert not is_steep(steep_transfer("ramp", 1.0), STEP)
+    for name in ("edge", "peak", "peaks"):
+        for kappa_step in (1e-3, 1.0, 1e3):
+            assert is_steep(steep_transfer(name, kappa_step), STEP)
+    assert is_steep(steep_transfer("ramp", 100.0), STEP)  # so dense that parts of a step are not told from it
+    assert is_steep(steep_transfer("ramp", 1.0), STEP, low=0.5)
+    assert not is_steep(steep_transfer("ramp", 1.0), STEP, low=-1.0)
+    assert is_steep(steep_transfer("ramp", 1.0), STEP, chord=0.1)
+
+
+def test_the_typical_bend():
+    assert typical_bend(field("slope")) < 1e-6
+    assert 0.3 < typical_bend(field("noise")) < 0.6
+    assert typical_bend(RaycastVolume(np.arange(8.0, dtype=np.float32).reshape(2, 2, 2) ** 2, np.eye(4))) == 0.0
