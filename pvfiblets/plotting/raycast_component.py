@@ -208,8 +208,9 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
         Notes
         -----
         Of several things that are translucent in a pixel VTK takes the mean, weighted by opacity,
-        where depth peeling is off; with ``plotter.enable_depth_peeling()`` they lie over each other
-        by the depth of a volume's first light. Two volumes in one place do not mix.
+        where depth peeling is off, which is right for volumes in one place; with
+        ``plotter.enable_depth_peeling()`` they lie over each other by the depth of a volume's first
+        light, which is right for one behind the other. Opacity is right in both.
 
         Source: Lesar, "Real-time ray casting of volumetric data" (2015).
 
