@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["DIRECTIONS", "point_camera"]
+__all__ = ["DIRECTIONS", "point_camera", "visible_bounds"]
 
 DIRECTIONS = {
     "axial": ((0, 0, 1), (0, 1, 0)),
@@ -21,12 +21,21 @@ DIRECTIONS = {
 """Where the camera stands, and what is up in the picture (RAS+ mm)."""
 
 
+def visible_bounds(plotter: Any) -> tuple[float, ...]:
+    """Return (xmin, xmax, ymin, ymax, zmin, zmax) of all visible actors, mm; from -1 to 1 where there is none."""
+    found = tuple(float(end) for end in plotter.renderer.ComputeVisiblePropBounds())
+    return found if all(found[k] <= found[k + 1] for k in (0, 2, 4)) else (-1.0, 1.0) * 3
+
+
 def point_camera(plotter: Any, view: str) -> None:
-    """Look at everything from one of the named directions, as near as the picture's edges allow."""
+    """Look at all that is visible from one of the named directions, as near as the picture's edges allow.
+
+    Nothing is rendered.
+    """
     direction, up = DIRECTIONS[view]
-    plotter.view_vector(direction, viewup=up)
-    plotter.reset_camera()
-    camera, bounds = plotter.camera, plotter.bounds
+    plotter.renderer.view_vector(direction, viewup=up, render=False)  # those of the plotter itself do render
+    plotter.renderer.reset_camera(render=False)
+    camera, bounds = plotter.camera, visible_bounds(plotter)
     low, high = np.array(bounds[::2]), np.array(bounds[1::2])
     # The middles of the box's edges: exact from the front, and from aslant nearer to a brain's
     # outline than the box's corners are.

@@ -34,7 +34,7 @@ class Cameras:
 
     def reset(self) -> None:
         """Move the camera until everything is in the picture, without turning it."""
-        self.plotter.reset_camera()
+        self.plotter.renderer.reset_camera(render=False)  # the plotter's own renders
 
     @property
     def parallel(self) -> bool:

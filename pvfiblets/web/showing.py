@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.plotting.viewpoints import visible_bounds
 from pvfiblets.web.document import Clip, Filters, Layer, State
 from pvfiblets.web.shapes import CUTTING, check_condition, check_shape, make_region
 from pvfiblets.web.values import mapping, number, shown, text, truth, whole
@@ -124,9 +125,10 @@ class Showing:
 
     def usual_shape(self, kind: str) -> dict[str, Any]:
         """Return a shape in the middle of what is shown, for a panel to begin with."""
-        b = [float(end) for end in self.plotter.bounds]
-        if any(b[k] >= b[k + 1] for k in (0, 2, 4)):
-            b = [end for k in (0, 2, 4) for end in (min(b[k], b[k + 1]) - 1.0, max(b[k], b[k + 1]) + 1.0)]
+        b = list(visible_bounds(self.plotter))
+        for k in (0, 2, 4):
+            if b[k] == b[k + 1]:  # flat
+                b[k], b[k + 1] = b[k] - 1.0, b[k] + 1.0
         middle = [0.5 * (b[k] + b[k + 1]) for k in (0, 2, 4)]
         sides = [b[k + 1] - b[k] for k in (0, 2, 4)]
         if kind == "plane":

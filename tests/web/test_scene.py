@@ -500,6 +500,29 @@ def test_views_know_their_sides(scene, view, edges):
         scene.screenshot(scale=100)
 
 
+def test_only_pictures_render_and_views_show_what_is_visible(scene):
+    """Every render of a large tractogram costs; whoever streams pictures decides when."""
+    layer = scene.open("lines.fiblets")
+    scene.screenshot()
+    renders = []
+    scene.plotter.render_window.AddObserver("StartEvent", lambda *_: renders.append(1))
+    scene.view("axial")
+    scene.reset()
+    scene.set(layer.id, "scalars", "fa")
+    scene.set_filter(layer.id, "length", 20)
+    scene.add_clip("plane")
+    scene.select_box(0, 0, 199, 159, through=True)
+    ball = scene.open("ball.ply")
+    scene.set(ball.id, "opacity", 0.5)
+    scene.set_background("#101010")
+    scene.info(layer.id)
+    scene.show(layer.id, False)
+    scene.view("coronal")
+    assert renders == []
+    assert scene.camera()["focal_point"] == pytest.approx([20, 18, 10], abs=0.1)
+    assert scene.usual_shape("plane")["origin"] == pytest.approx([20, 18, 10], abs=0.1)
+
+
 def test_distances_are_between_what_pixels_show(scene):
     """A ball of 8 mm around (20, 18, 10), from above at a quarter of a millimetre a pixel."""
     scene.open("ball.ply")
