@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
     from pvfiblets.raycast import RaycastVolume
     from pvfiblets.raycast.casting import Casting
+    from pvfiblets.raycast.coarser import Coarser
 
 __all__ = ["RayHit", "RaycastMapper", "raycast_renderer"]
 
@@ -83,6 +84,11 @@ class RaycastMapper(EngineMapper):
     renderer_factory : callable, optional
         Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.raycast`.
 
+    Attributes
+    ----------
+    coarser : Coarser or None
+        How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
+
     Notes
     -----
     Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at
@@ -105,6 +111,7 @@ class RaycastMapper(EngineMapper):
         renderer_factory: Callable[..., Any] = raycast_renderer,
     ) -> None:
         self._casting = casting
+        self.coarser: Coarser | None = None
         super().__init__(volume, colouring=_plain(casting), options=Options(), renderer_factory=renderer_factory)
         self.show(casting, colouring)
 
@@ -244,8 +251,23 @@ class RaycastMapper(EngineMapper):
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:  # noqa: ARG002
         from pvfiblets.engine.raycast import RaycastStyle
 
-        style = RaycastStyle(casting=self._casting, values=self._colouring.point_source)
+        casting = self._casting
+        if self.coarser is not None and _in_motion(renderer):
+            casting = self.coarser.of(casting)
+        style = RaycastStyle(casting=casting, values=self._colouring.point_source)
         return styled(style, self._extras.values())
+
+
+def _in_motion(renderer: vtkRenderer) -> bool:
+    """Whether the window wants pictures at the rate of interaction.
+
+    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
+    """
+    window = renderer.GetRenderWindow()
+    interactor = window.GetInteractor()
+    still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
+    return bool(window.GetDesiredUpdateRate() > still)
 
 
 def _plain(casting: Casting) -> Colouring:

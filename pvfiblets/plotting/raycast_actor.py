@@ -19,6 +19,7 @@ from pvfiblets.plotting.raycast_shading import RaycastShading
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.scalars import Scalars
 from pvfiblets.raycast import RaycastVolume, smoothed
+from pvfiblets.raycast.coarser import Coarser
 
 if TYPE_CHECKING:
     from pvfiblets.mappers import RayHit
@@ -42,7 +43,7 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
     casting : dict, optional
         Fields of :class:`pvfiblets.raycast.casting.Casting` that shall differ from their defaults;
         those that are ``None`` do not.
-    values, thresholds, peak, opacity, opacity_unit_distance, smooth
+    values, thresholds, peak, opacity, opacity_unit_distance, smooth, interactive_quality
         As for the properties.
     settings : ColourSettings, optional
         Colour map and colours.
@@ -70,10 +71,12 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
         opacity_unit_distance: float | None = None,
         smooth: Any = None,
         settings: ColourSettings | None = None,
+        interactive_quality: float | dict[str, Any] = 0.5,
         lighting: bool | None = None,
         name: str | None = None,
         theme: Any = None,
     ) -> None:
+        coarser = Coarser.of_quality(interactive_quality)
         theme = pv.global_theme if theme is None else theme
         self._source = _checked(volume)
         self._volume, self._smooth = _smoothed(volume, smooth), smooth
@@ -95,6 +98,7 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
+        self._quality, mapper.coarser = interactive_quality, coarser
         self._look()
 
     def __repr__(self) -> str:
@@ -120,6 +124,22 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
     @smooth.setter
     def smooth(self, sigma: Any) -> None:
         self._hold(self._source, sigma)
+
+    @property
+    def interactive_quality(self) -> float | dict[str, Any]:
+        """How well the volume is drawn while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.
+
+        1: as at rest. 0.5: steps twice as long, and a ray for every second pixel at first; light
+        whose steps are integrated beforehand keeps its step. As soon as the camera rests, there is
+        one more picture, with all as it is set. What counts is that the window wants the rate of
+        an interactor that is being used.
+        """
+        return self._quality
+
+    @interactive_quality.setter
+    def interactive_quality(self, quality: float | dict[str, Any]) -> None:
+        self._mapper.coarser = Coarser.of_quality(quality)
+        self._quality = quality
 
     @property
     def lighting(self) -> bool:
@@ -202,6 +222,7 @@ class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):
             opacity_unit_distance=self._unit,
             smooth=self._smooth,
             settings=replace(self._settings),
+            interactive_quality=self._quality,
             lighting=self._lit,
             theme=self._theme,
         )

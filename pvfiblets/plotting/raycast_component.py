@@ -77,6 +77,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
         sparse: int = 1,
         sparse_threshold: float = 0.05,
         stop: float = 0.999,
+        interactive_quality: float | dict[str, Any] = 0.5,
         box: Any = None,
         spacing: Any = None,
         origin: Any = None,
@@ -161,6 +162,9 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             By how much that may differ, from 0 to 1.
         stop : float, default: 0.999
             Opacity at which a ray ends.
+        interactive_quality : float or dict, default: 0.5
+            While the camera moves, how well: from 0 to 1, which is as at rest, or
+            ``{"step": factor, "sparse": pixels}``. At rest all is drawn as it is set.
         box : (float, float, float, float, float, float), optional
             (xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; all by default.
         spacing, origin, direction, affine : array_like, optional
@@ -271,6 +275,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             opacity_unit_distance=opacity_unit_distance,
             smooth=smooth,
             settings=settings,
+            interactive_quality=interactive_quality,
             lighting=lighting,
             theme=self._plotter.theme,
         )
