@@ -77,8 +77,9 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
         buffer = renderer.render(view, RaycastStyle(casting=casting))
         shown = np.frombuffer(buffer.depth.read(), "u4") != 0xFFFFFFFF
 
-        def openness(samples: int, seed: int) -> np.ndarray:
-            texture = occlusion.draw(renderer, buffer, casting, view, radius=options.radius, samples=samples, seed=seed)
+        def openness(samples: int, seed: int, *, smooth: bool = False) -> np.ndarray:
+            rays = {"radius": options.radius, "samples": samples, "seed": seed, "smooth": smooth}
+            texture = occlusion.draw(renderer, buffer, casting, view, **rays)
             return np.frombuffer(texture.read(), "f2")[shown].astype(np.float64) / samples
 
         seeds, most = options.many
@@ -86,19 +87,21 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
         common = {"set": name, "pixels": int(shown.sum()), "openness": float(right.mean())}
         rows = [{**common, "reference": True, **against_reference(volume, value, matrix, shown, right, options)}]
         print(rows[-1], flush=True)
-        for samples in options.samples:
+        openness(1, 0, smooth=True)  # programs are made
+        for samples, smooth in ((samples, smooth) for samples in options.samples for smooth in (False, True)):
             off, wall, cpu = [], [], []
             for seed in range(options.repeats):
                 ctx.finish()
                 started = time.perf_counter(), time.process_time()
-                picture = openness(samples, seed)
+                picture = openness(samples, seed, smooth=smooth)
                 wall.append(1e3 * (time.perf_counter() - started[0]))
                 cpu.append(1e3 * (time.process_time() - started[1]))
                 off.append(np.abs(picture - right))
             by_chance = float(np.sqrt(np.mean(right * (1.0 - right)) / samples))
-            rows.append({**common, "reference": False, "samples": samples, "ms": float(np.median(wall)),
-                         "ms_cpu": float(np.median(cpu)), "ms_spread": [min(wall), max(wall)],
-                         **errors(np.array(off)), "rms_by_chance": by_chance})  # fmt: skip
+            rows.append({**common, "reference": False, "samples": samples, "smooth": smooth,
+                         "ms": float(np.median(wall)), "ms_cpu": float(np.median(cpu)),
+                         "ms_spread": [min(wall), max(wall)], **errors(np.array(off)),
+                         "rms_by_chance": by_chance})  # fmt: skip
             print(rows[-1], flush=True)
         return rows
     finally:
@@ -209,21 +212,23 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}; {about['voxels']}³ voxels, "
         f"{width}×{height}, rays of {about['radius']:g} mm in steps of {about['step']:g} voxels; the engine without "
         f"VTK. Errors are differences of openness, 0 to 1, to the mean of {seeds} pictures of {most} rays a pixel. *By "
-        "chance*: rms that as many independent rays would have. *ms*: median of the pass, least to greatest in "
+        "chance*: rms that as many independent rays would have. *smooth*: with the mean over neighbouring pixels of "
+        "a surface. *ms*: median of the pass, least to greatest in "
         "brackets; *CPU ms*: of all cores, which on a shared machine says more. *Reference*: how far that mean is, at "
         f"{about['pixels']} pixels, from float64 rays that end at exact roots.",
         "",
-        "| set | rays | ms | CPU ms | mean | rms | by chance | p99 | max |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| set | rays | smooth | ms | CPU ms | mean | rms | by chance | p99 | max |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in results:
         mean, rms, p99, most_off = (f"{row[key]:.4f}" for key in ("mean", "rms", "p99", "max"))
         if row["reference"]:
-            lines.append(f"| {row['set']} | reference | | | {mean} | {rms} | | {p99} | {most_off} |")
+            lines.append(f"| {row['set']} | reference | | | | {mean} | {rms} | | {p99} | {most_off} |")
             continue
         low, high = row["ms_spread"]
         lines.append(
-            f"| {row['set']} | {row['samples']} | {row['ms']:.0f} ({low:.0f}–{high:.0f}) | {row['ms_cpu']:.0f} "
+            f"| {row['set']} | {row['samples']} | {'yes' if row['smooth'] else 'no'} "
+            f"| {row['ms']:.0f} ({low:.0f}–{high:.0f}) | {row['ms_cpu']:.0f} "
             f"| {mean} | {rms} | {row['rms_by_chance']:.4f} | {p99} | {most_off} |"
         )
     return "\n".join(lines) + "\n"
@@ -237,17 +242,18 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained", sharey=True)
-    for name in dict.fromkeys(row["set"] for row in results):
-        rows = [row for row in results if row["set"] == name and not row["reference"]]
-        samples, rms = [row["samples"] for row in rows], [row["rms"] for row in rows]
-        (line,) = left.loglog(samples, rms, "o-", label=name)
-        left.loglog(
-            samples, [row["rms_by_chance"] for row in rows], ":", color=line.get_color(), label=f"{name}, by chance"
-        )
-        right.loglog([row["ms_cpu"] for row in rows], rms, "o-", label=name)
-        for row in rows:
-            right.annotate(str(row["samples"]), (row["ms_cpu"], row["rms"]), textcoords="offset points", xytext=(4, 4),
-                           size="x-small")  # fmt: skip
+    for number, name in enumerate(dict.fromkeys(row["set"] for row in results)):
+        for smooth, mark in ((False, "o-"), (True, "s--")):
+            rows = [row for row in results if row["set"] == name and row.get("smooth") is smooth]
+            samples, rms = [row["samples"] for row in rows], [row["rms"] for row in rows]
+            look = {"color": f"C{number}", "label": f"{name}, smooth" if smooth else name}
+            left.loglog(samples, rms, mark, **look)
+            right.loglog([row["ms_cpu"] for row in rows], rms, mark, **look)
+            for row in rows:
+                right.annotate(str(row["samples"]), (row["ms_cpu"], row["rms"]), textcoords="offset points",
+                               xytext=(4, 4), size="x-small")  # fmt: skip
+        chance = [row["rms_by_chance"] for row in rows]
+        left.loglog(samples, chance, ":", color=f"C{number}", label=f"{name}, by chance")
     left.set_xlabel("rays a pixel")
     right.set_xlabel("CPU ms a picture")
     left.set_ylabel("rms error of openness")

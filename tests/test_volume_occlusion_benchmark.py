@@ -34,15 +34,17 @@ def test_one_command_tells_error_and_time(tmp_path):
     assert done.returncode == 0, done.stderr
     (path,) = tmp_path.glob("volume-occlusion-*.json")
     assert path.with_suffix(".png").stat().st_size > 0
-    few, many = json.loads(path.read_text())["results"][1:]
-    assert (few["samples"], many["samples"]) == (4, 64)
+    rows = json.loads(path.read_text())["results"][1:]
+    few, fewer_smooth, many, _ = rows
+    assert [(row["samples"], row["smooth"]) for row in rows] == [(4, False), (4, True), (64, False), (64, True)]
+    assert fewer_smooth["rms"] < few["rms"]
     assert many["rms"] < 0.5 * few["rms"]
     assert few["rms_by_chance"] == pytest.approx(4.0 * many["rms_by_chance"])
-    for row in (few, many):
+    for row in rows:
         assert row["ms_spread"][0] <= row["ms"] <= row["ms_spread"][1]
         assert row["mean"] <= row["rms"] <= row["max"]
     table = path.with_suffix(".md").read_text()
-    assert table.count("| vessels |") == 3
+    assert table.count("| vessels |") == 5
     assert f"| {many['rms']:.4f} |" in table
 
 

@@ -38,6 +38,8 @@ class RayOcclusion:
         0 to 1.
     seed : int, default 0
         Of the directions: the same picture with the same seed is the same to the last bit.
+    smooth : bool, default True
+        Take the mean over pixels that show the same piece of surface: the fewer the rays, the more it errs less.
 
     Raises
     ------
@@ -53,6 +55,7 @@ class RayOcclusion:
     radius: float | None = None
     strength: float = 1.0
     seed: int = 0
+    smooth: bool = True
     features: ClassVar[frozenset[str]] = frozenset({"ray_occlusion"})
     style: ClassVar[Mapping[str, Any]] = {}
 
@@ -66,6 +69,7 @@ class RayOcclusion:
             object.__setattr__(self, name, int(number))
         if self.radius is not None:
             object.__setattr__(self, "radius", positive(self.radius, f"radius {_WHAT}", "mm"))
+        object.__setattr__(self, "smooth", bool(self.smooth))
         object.__setattr__(self, "strength", share(self.strength, f"strength {_WHAT}"))
 
     def make(self, ctx: Any) -> RayOcclusionPass:
@@ -87,6 +91,7 @@ class RayOcclusion:
             radius=radius,
             samples=self.samples,
             seed=self.seed,
+            smooth=self.smooth,
         )
         return {"fibletRayOcclusionMap": texture}
 

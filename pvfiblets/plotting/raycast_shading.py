@@ -34,7 +34,8 @@ class RaycastShading(SurfaceShading):
 
         ``samples`` (32): rays of each pixel, 1 to 2048. ``radius`` (mm): what is farther does not
         darken; ``None``, the default, is a 20th of the data's diagonal. ``strength`` (1.0): 0 to 1.
-        ``seed`` (0): the same picture with the same seed is the same to the last bit.
+        ``seed`` (0): the same picture with the same seed is the same to the last bit. ``smooth``
+        (``True``): mean over neighbouring pixels of the same piece of surface, in place of grain.
         """
         return self._shades.get("ray_occlusion", False)
 

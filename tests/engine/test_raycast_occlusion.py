@@ -158,6 +158,23 @@ def test_more_rays_err_less_than_by_chance(occluded, camera):
     assert np.polyfit(np.log(list(errors)), np.log(list(errors.values())), 1)[0] < -0.6
 
 
+def test_the_mean_over_a_surface_errs_less(occluded, camera, monkeypatch):
+    """And no more where rays are many, nor across the edge between floor and wall."""
+    monkeypatch.setattr(f"{__name__}.SIZE", (64, 56))
+    matrix = camera((64, 56), eye=(20, -12, 20), target=(-4, 0, -10), near=5, far=200, angle=25)
+    off = {}
+    for samples in (8, 128):
+        for smooth in (False, True):
+            shown = occluded(corner(), Casting(values=(-10.3,)), matrix, radius=14.0, samples=samples, smooth=smooth)
+            chosen, distance = on_the_floor(shown, 14.0)
+            off[samples, smooth] = 1.0 - wall(distance[chosen], 14.0) - shown.open[chosen]
+    assert chosen.sum() > 200
+    rms = {key: float(np.sqrt(np.mean(value**2))) for key, value in off.items()}
+    assert rms[8, True] < 0.5 * rms[8, False]
+    assert rms[128, True] < rms[128, False]
+    assert abs(off[8, True].mean()) < 0.005
+
+
 # ------------------------------------------------------------------------------------------------ float64 reference
 
 

@@ -220,7 +220,7 @@ def test_other_modes_keep_it_for_surfaces(plotter, mode):
     assert "occlusion" not in str(actor.explain()["buffers"])
     actor.mode = "isosurface"
     assert (shot(plotter) < surface).any()
-    assert actor.ray_occlusion == {"samples": 32, "radius": None, "strength": 1.0, "seed": 0}
+    assert actor.ray_occlusion == {"samples": 32, "radius": None, "strength": 1.0, "seed": 0, "smooth": True}
 
 
 def test_off_it_leaves_nothing(plotter):
@@ -232,7 +232,10 @@ def test_off_it_leaves_nothing(plotter):
     told = actor.explain()
     assert "ray_occlusion" in told["features"]
     assert {"name": "ray occlusion (effect)", "bytes": 2 * 120 * 120} in told["buffers"]
-    assert "ray occlusion (effect)" in {step["name"] for step in told["passes"]}
+    assert {"ray occlusion (effect)", "mean ray occlusion (effect)"} <= {step["name"] for step in told["passes"]}
+    actor.ray_occlusion = {"smooth": False}
+    shot(plotter)
+    assert "mean ray" not in str(actor.explain())
     actor.ray_occlusion = None
     assert (shot(plotter) == plain).all()
     after = actor.explain()
@@ -241,7 +244,7 @@ def test_off_it_leaves_nothing(plotter):
 
 def test_it_is_said_when_the_volume_is_added(plotter):
     actor = level(plotter, ray_occlusion={"samples": 8, "seed": 5})
-    assert actor.ray_occlusion == {"samples": 8, "radius": None, "strength": 1.0, "seed": 5}
+    assert actor.ray_occlusion == {"samples": 8, "radius": None, "strength": 1.0, "seed": 5, "smooth": True}
     one = shot(plotter)
     twin = actor.copy()
     assert twin.ray_occlusion == actor.ray_occlusion
@@ -266,7 +269,7 @@ def test_it_is_said_when_the_volume_is_added(plotter):
         ({"seed": -1}, "seed of ray occlusion is -1"),
         (
             {"bias": 1.0},
-            r"ray_occlusion has no settings \['bias'\]; it has \['samples', 'radius', 'strength', 'seed'\]",
+            r"ray_occlusion has no settings \['bias'\]; it has \['samples', 'radius', 'strength', 'seed', 'smooth'\]",
         ),
         (32, "ray_occlusion is 32; give True, False or a dict"),
     ],
