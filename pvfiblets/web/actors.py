@@ -6,12 +6,13 @@ An actor is told of the settings that differ and of nothing else; nothing is com
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer
-from pvfiblets.web.layers import looks
+from pvfiblets.web.layers import RADIUS_SCALE, looks
 from pvfiblets.web.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def add_actor(plotter: Any, layer: Layer, loaded: Loaded) -> Any:
         add = {"tubes": plotter.add_spline_tubes, "volume": plotter.add_raycast_volume}.get(layer.kind)
         actor = (add or plotter.add_fiblets)(loaded.data, **common)
         try:
-            _set(actor, wanted)
+            _set(actor, wanted, loaded.data)
         except Exception:
             remove_actor(plotter, actor)
             raise
@@ -90,9 +91,10 @@ def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) ->
             actor = add_actor(plotter, new, loaded)  # of the same name: it takes the other's place
         else:
             try:
-                _set(actor, {name: value for name, value in after.items() if before.get(name, _set) != value})
+                differing = {name: value for name, value in after.items() if before.get(name, _set) != value}
+                _set(actor, differing, loaded.data)
             except Exception:
-                _set(actor, before)
+                _set(actor, before, loaded.data)
                 raise
     style = _selection_style(new.settings)
     if new.kind in LINES and style != _selection_style(old.settings):
@@ -102,7 +104,7 @@ def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) ->
     return actor
 
 
-def _set(actor: Any, wanted: Mapping[str, Any]) -> None:
+def _set(actor: Any, wanted: Mapping[str, Any], data: Any) -> None:
     """Set attributes in their order; colours by way of what every scale and range allow."""
     if "scalars" in wanted:
         if getattr(actor, "log_scale", False):
@@ -110,6 +112,12 @@ def _set(actor: Any, wanted: Mapping[str, Any]) -> None:
         actor.clim = None
     for name, value in wanted.items():
         if name == "color" and value is None and "scalars" in wanted:
+            continue
+        if name == RADIUS_SCALE:
+            slopes = value * data.radius_slopes
+            scaled = data if value == 1.0 else replace(data, radius=value * data.radius, radius_slopes=slopes)
+            if scaled is not actor.tubes:
+                actor.tubes = scaled
             continue
         setattr(actor, name, value)
 

@@ -20,6 +20,7 @@ __all__ = [
     "ARGUMENTS",
     "KINDS",
     "LINES",
+    "RADIUS_SCALE",
     "TABLES",
     "TYPES",
     "Layer",
@@ -43,7 +44,7 @@ TABLES: dict[str, tuple[Property, ...]] = {
 ARGUMENTS: dict[str, frozenset[str]] = {
     "tractogram": frozenset(
         {"scalars", "color", "cmap", "clim", "log_scale", "nan_color", "opacity", "transparency", "line_width",
-         "lighting", "culling"}
+         "lighting", "culling", "fit"}
     ),
     "tubes": frozenset({"scalars", "color", "cmap", "clim", "log_scale", "opacity", "lighting", "min_width",
                         "culling", "solver"}),
@@ -52,6 +53,9 @@ ARGUMENTS: dict[str, frozenset[str]] = {
 }  # fmt: skip
 """Looks that are arguments of ``plotter.add_...``, too; all others are attributes only. All those of meshes are."""
 ARGUMENTS["selection"] = ARGUMENTS["tractogram"]
+
+RADIUS_SCALE = "radius_scale"
+"""A look of tubes that is no attribute of their actor: its tubes are others."""
 
 _BY_NAME = {kind: {prop.name: prop for prop in table} for kind, table in TABLES.items()}
 
@@ -125,7 +129,7 @@ def _lines(s: Mapping[str, Any]) -> dict[str, Any]:
     found = _coloured(s)
     if "cmap" in found:
         found["nan_color"] = s["nan_color"]
-    same = ("opacity", "transparency", "line_width", "lighting", "culling", "style")
+    same = ("opacity", "transparency", "line_width", "lighting", "culling", "fit", "style")
     found |= {name: s[name] for name in same}
     if s["style"] == "surface":  # the other one sets halos of its own
         found["halos"] = s["halos"]
@@ -135,7 +139,7 @@ def _lines(s: Mapping[str, Any]) -> dict[str, Any]:
 
 def _tubes(s: Mapping[str, Any]) -> dict[str, Any]:
     same = ("opacity", "lighting", "min_width", "culling", "solver", "silhouette", "ambient_occlusion", "depth_cue")
-    return _coloured(s) | {name: s[name] for name in same}
+    return {RADIUS_SCALE: s[RADIUS_SCALE]} | _coloured(s) | {name: s[name] for name in same}
 
 
 def _volume(s: Mapping[str, Any]) -> dict[str, Any]:

@@ -82,6 +82,8 @@ def kind_of(path: Path) -> str:
         import pyvista as pv
 
         data = pv.read(path)
+        if isinstance(data, pv.ImageData):
+            return "volume"
         if isinstance(data, pv.PolyData) and data.n_lines:
             return "tubes" if any(radius in data.point_data for radius in _RADII) else "tractogram"
         return "mesh"
@@ -186,9 +188,11 @@ class Files:
         if kind == "tubes":
             return _tubes(place, source, name, watch)
         if kind == "volume":
+            import pyvista as pv
+
             from pvfiblets.raycast import as_raycast_volume
 
-            volume = as_raycast_volume(place)
+            volume = as_raycast_volume(pv.read(place) if name.lower().endswith(_EITHER) else place)
             watch("reading", 1.0)
             return Loaded(kind, source, name, volume, _volume_facts(volume))
         if kind == "labels":

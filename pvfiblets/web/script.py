@@ -21,12 +21,12 @@ __all__ = ["as_script"]
 _UNSAID: dict[str, dict[str, Any]] = {
     "tractogram": {
         "scalars": "orientation", "clim": None, "log_scale": False, "nan_color": None, "opacity": 1.0,
-        "transparency": None, "lighting": True, "culling": "two-phase", "style": "surface", "halos": False,
+        "transparency": None, "lighting": True, "culling": "two-phase", "fit": None, "style": "surface", "halos": False,
         "illuminated": False, "tube_shading": False, "tube_radius": None, "ambient_occlusion": False,
         "depth_cue": False,
     },
     "tubes": {
-        "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0, "culling": "two-phase",
+        "radius_scale": 1.0, "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0, "culling": "two-phase",
         "solver": "auto", "silhouette": False, "ambient_occlusion": False, "depth_cue": False,
     },
     "volume": {
@@ -108,7 +108,10 @@ class _Writer:
 
     def _head(self) -> list[str]:
         order = sorted(self._imports, key=lambda line: (line.split()[1].startswith("pvfiblets"), line.split()[1]))
-        standard = ["from pathlib import Path", ""] if self._uses_folder else []
+        standard = ["import dataclasses"] if "import dataclasses" in self._imports else []
+        standard += ["from pathlib import Path"] if self._uses_folder else []
+        standard += [""] if standard else []
+        order = [line for line in order if line not in standard]
         found = ['"""Made by pvfiblets."""', "", *standard, *order, ""]
         if self._uses_folder:
             found += ['FOLDER = Path(".")  # where the files are', ""]
@@ -135,6 +138,7 @@ class _Writer:
     def _layer(self, layer: Layer) -> None:
         name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
         unsaid = _UNSAID[layer.kind]
+        scale = looks.pop(layers.RADIUS_SCALE, 1.0)
         said = {key: value for key, value in looks.items() if key not in unsaid or unsaid[key] != value}
         arguments = {
             key: value for key, value in said.items() if layer.kind == "mesh" or key in layers.ARGUMENTS[layer.kind]
@@ -145,6 +149,11 @@ class _Writer:
         )
         self._call(f"{name} = plotter.{method}", self._source(layer), arguments)
         self._lines += [f"{name}.{key} = {_code(value)}" for key, value in said.items() if key not in arguments]
+        if scale != 1.0:
+            self._imports.add("import dataclasses")
+            self._lines += [f"scaled = {{'radius': {scale} * {name}.tubes.radius,"]
+            self._lines += [f"          'radius_slopes': {scale} * {name}.tubes.radius_slopes}}"]
+            self._lines += [f"{name}.tubes = dataclasses.replace({name}.tubes, **scaled)"]
         if not layer.visible:
             self._lines += [f"{name}.visibility = False"]
         if layer.kind in LINES:
@@ -166,7 +175,7 @@ class _Writer:
             return f"{self._whole(source, loaded.kept)}.extract({self._ids(source.ids.runs)})"
         assert source.path is not None
         path = self._file(source.path)
-        if layer.kind == "mesh":
+        if layer.kind == "mesh" or (layer.kind == "volume" and source.path.lower().endswith((".vtk", ".vtp"))):
             return f"pv.read({path})"
         if layer.kind in LINES and loaded.kept:
             return f"{path}, per_point={list(loaded.kept)}"
@@ -307,6 +316,7 @@ class _Writer:
         if stem[0].isdigit() or keyword.iskeyword(stem):
             stem = f"layer_{stem}"
         reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
+        reserved |= {"scaled", "dataclasses"}
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
         found, count = stem, 2

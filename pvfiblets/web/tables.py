@@ -139,6 +139,10 @@ TRACTOGRAM: tuple[Property, ...] = (
     Property("culling", "choice", "Culling", "How lines behind others are found out and left out.", "Drawing",
              "two-phase", choices=[("two-phase", "two-phase: same picture"), ("coverage", "coverage: the paper's"),
                                    (None, "none")]),
+    Property("fit", "choice", "Too large", "What to do where GPU memory does not suffice for all.", "Drawing", None,
+             choices=[(None, "say so"), ("sample", "draw a share of the streamlines")]),
+    Property("share", "text", "Drawn", "How many of the streamlines that are shown fit the GPU's memory.", "Drawing",
+             read_only=True, read=lambda actor: "" if actor.share is None else f"{actor.share:.1%}"),
     Property("promise", "text", "Error promise", "No point is drawn farther than this from where it was.", "Drawing",
              read_only=True, read=lambda actor: f"{actor.fiblets.promise:.3g} mm"),
 )  # fmt: skip
@@ -146,6 +150,8 @@ TRACTOGRAM: tuple[Property, ...] = (
 TUBES: tuple[Property, ...] = (
     *_colours(_tube_scalars, None),
     _OPACITY,
+    Property("radius_scale", "number", "Radius", "Times the radius that the file gives.", "Tubes", 1.0,
+             limits=(0.01, 100.0)),
     _LIGHTING,
     _OCCLUSION,
     _CUE,

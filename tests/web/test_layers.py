@@ -147,7 +147,8 @@ def test_actors_do_what_settings_say(scene, file, kind):
     told = {
         "tractogram": {"scalars": "fa", "cmap": "plasma", "clim": [0.1, 0.5], "opacity": 0.5, "line_width": 3.0,
                        "tube_radius": 0.5, "culling": None, "illuminated": True, "halos": True, "lighting": False},
-        "tubes": {"scalars": "radius", "cmap": "hot", "min_width": 2.0, "solver": "newton", "opacity": 0.25},
+        "tubes": {"scalars": "radius", "cmap": "hot", "min_width": 2.0, "solver": "newton", "opacity": 0.25,
+                  "clim": [0.5, 2.0]},
         "volume": {"mode": "mip", "cmap": "hot", "clim": [0.0, 0.5], "step": 0.25, "thresholds": [0.1, 0.9]},
         "mesh": {"opacity": 0.5, "color": "#00ff00", "specular": 0.5},
     }[kind]  # fmt: skip

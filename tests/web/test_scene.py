@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -216,6 +218,27 @@ def test_meshes_are_coloured_and_show_edges(scene):
     assert scene.actor(ball.id).prop.color.hex_rgb == "#ff0000"
     scene.set(ball.id, "representation", "wireframe")
     assert 0 < drawn(scene.screenshot()).sum() < drawn(picture).sum()
+
+
+def test_tubes_are_as_thick_as_they_are_told(scene):
+    tubes = scene.open("vessel.vtp")
+    actor, given = scene.actor(tubes.id), scene.data(tubes).data
+    thin = drawn(scene.screenshot()).sum()
+    scene.set(tubes.id, "radius_scale", 2.0)
+    np.testing.assert_allclose(actor.tubes.radius, 2.0 * given.radius)
+    assert drawn(scene.screenshot()).sum() > 1.5 * thin
+    scene.set(tubes.id, "radius_scale", 1.0)
+    assert drawn(scene.screenshot()).sum() == thin
+
+
+def test_images_of_vtk_are_volumes(scene):
+    image = pv.ImageData(dimensions=(6, 6, 6))
+    image["values"] = np.linspace(0.0, 1.0, 216)
+    image.save(scene.root / "image.vtk")
+    layer = scene.open("image.vtk")
+    assert layer.kind == "volume"
+    assert scene.data(layer).data.shape == (6, 6, 6)
+    assert drawn(scene.screenshot()).any()
 
 
 def test_volumes_show_what_their_mode_says(scene):
@@ -570,3 +593,12 @@ def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
     flat.become(state)
     np.testing.assert_array_equal(flat.screenshot(), picture)
     assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0
+
+
+def test_documents_need_no_server():
+    code = (
+        "import sys; from pvfiblets.web import history, layers, scene, script, session\n"
+        "assert not {'trame', 'trame_server', 'aiohttp', 'wslink'} & set(sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

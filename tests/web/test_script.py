@@ -57,6 +57,7 @@ def anatomy(scene):
     tubes = scene.open("vessel.vtp")
     scene.set(tubes.id, "scalars", "radius")
     scene.set(tubes.id, "silhouette", True)
+    scene.set(tubes.id, "radius_scale", 1.5)
     ink = scene.duplicate(part.id)
     scene.set(ink.id, "style", "halo")
     scene.set_background("white")
