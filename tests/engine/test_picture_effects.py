@@ -232,6 +232,22 @@ def test_a_points_disc_has_the_radius_of_the_closed_form_and_all_its_light(film,
     assert np.ptp(after[inside]) < 1e-3 * after[inside].max()
 
 
+def test_a_background_of_one_colour_is_passed_over_only_where_nothing_else_is_near(film):
+    """The squares of pixels that are left out are those whose light is all the same."""
+    distances = np.full(SHAPE, np.inf)
+    distances[2:9, 2:7] = 60.0
+    distances[25:32, 30:41] = 250.0
+    before = np.full((*SHAPE, 4), (90, 120, 150, 255), np.uint8)
+    before[np.isfinite(distances)] = (250, 10, 30, 255)
+    before[20, 12] = (250, 250, 250, 255)
+    lens = Lens(SIZE, lenses.perspective(SIZE))
+    depths = np.float32(lenses.depths_of(lens.projection, distances))
+    after = film(before, depths).shown(focus=focus(aperture=18.0), lens=lens)
+    radii = lenses.radii_of(lens.projection, distances, rows=SIZE[1], focus=100.0, aperture=18.0, widest=6.0)
+    assert np.abs(after - lenses.gathered(before, depths, radii)).max() <= 1.0
+    assert (after[:6, 30:] == before[0, 40]).all()
+
+
 def test_a_sharp_foreground_does_not_bleed_into_a_blurred_background(film):
     distances = np.full(SHAPE, np.inf)
     distances[:, :22] = 100.0

@@ -175,12 +175,14 @@ class PictureEffects:
         blurs = self._texture("blurs", size, 4, "f4")
         tiled = -(-size[0] // TILE), -(-size[1] // TILE)
         tiles, reaches = (self._texture(name, tiled, 1, "f4") for name in ("tiles", "reaches"))
+        lights = self._texture("lights", tiled, 4, "f4")
+        colours = self._textures["colours"]
         around = {"around": int(focus.max_blur + 0.5) // TILE + 1}
         sources = {"depths": self._textures["depths"], "areas": self._disc_areas(focus.max_blur)}
         self._pass("blur", self._framebuffer(("blurs",)), sources, focus.uniforms(lens))
-        self._pass("tiles", self._framebuffer(("tiles",)), {"blurs": blurs}, {})
-        self._pass("reach", self._framebuffer(("reaches",)), {"tiles": tiles}, around)
-        return {"colours": self._textures["colours"], "blurs": blurs, "reaches": reaches}
+        self._pass("tiles", self._framebuffer(("tiles", "lights")), {"colours": colours, "blurs": blurs}, {})
+        self._pass("reach", self._framebuffer(("reaches",)), {"tiles": tiles, "lights": lights}, around)
+        return {"colours": colours, "blurs": blurs, "reaches": reaches}
 
     # Textures, programs, state
 

@@ -13,7 +13,7 @@
 //
 //   colours    the copy of effects/picture/copy.frag
 //   blurs      depth | signed radius | 1 / A | light left
-//   reaches    of squares of TILE x TILE pixels, from effects/picture/reach.frag
+//   reaches    of squares of TILE x TILE pixels, from effects/picture/reach.frag; -1 where all light is the same
 //   shift      from a pixel of the target to one of the copy
 
 #version 430
@@ -41,7 +41,8 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) + shift, last = textureSize(colours, 0) - 1;
     vec4 own = texelFetch(blurs, pixel, 0);
-    float radius = abs(own.g), reach = max(radius, texelFetch(reaches, pixel / TILE, 0).r);
+    float radius = abs(own.g), reach = texelFetch(reaches, pixel / TILE, 0).r;
+    reach = reach < 0.0 ? 0.0 : max(radius, reach);
     vec4 front = vec4(0.0), back = own.b * light(pixel, own);
     float covered = 0.0, seen = own.b;
     if (reach > 0.5)
