@@ -19,6 +19,7 @@ import pickle
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -52,16 +53,17 @@ def main() -> None:
             if getattr(options, key) == getattr(given, key):
                 setattr(options, key, value)
     if options.run:
-        print(json.dumps(child(*options.run, options)))
+        for told in child(*options.run, options):
+            print(json.dumps(told), flush=True)
         return
     with tempfile.TemporaryDirectory() as folder:
         results = measure_all(options, Path(folder))
-    table_one = []
+    table_one: list[dict[str, Any]] = []
     for data in options.effects_data if options.effects else []:
-        told = started("effects", data, Path(), options)
-        table_one += told.get("rows", [{"data": data, "mode": options.effects_mode, "effect": effect, "view": view,
-                                        "unmeasured": told.get("unmeasured")}
-                                       for effect in options.effects for view in ("static", "circle")])  # fmt: skip
+        told, why = started("effects", data, Path(), options)
+        wanted = [{"data": data, "mode": options.effects_mode, "effect": effect, "view": view}
+                  for effect in options.effects for view in ("static", "circle")]  # fmt: skip
+        table_one += [*told, *({**row, "unmeasured": why} for row in wanted[len(told) :])]
     ctx = context()
     about = {
         **machine(ctx),
@@ -104,20 +106,21 @@ def parsed() -> argparse.ArgumentParser:
     return parser
 
 
-def child(what: str, data: str, file: str, options: Any) -> dict[str, Any]:
-    """Do one thing with one volume: what is right of it, one way, or Table I."""
+def child(what: str, data: str, file: str, options: Any) -> Iterator[dict[str, Any]]:
+    """Do one thing with one volume, and return row by row what came out: what is right of it, one way, or Table I."""
     if what == "effects":
-        return {"rows": effects(data, options.effects_mode, options.effects, options)}
-    if what == "truth":
+        yield from effects(data, options.effects_mode, options.effects, options)
+    elif what == "truth":
         volume = make_data(data, options.seed, options.data_folder)
         cameras = circle(volume, 2, (PICTURE, PICTURE))
         # The reference takes floats, in this order; else it would make them anew for every mode and camera.
         floats = RaycastVolume(np.ascontiguousarray(volume.values, np.float32), volume.affine)
         right = {mode: truth(floats, look_of(volume, mode), cameras, options.pixels) for mode in options.modes}
         Path(file).write_bytes(pickle.dumps(right))
-        return {"about": {"shape": list(volume.shape), "bytes": volume.nbytes, "name": volume.name}}
-    targets = json.loads(Path(file).with_suffix(".json").read_text())
-    return {"rows": run(what, data, pickle.loads(Path(file).read_bytes()), targets, options)}
+        yield {"shape": list(volume.shape), "bytes": volume.nbytes, "name": volume.name}
+    else:
+        targets = json.loads(Path(file).with_suffix(".json").read_text())
+        yield from run(what, data, pickle.loads(Path(file).read_bytes()), targets, options)
 
 
 def measure_all(options: Any, folder: Path) -> list[dict[str, Any]]:
@@ -125,31 +128,33 @@ def measure_all(options: Any, folder: Path) -> list[dict[str, Any]]:
     results = []
     for data in options.data:
         file, targets = folder / f"{data}.pickle", {}
-        told = started("truth", data, file, options)
-        if "unmeasured" in told:
-            common = {"data": data, **told}
+        about, why = started("truth", data, file, options)
+        if not about:
+            common = {"data": data, "unmeasured": why}
             results += [{**common, "mode": mode, "way": way} for mode in options.modes for way in options.ways]
             continue
-        rows = [{"data": data, "about": told["about"]}]
+        rows = []
         # Ours come first: what VTK's errors shall be is theirs.
         for way in sorted(options.ways, key=list(WAYS).index):
             file.with_suffix(".json").write_text(json.dumps(targets))
-            done = started(way, data, file, options)
-            missing = [{"mode": mode, "way": way, **done} for mode in options.modes] if "unmeasured" in done else []
-            for row in done.get("rows", missing):
-                rows.append({"data": data, **row})
-                if way in ("engine", "plotter") and "error" in row:
-                    targets[row["mode"]] = row["error"]
-        about, *rows = rows
+            told, why = started(way, data, file, options)
+            rows += [{"data": data, **row} for row in told]
+            wanted = [(mode, way) for mode in options.modes]
+            wanted += [(mode, EQUAL) for mode in targets] if way == "vtk-gpu" else []
+            done = [(row["mode"], row["way"]) for row in told]
+            rows += [{"data": data, "mode": mode, "way": one, "unmeasured": why} for mode, one in wanted
+                     if (mode, one) not in done]  # fmt: skip
+            if way in ("engine", "plotter"):
+                targets |= {row["mode"]: row["error"] for row in told}
         order = [*WAYS, EQUAL]
         rows.sort(key=lambda row: (options.modes.index(row["mode"]), order.index(row["way"])))
-        rows[0] = {**rows[0], "about": about["about"]}
+        rows[0] = {**rows[0], "about": about[0]}
         results += rows
     return results
 
 
-def started(what: str, data: str, file: Path, options: Any) -> dict[str, Any]:
-    """Do one thing in a process of its own, for as long as it may take."""
+def started(what: str, data: str, file: Path, options: Any) -> tuple[list[dict[str, Any]], str]:
+    """Do one thing in a process of its own, for as long as it may take; return its rows, and why there are no more."""
     command = [sys.executable, __file__, "--run", what, data, str(file)]
     for key in PASSED_ON:
         command += ["--" + key.replace("_", "-"), str(getattr(options, key))]
@@ -160,13 +165,15 @@ def started(what: str, data: str, file: Path, options: Any) -> dict[str, Any]:
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     print(f"{data}, {what} ...", flush=True)
     try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False, timeout=options.limit,
-                              env=environment)  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return {"unmeasured": f"takes more than {options.limit:g} s here"}
-    if done.returncode != 0:
-        return {"unmeasured": f"failed with {done.returncode}; what it said is above the table"}
-    return json.loads(done.stdout.splitlines()[-1])
+        done = subprocess.run(command, stdout=subprocess.PIPE, check=False, timeout=options.limit, env=environment)
+        said, why = done.stdout, f"failed with {done.returncode}; what it said is above the table"
+    except subprocess.TimeoutExpired as error:
+        said, why = error.stdout or b"", f"takes more than {options.limit:g} s here"
+    lines = said.decode().splitlines(keepends=True)
+    rows = [json.loads(line) for line in lines if line.startswith("{") and line.endswith("}\n")]
+    for row in rows:
+        print({key: value for key, value in row.items() if key != "passes"}, flush=True)
+    return rows, why
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ it changes: for sparse casting and recon, which ought to change nothing, that is
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -68,11 +69,10 @@ WITHOUT_CHANGE = ("sparse-2", "sparse-4", "recon")
 """They ought to show the same picture."""
 
 
-def effects(name: str, mode: str, wanted: list[str], options: Any) -> list[dict[str, Any]]:
-    """Return a row for each effect and view."""
+def effects(name: str, mode: str, wanted: list[str], options: Any) -> Iterator[dict[str, Any]]:
+    """Return one after the other a row for each effect and view."""
     volume = make_data(name, options.seed, options.data_folder)
     look = look_of(volume, mode)
-    rows = []
     for effect in wanted:
         for view, side in (("static", options.still), ("circle", options.size)):
             common = {"data": name, "mode": mode, "effect": effect, "view": view}
@@ -82,13 +82,12 @@ def effects(name: str, mode: str, wanted: list[str], options: Any) -> list[dict[
             ways = [Plotter("", volume, look, options.step, size) for _ in range(2)]
             try:
                 EFFECTS[effect](ways[0])
-                rows.append({**common, **turns(ways, cameras, options.seconds)})
+                yield {**common, **turns(ways, cameras, options.seconds)}
             except AbsentError as error:
-                rows.append({**common, "unmeasured": str(error)})
+                yield {**common, "unmeasured": str(error)}
             finally:
                 for way in ways:
                     way.close()
-    return rows
 
 
 def turns(ways: list[Plotter], cameras: list[Any], seconds: float) -> dict[str, Any]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-import sys
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -77,8 +77,8 @@ def nudged(camera: Camera, count: int) -> list[Camera]:
 
 def run(
     name: str, data: str, truths: dict[str, Truth], targets: dict[str, float], options: Any
-) -> list[dict[str, Any]]:
-    """Return a row for each mode of one way: its error, its times, what it holds and how long it takes to be there.
+) -> Iterator[dict[str, Any]]:
+    """Return row by row, for each mode of one way: its error, its times, what it holds, how long it takes to be there.
 
     Of VTK's GPU mapper there is a second one where an error to reach is given.
     """
@@ -86,7 +86,6 @@ def run(
     volume = make_data(data, options.seed, options.data_folder)
     size, still = (options.size, options.size), (options.still, options.still)
     cameras, static = circle(volume, options.frames, size), nudged(circle(volume, 1, still)[0], options.frames)
-    rows = []
     for mode, of in truths.items():
         small = make_data(WARM)
         first = kind(name, small, look_of(small, mode), options.step, size)  # imports, compilers
@@ -112,24 +111,16 @@ def run(
             # The first picture itself is no part of building.
             row["build_ms"] = max(report["ms"] - row["circle"]["ms"], 0.0)
             row["build_cpu_ms"] = max(report["cpu_ms"] - row["circle"]["cpu_ms"], 0.0)
-            rows.append({**row, **way.facts()})
-            print_row(rows[-1])
+            yield {**row, **way.facts()}
             if name == "vtk-gpu" and mode in targets:
-                rows.append(equal(way, mode, row, of, targets[mode], cameras, static, options))
-                print_row(rows[-1])
+                yield equal(way, mode, row, of, targets[mode], cameras, static, options)
         finally:
             way.close()
-    return rows
 
 
 def affordable(circle: dict[str, Any], options: Any) -> bool:
     """Say whether a frame of the static view will not take too long, judged by one of the other view."""
     return 1e-3 * circle["ms"] * (options.still / options.size) ** 2 <= options.longest
-
-
-def print_row(row: dict[str, Any]) -> None:
-    """Say how far it is, on the standard error: the standard output is the result's."""
-    print({key: value for key, value in row.items() if key != "passes"}, file=sys.stderr, flush=True)
 
 
 def equal(

@@ -326,7 +326,7 @@ def test_pictures_that_differ(bench):
 def test_an_effect_that_is_not_there_is_said(bench, monkeypatch):
     monkeypatch.setitem(bench.effects.EFFECTS, "recon", bench.effects._of_actor("no_such_thing", True))
     options = SimpleNamespace(seed=0, data_folder=Path(), still=32, size=32, frames=1, seconds=1.0, step=0.5)
-    rows = bench.effects.effects("vessels-16", "isosurface", ["recon"], options)
+    rows = list(bench.effects.effects("vessels-16", "isosurface", ["recon"], options))
     assert [row["unmeasured"] for row in rows] == ["volumes have no no_such_thing here"] * 2
     told = "\n".join(bench.effects.table(rows))
     assert "| vessels-16 | recon | static | unmeasured: volumes have no no_such_thing here |" in told
@@ -392,3 +392,27 @@ def test_cameras_see_what_is_in_the_box_from_all_around(bench):
     for count in (3, 5, 12):
         gaps = np.diff(np.sort([*turns[:count], min(turns[:count]) + 360.0]))
         assert gaps.max() < 2.7 * 360.0 / count
+
+
+def test_what_was_measured_before_time_is_up_is_kept(bench, monkeypatch, tmp_path):
+    said = {
+        "truth": b'{"shape": [4], "bytes": 8, "name": "n"}\n',
+        "vtk-gpu": b'{"mode": "mip", "way": "vtk-gpu"}\n{"mo',
+    }
+    said["plotter"] = b'{"mode": "mip", "way": "plotter", "error": 0.5}\nwarned\n'
+
+    def started(command, timeout, **_):
+        what = command[command.index("--run") + 1]
+        if what == "truth":
+            return subprocess.CompletedProcess(command, 0, said[what])
+        raise subprocess.TimeoutExpired(command, timeout, said[what])
+
+    monkeypatch.setattr(bench.command.subprocess, "run", started)
+    command = ["--data", "vessels-16", "--modes", "mip", "isosurface", "--ways", "plotter", "vtk-gpu", "--limit", "9"]
+    rows = bench.command.measure_all(bench.command.parsed().parse_args(command), tmp_path)
+    assert [(row["mode"], row["way"], "unmeasured" in row) for row in rows] == [
+        ("mip", "plotter", False), ("mip", "vtk-gpu", False), ("mip", "vtk-gpu-equal", True),
+        ("isosurface", "plotter", True), ("isosurface", "vtk-gpu", True),
+    ]  # fmt: skip
+    assert json.loads((tmp_path / "vessels-16.json").read_text()) == {"mip": 0.5}
+    assert rows[0]["about"]["bytes"] == 8
