@@ -200,6 +200,26 @@ def test_the_mouse_moves_the_focus_and_the_picture(plotter):
     assert len(renders) == 1
 
 
+def test_a_focus_on_its_way_goes_on_when_the_mouse_rests(plotter):
+    for x, z in ((-50, 20), (50, 60)):
+        plotter.add_mesh(pv.Plane(center=(x, 0, z), i_size=100, j_size=200))
+    plotter.camera_position = [(0, 0, 100), (0, 0, 0), (0, 1, 0)]
+    plotter.picture.depth_of_field = {"focal_distance": "cursor", "max_blur": 2.0, "smooth": 0.1}
+    now = [0.0]
+    plotter.picture._picture().focusing.clock = lambda: now[0]
+    mouse = plotter.iren.interactor
+    mouse.SetEventPosition(50, 100)
+    shot(plotter)
+    mouse.SetEventPosition(150, 100)
+    passed = []
+    for event in ("MouseMoveEvent", *["TimerEvent"] * 12):
+        now[0] += 0.1
+        mouse.InvokeEvent(event)
+        passed.append(plotter.picture.focal_distance)
+    assert passed[0] == pytest.approx(40.0 * 2.0 ** np.exp(-1.0), rel=1e-3)
+    assert passed[-1] == passed[-2] == pytest.approx(40.0, rel=1e-4)
+
+
 def test_errors_of_a_draw_are_raised_by_what_rendered(plotter, monkeypatch):
     plotter.add_mesh(pv.Sphere())
     plotter.picture.gamma = 2.0
