@@ -93,7 +93,8 @@ class Visit:
         return self.ready()
 
     def ready(self):
-        self.page.wait_for_selector("#pv-view img[src^=blob]")
+        picture = self.page.locator("#pv-view img[src^=blob]")
+        self.wait(picture.count, "the first picture")
         self.wait(lambda: self.layers() and self.picture().std() > 1.0, "a picture with something in it")
         return self
 
@@ -125,7 +126,7 @@ class Visit:
         count = -1
         while len(self.received) != count:
             count = len(self.received)
-            self.page.wait_for_timeout(700)
+            self.page.wait_for_timeout(1000)
         return self.picture()
 
     def changed(self, before, what="another picture", least=0.05):

@@ -74,7 +74,7 @@ def test_files_are_written_under_known_names_and_never_over_others(root):
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        ({"host": "0.0.0.0"}, "token none"),  # noqa: S104
+        ({"host": "0.0.0.0"}, "token none"),
         ({"host": "192.168.1.5"}, "token none"),
         ({"token": "short"}, "at least 8"),
         ({"port": 70000}, "70000"),
@@ -126,7 +126,7 @@ def test_names_of_loopback_and_of_a_proxy_are_answered():
     for host in ("127.0.0.1:8080", "localhost", "[::1]:80"):
         access().check_host(host)
     access(origins=["https://lab.example"]).check_host("lab.example")
-    access(host="0.0.0.0").check_host("machine.lab:8080")  # noqa: S104
+    access(host="0.0.0.0").check_host("machine.lab:8080")
 
 
 @pytest.mark.parametrize(
@@ -220,7 +220,8 @@ def test_values_that_are_no_plain_json_are_refused(value):
     "event",
     [
         None, [], {}, {"type": "ExitEvent"}, {"type": "MouseMove", "x": "1"}, {"type": "MouseMove", "x": float("nan")},
-        {"type": "Pinch", "positions": {"1": 5}}, {"type": "Pan", "translation": [1]}, {"type": "MouseWheel", "spinY": 1e99},
+        {"type": "Pinch", "positions": {"1": 5}}, {"type": "Pan", "translation": [1]},
+        {"type": "MouseWheel", "spinY": 1e99},
     ],
 )  # fmt: skip
 def test_pointer_events_that_are_none_are_refused(event):
@@ -280,8 +281,8 @@ def test_browsers_set_their_own_state_only(caplog):
     assert table.calls == [("trame.state.update", [{"key": "tab", "value": "info"}, {"key": "share", "value": 5.0}])]
     secret = "swordfish"
     for changes in (
-        [{"key": "script", "value": secret}], [{"key": "tab", "value": 5}], [{"key": "dark", "value": 1}], [{"value": secret}],
-        "tab", [{"key": "tab", "value": "x"}] * 100, [{"key": "tab", "value": {"deep": secret}}],
+        [{"key": "script", "value": secret}], [{"key": "tab", "value": 5}], [{"key": "dark", "value": 1}],
+        [{"value": secret}], "tab", [{"key": "tab", "value": "x"}] * 100, [{"key": "tab", "value": {"deep": secret}}],
         [{"key": "tab", "value": secret * 500}],
     ):  # fmt: skip
         table("trame.state.update", changes)

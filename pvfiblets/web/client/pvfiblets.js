@@ -23,9 +23,18 @@
     "[": () => set("left_open", !get("left_open")), "]": () => set("right_open", !get("right_open")),
   };
 
+  // Text is for the field it is typed into, arrows for the slider or list that has the focus. A list that is closed keeps
+  // the focus after a choice: letters are for the page then.
+  const taken = (target, key) => {
+    if (target.closest?.(".v-select input[aria-expanded=false]")) return /^(arrow|enter$| $|tab$)/.test(key);
+    if (target.closest?.("[role=slider]")) return /^(arrow|home$|end$|page|tab$)/.test(key);
+    return Boolean(target.closest?.("input:not([type=color]), textarea, select, [contenteditable], [role=listbox]"));
+  };
+
   window.addEventListener("keydown", (event) => {
     const target = event.target;
-    if (target.closest?.("input, textarea, select, [contenteditable], [role=listbox], [role=slider]")) return;
+    if (event.key === "Enter" && target.matches?.("input.pv-num")) return target.blur();
+    if (taken(target, event.key.toLowerCase())) return;
     const key = event.key.toLowerCase();
     if (event.ctrlKey || event.metaKey) {
       if (key === "z") call(event.shiftKey ? "redo" : "undo");
@@ -39,7 +48,8 @@
     else if (KEYS[key]) KEYS[key]();
     else return;
     event.preventDefault();
-  });
+    event.stopPropagation();
+  }, true);
 
   // Tools over the picture -------------------------------------------------------------------------
 
