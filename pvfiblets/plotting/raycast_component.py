@@ -74,6 +74,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
         jitter: bool = False,
         octree: bool = True,
         homogeneous: float = 0.0,
+        recon: bool = False,
         sparse: int = 1,
         sparse_threshold: float = 0.05,
         stop: float = 0.999,
@@ -155,6 +156,9 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             Skip parts with nothing to see; the picture is the same.
         homogeneous : float, default: 0.0
             Difference of values up to which parts are taken as their mean.
+        recon : bool, default: False
+            Take parts in which colour and opacity are the same for all values there as one: light
+            is the same, and faster where opacities have plateaus.
         sparse : {1, 2, 4}, default: 1
             Cast a ray for every so many pixels along each axis, and for those between only where
             what the first ones found differs. Things thinner than that may be missed.
@@ -263,6 +267,7 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
                 "jitter": jitter,
                 "octree": octree,
                 "homogeneous": homogeneous,
+                "recon": recon,
                 "sparse": sparse,
                 "sparse_threshold": sparse_threshold,
                 "stop": stop,

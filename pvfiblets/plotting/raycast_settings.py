@@ -85,6 +85,7 @@ class RaySettings(Coloured):
     jitter = _Setting("Whether each ray starts at a place of its own in its first step: noise instead of rings.")
     octree = _Setting("Whether parts with nothing to see are skipped; the picture is the same.")
     homogeneous = _Setting("Difference of values up to which parts of the volume are taken as their mean; 0 for none.")
+    recon = _Setting("Whether parts in which colour and opacity are the same for all values are taken as one.")
     sparse = _Setting("Pixels along each axis for which there is one ray at first: 1, 2 or 4.")
     sparse_threshold = _Setting("Difference between those rays from which on pixels between have their own, 0 to 1.")
     stop = _Setting("Opacity at which a ray ends, up to 1.")

@@ -33,6 +33,9 @@ PREINTEGRATED = 256
 LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
 
+EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
+"""What colours may change by, and what part of it extinction, where both count as the same."""
+
 PLACES = 4080
 """Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
 
@@ -146,6 +149,30 @@ class Transfer:
         between = n[np.floor(last).astype(np.int64) + 1] > n[np.ceil(first).astype(np.int64)]
         seen: npt.NDArray[np.bool_] = between | self._opaque_at(first) | self._opaque_at(last)
         return seen
+
+    def even_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Return whether between two values neither colours nor extinction change by more than rounding does.
+
+        For arrays of bounds, as `visible_range`. Colours may change by `EVEN_COLOURS`, extinction by `EVEN_EXTINCTION`
+        of the least of it, all ups and downs added up.
+        """
+        first, last = self._places(low), self._places(high)
+        entries = np.arange(len(self.table))
+        colour, depth = self._changes_before
+        turned = np.interp(last, entries, colour) - np.interp(first, entries, colour)
+        thinned = np.interp(np.ceil(last), entries, depth) - np.interp(np.floor(first), entries, depth)
+        even: npt.NDArray[np.bool_] = (turned <= EVEN_COLOURS) & (
+            thinned <= EVEN_EXTINCTION * np.minimum(self.extinction(low), self.extinction(high))
+        )
+        return even
+
+    @cached_property
+    def _changes_before(self) -> tuple[Array, Array]:
+        """``(k,)`` each: by how much colours, the one that does most, and extinction have changed up to each entry."""
+        rgba = self.table.astype(np.float64)
+        colour = np.abs(np.diff(rgba[:, :3], axis=0)).max(axis=1)
+        depth = np.abs(np.diff(_depth(rgba[:, 3]) / self.unit))
+        return np.append(0.0, np.cumsum(colour)), np.append(0.0, np.cumsum(depth))
 
     @cached_property
     def _opaque_before(self) -> npt.NDArray[np.int64]:

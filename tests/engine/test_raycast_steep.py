@@ -158,3 +158,31 @@ def test_the_typical_bend():
     assert typical_bend(field("slope")) < 1e-6
     assert 0.3 < typical_bend(field("noise")) < 0.6
     assert typical_bend(RaycastVolume(np.arange(8.0, dtype=np.float32).reshape(2, 2, 2) ** 2, np.eye(4))) == 0.0
+
+
+@pytest.mark.parametrize("integrator", ["adaptive", "exponential"])
+def test_parts_of_one_colour_and_opacity_need_no_reconstruction(gl, camera, integrator):
+    """A ball whose inside is even for the eye, though its values are not; with a thin sheet of another colour in it."""
+    volume = field("ball", 40)
+    values = volume.values.copy()
+    values[:, :, 19] = np.where(values[:, :, 19] > 0.4, 0.97, values[:, :, 19])
+    volume = RaycastVolume(values, volume.affine)
+    matrix = camera(SIZE, eye=[45, -40, 60], target=[19.5] * 3, near=10, far=300)
+    rgba = table(np.where(X[:, None] < 0.9, ORANGE, BLUE), np.select([X < 0.3, X < 0.9], [0.0, 0.02], 0.9))
+    renderer = RaycastRenderer(gl, volume)
+    plain = Casting("composite", transfer=Transfer(rgba, (0.0, 1.0)), integrator=integrator, step=0.25)
+    before = light(renderer, matrix, plain)
+    marked = Casting("composite", transfer=plain.transfer, integrator=integrator, step=0.25, recon=True)
+    after = light(renderer, matrix, marked)
+    assert "RAYCAST_HOMOGENEOUS" in renderer.explain()["features"]
+    assert np.abs(after - before).max() < (6e-3 if integrator == "adaptive" else 3e-2)  # rays are cut at other places
+    assert (before[..., 2] > 0.3).sum() > 30  # the sheet
+    renderer.release()
+
+
+def test_what_is_even():
+    rgba = table(ORANGE, np.select([X < 0.3, X < 0.9], [0.0, 0.02], 0.9))
+    transfer = Transfer(rgba, (0.0, 1.0))
+    even = transfer.even_range([0.4, 0.2, 0.4, 0.92, 0.0], [0.8, 0.4, 0.95, 2.0, 0.1])
+    assert even.tolist() == [True, False, False, True, True]
+    assert not transfer.even_range(0.88, 0.8999)  # the opacity rises within the entry

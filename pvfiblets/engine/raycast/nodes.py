@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...raycast.casting import Casting
-from ...raycast.octree import SKIP, Octree, build_octree, flags, homogeneous
+from ...raycast.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
 from ...raycast.volume import RaycastVolume
 from ..errors import EngineError
 from ..opengl import BufferTexture, OpenGL
 
-__all__ = ["NodeList"]
+__all__ = ["NodeList", "takes_means"]
 
 NODES_UNIT, MEANS_UNIT = 11, 15
 
@@ -59,7 +59,7 @@ class NodeList:
         """
         key = (
             casting.octree, casting.mode, casting.filter, casting.values, casting.transfer, casting.low, casting.high,
-            casting.homogeneous,
+            casting.homogeneous, casting.recon,
         )  # fmt: skip
         if self._made_for == key:
             return
@@ -78,7 +78,7 @@ class NodeList:
         self.skipped = float(np.mean(numbers[0] == SKIP)) if looked_into else 0.0
         self.release()
         self._put("nodes", numbers)
-        if casting.mode == "composite" and casting.homogeneous > 0.0:
+        if takes_means(casting):
             self._put("means", [level.mean for level in octree.levels])
         self._made_for = key
 
@@ -130,7 +130,17 @@ def _numbers(octree: Octree, casting: Casting) -> list[npt.NDArray[Any]]:
     seen = flags(octree, visible)
     if casting.mode == "composite" and casting.homogeneous > 0.0:
         seen = homogeneous(octree, casting.homogeneous, seen)
+    if casting.mode == "composite" and casting.recon and casting.transfer is not None:
+        for before, level in zip(seen, octree.levels, strict=True):
+            even = (level.least >= low) & (level.greatest <= high)
+            even &= casting.transfer.even_range(level.least, level.greatest)
+            before[even & (before != SKIP)] = HOMOGENEOUS
     return list(seen)
+
+
+def takes_means(casting: Casting) -> bool:
+    """Whether there may be nodes that are taken as their mean."""
+    return casting.mode == "composite" and casting.octree and (casting.homogeneous > 0.0 or casting.recon)
 
 
 def _peaks(casting: Casting) -> bool:

@@ -14,7 +14,7 @@ from ..shaders import BLOCKS, Programs
 from ..view import View
 from .blocks import CONSTANTS, RayBlock
 from .cuts import RayCuts
-from .nodes import NodeList
+from .nodes import NodeList, takes_means
 from .pictures import Picture
 from .style import RaycastStyle
 from .tables import Tables
@@ -247,7 +247,7 @@ class RaycastRenderer:
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
             features += ["RAYCAST_ADAPTIVE"] if self._tables.steep else _OF_INTEGRATOR[casting.integrator]
-            features += ["RAYCAST_HOMOGENEOUS"] if casting.homogeneous > 0.0 and casting.octree else []
+            features += ["RAYCAST_HOMOGENEOUS"] if takes_means(casting) else []
         return [*features, *(["RAYCAST_JITTER"] if casting.jitter else []), *(["OUTSIDE"] if outside else [])]
 
     def _fitting(self, picture: Picture | None, size: tuple[int, int], casting: Casting, *, marked: bool) -> Picture:
