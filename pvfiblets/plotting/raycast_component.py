@@ -179,7 +179,8 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
             Shade surfaces by the scene's lights; the theme's by default.
         ray_occlusion : bool or dict, default: False
             Darken surfaces where the volume stands over them, by rays through it:
-            ``{"samples": 32, "radius": mm, "strength": 1.0, "seed": 0}``, or ``True`` for these.
+            ``{"samples": 32, "radius": mm, "strength": 1.0, "seed": 0, "smooth": True}``, or ``True``
+            for these.
         name : str, optional
             Replaces the actor of the same name.
         label : str, optional
