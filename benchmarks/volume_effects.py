@@ -57,12 +57,15 @@ EFFECTS = {
 }
 """The last one is not in the table: rays from each hit, section III.G, equation 10."""
 
+OWN_MODE = {"recon": "composite"}
+"""Of effects that other modes do not have."""
+
 ABOUT = {
     "dof": "depth of field, `plotter.picture.depth_of_field`",
     "sparse-2": "a ray for every second pixel along each axis first (section III.D), `actor.sparse`",
     "sparse-4": "for every fourth",
     "ssao": "screen-space ambient occlusion, `actor.ambient_occlusion`",
-    "recon": "a simpler reconstruction filter where that does not show, `actor.recon`",
+    "recon": "no reconstruction where that does not show, of light, `actor.recon`; the paper's is of a filter",
     "ray-occlusion": "ambient occlusion by rays from every hit, `actor.ray_occlusion`: not in the paper's table",
 }
 WITHOUT_CHANGE = ("sparse-2", "sparse-4", "recon")
@@ -72,10 +75,11 @@ WITHOUT_CHANGE = ("sparse-2", "sparse-4", "recon")
 def effects(name: str, mode: str, wanted: list[str], options: Any) -> Iterator[dict[str, Any]]:
     """Return one after the other a row for each effect and view."""
     volume = make_data(name, options.seed, options.data_folder)
-    look = look_of(volume, mode)
     for effect in wanted:
+        shown = OWN_MODE.get(effect, mode)
+        look = look_of(volume, shown)
         for view, side in (("static", options.still), ("circle", options.size)):
-            common = {"data": name, "mode": mode, "effect": effect, "view": view}
+            common = {"data": name, "mode": shown, "effect": effect, "view": view}
             size = (side, side)
             cameras = circle(volume, options.frames, size)
             cameras = nudged(cameras[0], options.frames) if view == "static" else cameras
@@ -125,7 +129,7 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
     lines = [
         "## The paper's Table I",
         "",
-        f"`plotter.add_raycast_volume`, {rows[0]['mode']}; with and without take turns. *×*: as many times as many "
+        "`plotter.add_raycast_volume`; with and without take turns. *×*: as many times as many "
         "frames with it, by the clock and by the processor's time. *differing*: pixels that it changes by more than "
         f"{DIFFERS} of 255, by more than 1 in brackets. *paper*: its frames a second, with and without.",
         "",
@@ -135,7 +139,7 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
-        head = f"| {row['data']} | {row['effect']} | {row['view']} | "
+        head = f"| {row['data']}, {row['mode']} | {row['effect']} | {row['view']} | "
         paper = PAPER.get(row["effect"], {}).get(row["view"])
         said = "" if paper is None else f"{paper[0]:.2f}, {paper[1]:.2f}"
         if "unmeasured" in row:

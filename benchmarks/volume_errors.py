@@ -103,8 +103,8 @@ def settings(mode: str, steps: list[float], spread: float) -> Iterator[tuple[str
     if mode == "composite":
         yield from (("stop", {"stop": stop}) for stop in STOPS)
         yield from (("homogeneous", {"homogeneous": share * spread}) for share in HOMOGENEOUS)
-    if "recon" in Casting.__dataclass_fields__:
-        yield from (("recon", {"step": step, "recon": True}) for step in few)
+        if "recon" in Casting.__dataclass_fields__:
+            yield "recon", {"recon": True}
     yield "octree", {"octree": False}
     for stride in STRIDES:
         yield from (("sparse", {"sparse": stride, "sparse_threshold": at}) for at in THRESHOLDS)

@@ -60,7 +60,7 @@ def setting(row: dict[str, Any]) -> str:
         "integrator": lambda: f"{step}, {row['integrator']}",
         "filter": lambda: f"{step}, {row['filter']}",
         "jitter": lambda: f"{step}, jitter",
-        "recon": lambda: f"{step}, recon",
+        "recon": lambda: "recon",
         "stop": lambda: f"stop {row['stop']:g}",
         "homogeneous": lambda: f"homogeneous {row['homogeneous']:g}",
         "octree": lambda: "no octree",

@@ -329,7 +329,7 @@ def test_an_effect_that_is_not_there_is_said(bench, monkeypatch):
     rows = list(bench.effects.effects("vessels-16", "isosurface", ["recon"], options))
     assert [row["unmeasured"] for row in rows] == ["volumes have no no_such_thing here"] * 2
     told = "\n".join(bench.effects.table(rows))
-    assert "| vessels-16 | recon | static | unmeasured: volumes have no no_such_thing here |" in told
+    assert "| vessels-16, composite | recon | static | unmeasured: volumes have no no_such_thing here |" in told
 
 
 def test_goals_are_judged_against_vtk_with_the_same_error(bench):
