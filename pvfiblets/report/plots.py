@@ -142,8 +142,8 @@ def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], flo
     if not pair.series and min(ys) <= 0.0:
         decades = range(math.floor(math.log10(floor * ZERO_BELOW)), math.ceil(math.log10(max(max(ys), floor))) + 1)
         every = max(1, len(decades) // 8)
-        ticks = [10.0**k for k in decades[::every] if 10.0**k > floor * 1.5]
-        panel.set_yticks([floor, *ticks], ["0", *(f"$10^{{{k}}}$" for k in decades[::every] if 10.0**k > floor * 1.5)])
+        ticks = [10.0**k for k in decades[::every] if 10.0**k > 4.0 * floor]
+        panel.set_yticks([floor, *ticks], ["0", *(f"$10^{{{k}}}$" for k in decades[::every] if 10.0**k > 4.0 * floor)])
         panel.yaxis.set_minor_locator(NullLocator())
 
 
