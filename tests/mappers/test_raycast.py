@@ -5,115 +5,31 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
-from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector, vtkMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
-from pvfiblets.mappers import Colouring, FibletMapper, RaycastMapper, windows
-from pvfiblets.mappers.raycast import raycast_renderer
-from pvfiblets.raycast import RaycastVolume, Transfer
+from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.raycast.casting import Casting
 from pvfiblets.streamlines import Streamlines
 
-HALF = 16.0  # the volumes' boxes reach from -16 to 16 mm
-KAPPA = 0.05
-ORANGE = np.array([1.0, 0.5, 0.0])
-GREYS = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], np.uint8)
-SIZE = (240, 200)
-
-
-def volume(field, n=33):
-    """The numbers of a function of (n, n, n, 3) mm."""
-    spacing = 2 * HALF / (n - 1)
-    places = np.stack(np.meshgrid(*[np.linspace(-HALF, HALF, n)] * 3, indexing="ij"), axis=-1)
-    affine = np.diag([spacing, spacing, spacing, 1.0])
-    affine[:3, 3] = -HALF
-    return RaycastVolume(np.ascontiguousarray(field(places), np.float32), affine)
-
-
-def fog(n=5):
-    return volume(lambda p: np.ones(p.shape[:3]), n)
-
-
-def light(colour=ORANGE, kappa=KAPPA):
-    """Everything shines and absorbs alike."""
-    rgba = [*colour, 1.0 - np.exp(-kappa)]
-    return Casting("composite", transfer=Transfer([rgba, rgba], (0.0, 2.0)), stop=1.0)
-
-
-def blob(p):
-    return 16.0 - np.linalg.norm(p, axis=-1) + 2.0 * np.sin(p[..., 0] / 3.0) * np.cos(p[..., 2] / 4.0)
-
-
-def made(drawn, casting, *, lighting=False, **options):
-    mapper, actor = RaycastMapper(drawn, casting, **options), vtkActor()
-    mapper.attach(actor)
-    actor.GetProperty().SetLighting(lighting)
-    actor.GetProperty().SetAmbient(0.1)
-    actor.GetProperty().SetDiffuse(0.9)
-    return mapper, actor
-
-
-def through_table(ends):
-    return Colouring("point_value", source="values", lut=GREYS, clim=ends)
-
-
-def look(plotter, eye=(0.0, -100.0, 0.0), parallel=True):
-    """Towards the origin; parallel, 200 pixels are 40 mm."""
-    plotter.camera_position = [eye, (0, 0, 0), (0, 0, 1)]
-    plotter.camera.view_angle = 40.0
-    if parallel:
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = 20.0
-    plotter.camera.clipping_range = 0.02 if np.linalg.norm(eye) < 20 else 20, 200
-    return plotter
-
-
-def rays(eye=(0.0, -100.0, 0.0), parallel=True):
-    """Starts and unit directions of all pixels' rays, (height, width, 3), rows from above."""
-    width, height = SIZE
-    x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)
-    forward = -np.array(eye) / np.linalg.norm(eye)
-    right = np.cross(forward, (0, 0, 1))
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    half = 20.0 if parallel else np.tan(np.radians(20.0))
-    across = half * (x[..., None] * width / height * right + y[..., None] * up)
-    if parallel:
-        return eye + across, np.broadcast_to(forward, across.shape)
-    ways = forward + across
-    return np.broadcast_to(np.array(eye), ways.shape), ways / np.linalg.norm(ways, axis=-1, keepdims=True)
-
-
-def in_box(starts, ways):
-    """Where rays enter and leave the box, mm; not behind their start."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ends = np.sort([(-HALF - starts) / ways, (HALF - starts) / ways], axis=0)
-    return np.maximum(np.nanmax(ends[0], axis=-1), 0.0), np.nanmin(ends[1], axis=-1)
-
-
-def into_ball(starts, ways, radius):
-    """Where rays enter a ball around the origin; infinity where they miss."""
-    b = np.einsum("ijk,ijk->ij", starts, ways)
-    inside = b**2 - np.einsum("ijk,ijk->ij", starts, starts) + radius**2
-    return np.where(inside > 0, -b - np.sqrt(np.maximum(inside, 0.0)), np.inf)
-
-
-def over(length, behind, colour=ORANGE, kappa=KAPPA):
-    """8-bit colours of that much fog over what is behind."""
-    left = np.exp(-kappa * np.maximum(length, 0.0))[..., None]
-    return 255.0 * ((1.0 - left) * colour + left * behind)
-
-
-def inner(mask, reach=1):
-    """Pixels all of whose neighbours are of one kind: edges are a matter of half a pixel."""
-    padded, across = np.pad(mask, reach, mode="edge"), range(2 * reach + 1)
-    around = [padded[y : y + mask.shape[0], x : x + mask.shape[1]] for y in across for x in across]
-    return np.all(around, axis=0) | ~np.any(around, axis=0)
-
-
-def middle(image):
-    return image[SIZE[1] // 2, SIZE[0] // 2].astype(float)
+from .seen_volumes import (
+    HALF,
+    blob,
+    fog,
+    in_box,
+    inner,
+    into_ball,
+    light,
+    look,
+    made,
+    middle,
+    over,
+    ramp,
+    rays,
+    through_table,
+    volume,
+    wall,
+)
 
 
 @pytest.mark.parametrize(
@@ -186,10 +102,6 @@ def test_rays_end_at_fiblets(make_plotter, tools):
     assert np.abs(image[60, 120] - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
 
 
-def wall(y):
-    return pv.Plane(center=(0, y, 0), direction=(0, 1, 0), i_size=100, j_size=100)
-
-
 @pytest.mark.parametrize("peeling", [False, True])
 def test_the_picture_follows_what_moves_inside(make_plotter, tools, peeling):
     mapper, actor = made(fog(), light())
@@ -231,10 +143,6 @@ def test_translucent_sheets_lie_in_order_under_depth_peeling(make_plotter, tools
     blue, empty, length = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array(2 * HALF)
     wanted = 127.5 * blue + over(length, empty) / 2 if front else over(length, blue / 2)
     assert np.abs(middle(tools.picture(look(plotter), mapper)) - wanted).max() <= 3.0
-
-
-def ramp(p):
-    return p[..., 1]
 
 
 def test_peaks_are_those_before_a_mesh(make_plotter, tools):
@@ -355,184 +263,3 @@ def test_surfaces_cut_into_meshes_and_have_the_colour_of_their_value(make_plotte
     assert np.abs(middle(tools.picture(plotter, mapper)) - 64).max() <= 1
     mapper.casting = Casting("isosurface", (12.0,))
     assert middle(tools.picture(plotter, mapper)).tolist() == [255, 0, 0]
-
-
-def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    plane = vtkPlane()
-    plane.SetNormal(0, 1, 0)
-    plane.SetOrigin(0, 6.0, 0)
-    mapper.AddClippingPlane(plane)
-    image = tools.picture(plotter, mapper)
-    assert np.abs(middle(image) - over(np.array(10.0), np.zeros(3))).max() <= 2.5
-    plane.SetNormal(1, 0, 0)
-    plane.SetOrigin(2.0, 0, 0)
-    mapper.RemoveAllClippingPlanes()
-    mapper.AddClippingPlane(plane)
-    columns = np.flatnonzero(tools.covered(tools.picture(plotter, mapper)).any(axis=0))
-    assert columns[0] == 130  # 2 mm right of the middle, 5 pixels a mm
-    assert columns[-1] == 199
-
-
-def test_subplots_end_their_own_rays(make_plotter, tools):
-    """One actor in two renderers, a mesh in one of them."""
-    mapper, actor = made(fog(), light())
-    plotter = make_plotter(shape=(1, 2), window_size=(400, 200))
-    for column in range(2):
-        plotter.subplot(0, column)
-        plotter.add_actor(actor, reset_camera=False)
-        if column:
-            plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
-        look(plotter)
-    for peeling in (False, True):
-        for renderer in plotter.renderers:
-            renderer.SetUseDepthPeeling(peeling)
-        image = tools.picture(plotter, mapper)
-        assert np.abs(image[100, 100] - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
-        assert np.abs(image[100, 300] - over(np.array(HALF), np.ones(3))).max() <= 2.5
-
-
-@pytest.mark.parametrize("casting", [light(), Casting("mip"), Casting("isosurface", (1.0,))], ids=lambda c: c.mode)
-def test_vtk_selects_volumes(make_plotter, tools, casting):
-    ball = volume(lambda p: 12.0 - np.linalg.norm(p, axis=-1), 17)
-    mapper, actor = made(ball, casting)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    tools.picture(plotter, mapper)
-    for row, wanted in ((100, 1), (5, 0)):
-        selector = vtkHardwareSelector()
-        selector.SetRenderer(plotter.renderer)
-        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-        selector.SetArea(118, row - 2, 122, row + 2)
-        assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()
-
-
-@pytest.mark.parametrize("ssaa", [False, True])
-def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools, ssaa):
-    ball = volume(lambda p: 16.0 - np.linalg.norm(p, axis=-1), 33)
-    mapper, actor = made(ball, Casting("isosurface", (4.0,), filter="tricubic"))
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    if ssaa:
-        plotter.enable_anti_aliasing("ssaa")
-    assert mapper.pick_at(120, 100) is None
-    tools.picture(plotter, mapper)
-    for column, row in ((120, 100), (90, 80), (150, 130)):
-        hit = mapper.pick_at(column, row)
-        x, z = (column + 0.5 - 120) / 5, (row + 0.5 - 100) / 5
-        assert hit.position == pytest.approx([x, -np.sqrt(144 - x**2 - z**2), z], abs=0.15)
-        assert np.linalg.norm(hit.position) == pytest.approx(12.0, abs=0.02)
-        assert hit.voxel == tuple(np.round(hit.position + HALF).astype(int))
-        assert hit.value == 4.0
-    assert mapper.pick_at(120, 190) is None
-    assert mapper.pick_at(-5, 100) is None
-    assert mapper.pick_at(120, 170, tolerance=20) is not None
-    assert mapper.pick_at(120, 100, tolerance=-1) is None
-
-
-def test_light_is_picked_where_it_begins(make_plotter, tools):
-    mapper, actor = made(volume(ramp), Casting("composite", transfer=Transfer([[1, 1, 1, 0], [1, 1, 1, 1]], (0, 1))))
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    tools.picture(plotter, mapper)
-    hit = mapper.pick_at(120, 100)
-    assert hit.position == pytest.approx([0.1, 0.0, 0.1], abs=0.5)  # a step
-    assert hit.value == pytest.approx(hit.voxel[1] - HALF)
-
-
-def test_modes_change_with_what_they_need(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    assert actor.GetForceTranslucent()
-    assert mapper.colouring.mode == "point_rgb"
-    first = tools.picture(plotter, mapper)
-    mapper.casting = Casting("mip")
-    assert mapper.colouring.mode == "solid"
-    assert middle(tools.picture(plotter, mapper)).tolist() == [255, 255, 255]
-    mapper.colouring = through_table((0.0, 2.0))
-    assert middle(tools.picture(plotter, mapper)).tolist() == [128, 128, 128]
-    mapper.casting = Casting("isosurface", (0.5,))
-    assert mapper.colouring.mode == "point_value"  # kept
-    assert not actor.GetForceTranslucent()
-    assert not tools.covered(tools.picture(plotter, mapper)).any()
-    mapper.casting = light()
-    assert (tools.picture(plotter, mapper) == first).all()
-    assert "tube_normal" not in mapper.explain()["features"]
-    twice = mapper.explain()["windows"][0]
-    assert (twice["voxels_total"], twice["features"]) == (125, ["RAYCAST_LIGHT", "RAYCAST_PREINTEGRATED"])
-
-
-def test_colours_that_a_mode_does_not_have_are_refused():
-    mapper, _ = made(fog(), light())
-    with pytest.raises(ValueError, match=r"of mode 'composite' is 'solid'; light has the colours of casting\.transfer"):
-        mapper.colouring = Colouring("solid")
-    with pytest.raises(ValueError, match="of mode 'mip' is 'orientation'; choose of"):
-        mapper.show(Casting("mip"), Colouring())
-    assert mapper.casting.mode == "composite"
-    with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgb'"):
-        RaycastMapper(fog(), Casting("mip"), colouring=Colouring("point_rgb", source="light"))
-
-
-def test_another_volume_takes_its_place(make_plotter, tools):
-    made_for = []
-
-    def factory(ctx, drawn, **options):
-        made_for.append(drawn)
-        return raycast_renderer(ctx, drawn, **options)
-
-    first, second = fog(), RaycastVolume(np.ones((5, 5, 5), np.uint8), np.diag([2.0, 2.0, 2.0, 1.0]))
-    mapper, actor = made(first, light(), renderer_factory=factory)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    tools.picture(plotter, mapper)
-    mapper.set_volume(second)
-    image = tools.covered(tools.picture(plotter, mapper))
-    assert made_for == [first, second]
-    assert mapper.volume is second
-    assert image.sum() == pytest.approx((8 * 5) ** 2, rel=0.06)
-    assert actor.GetBounds() == pytest.approx((0, 8, 0, 8, 0, 8))
-
-
-def test_gpu_memory_is_given_back(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    plotter.add_mesh(wall(0.0), reset_camera=False)
-    tools.picture(plotter, mapper)
-    mapper.release()
-    assert mapper.explain()["windows"] == []
-    tools.picture(plotter, mapper)
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert not windows._contexts
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, drawn, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(fog(), light(), renderer_factory=broken)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
-
-
-def test_enlarged_pictures_of_subplots_are_whole(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = make_plotter(shape=(1, 2), window_size=(120, 60))
-    plotter.subplot(0, 1)
-    plotter.add_actor(actor, reset_camera=False)
-    plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
-    look(plotter)
-    tools.picture(plotter, mapper)
-    large = plotter.screenshot(return_img=True, scale=2)[..., :3]
-    mapper.raise_pending()
-    assert large.shape == (120, 240, 3)
-    assert not large[:, :118].any()
-    assert np.abs(large[60, 180] - over(np.array(HALF), np.ones(3))).max() <= 2.5
