@@ -76,13 +76,13 @@ def build(app: Any) -> Any:
         with v3.VLayout(style="height: 100vh; height: 100dvh"):
             _bar(app)
             with v3.VNavigationDrawer(
-                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=900, id="left"
+                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=("900",), id="left"
             ):
                 with html.Div(style="display: flex; flex-direction: column; height: 100%"):
                     panels.layers(app)
                     panels.properties(app)
             with v3.VNavigationDrawer(
-                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=1100, id="right"
+                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=("1100",), id="right"
             ):
                 tabs.build(app)
             with v3.VMain(style="position: relative; height: 100%"):

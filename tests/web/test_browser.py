@@ -113,7 +113,7 @@ def test_what_is_picked_fills_the_table_and_is_exported(visit):
     before = here.rests()
     here.press("b")
     here.page.wait_for_selector("#pv-over[data-tool=box]")
-    here.drag((0.15, 0.02), (0.98, 0.98))
+    here.drag((0.15, 0.02), (0.98, 0.5))
     here.wait(lambda: here.state("selection")["count"] > 0, "a selection")
     here.changed(before)
     count = here.state("selection")["count"]
@@ -201,8 +201,8 @@ def test_a_shared_view_is_one_for_all(visit):
 
 def test_a_page_for_a_tablet_has_the_picture_first(visit):
     here = visit("lines.fiblets", width=820, height=1180, has_touch=True)
-    box = here.page.locator("#pv-view").bounding_box()
-    assert box["width"] >= 800
+    here.wait(lambda: here.page.locator("#pv-view").bounding_box()["width"] >= 800, "the panels to close")
+    here.wait(lambda: here.picture().shape[1] >= 800, "a picture of that width")
     before = here.rests()
     assert before.shape[1] >= 800
     here.press("3")

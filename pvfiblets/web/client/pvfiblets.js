@@ -11,6 +11,14 @@
   };
   const get = (name) => state()?.get(name);
 
+  // On a narrow screen the panels lie over the picture, and begin closed. The widths are those of layout.py.
+  const begin = () => {
+    if (!state()) return setTimeout(begin, 50);
+    if (window.innerWidth < 900) set("left_open", false);
+    if (window.innerWidth < 1100) set("right_open", false);
+  };
+  begin();
+
   // Keys -------------------------------------------------------------------------------------------
 
   const KEYS = {
