@@ -81,9 +81,12 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
     here = {record.way for record in records}, {record.setting for record in records}
     handles = _legend([w for w in ways if w in here[0]], [s for s in settings if s in here[1]], colours, markers, pair)
     below = 0.3 + 0.2 * -(-len(handles) // 4)  # inches for the legend
-    height = 3.1 * rows + below + 0.5
-    picture = Picture(figsize=(4.3 * min(COLUMNS, len(sets)) + 0.4, height), layout="constrained")
+    height, width = 3.1 * rows + below + 1.0, 4.3 * min(COLUMNS, len(sets)) + 0.4
+    picture = Picture(figsize=(width, height))
     panels = picture.subplots(rows, min(COLUMNS, len(sets)), sharex=True, sharey=True, squeeze=False)
+    # Margins in inches: matplotlib's own layout takes as long as all the drawing.
+    sides = {"left": 0.75 / width, "right": 1.0 - 0.1 / width}
+    picture.subplots_adjust(**sides, bottom=(below + 0.5) / height, top=1.0 - 0.6 / height, wspace=0.06, hspace=0.22)
     ys = [y for record in records for _, y in _points(record, pair)]
     least = min((y for y in ys if y > 0.0), default=1.0)
     floor = least / ZERO_BELOW
@@ -109,9 +112,9 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
             panel.set_xlabel(pair.x_label, fontsize=9)
     for panel in panels[:, 0]:
         panel.set_ylabel(pair.y_label, fontsize=9)
-    picture.suptitle(study.title, fontsize=11)
+    picture.suptitle(study.title, fontsize=11, y=1.0 - 0.08 / height, va="top")
     columns = min(4, max(2, 2 * panels.shape[1]))
-    picture.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=8, frameon=False)
+    picture.legend(handles=handles, loc="lower center", ncols=columns, fontsize=8, frameon=False)
     return picture
 
 
@@ -137,6 +140,7 @@ def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], flo
     """Plain numbers on x, where powers of ten alone would leave one or none; a tick for errors of 0."""
     panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if max(xs) < 300.0 * min(xs) else (1.0,)))
     panel.xaxis.set_minor_locator(NullLocator())
+    panel.yaxis.set_minor_locator(NullLocator())
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     panel.set_xlim(min(xs) / 1.25, max(xs) * 1.25)
     if not pair.series and min(ys) <= 0.0:
@@ -144,7 +148,6 @@ def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], flo
         every = max(1, len(decades) // 8)
         ticks = [10.0**k for k in decades[::every] if 10.0**k > 4.0 * floor]
         panel.set_yticks([floor, *ticks], ["0", *(f"$10^{{{k}}}$" for k in decades[::every] if 10.0**k > 4.0 * floor)])
-        panel.yaxis.set_minor_locator(NullLocator())
 
 
 def _legend(

@@ -16,7 +16,7 @@ from .study import Budget, Options, Unavailable
 __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
 
 QUICK_SECONDS = 120.0  # of a quick report, plots included
-PLOT_SECONDS = 25.0  # of these, kept for the page and the plots
+PLOT_SECONDS = 30.0  # of these, kept for the page and the plots
 QUICK_REPEATS = 3
 
 Log = Callable[[str], None]
