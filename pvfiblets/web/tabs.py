@@ -80,7 +80,8 @@ def _clip(app: Any) -> None:
             html.Span("Across", classes="pv-small", style="width: 104px")
             for axis, title in (("x", "Left–right"), ("y", "Back–front"), ("z", "Down–up")):
                 v3.VBtn(
-                    axis.upper(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",), title=title,
+                    axis.upper(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",),
+                    color=(f"clip.axis === '{axis}' ? 'primary' : undefined",), title=title,
                     click=(app.cuts.set_axis, f"[clip.id, '{axis}']"), style="min-width: 34px",
                 )  # fmt: skip
             v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none",
