@@ -7,10 +7,12 @@ from typing import Any
 
 from pvfiblets.web.document import Layer
 
-__all__ = ["Bars", "bar_arguments", "bars_of", "contrast"]
+__all__ = ["Bars", "bar_arguments", "bars_of", "contrast", "has_labels"]
 
 MOST_BARS = 6
-_WIDTH, _FIRST, _STEP = 0.06, 0.88, 0.14
+LABELLED_RATIO = 0.35
+"""How much of its width a bar takes beside names."""
+_WIDTH, _FIRST, _STEP, _NAMES = 0.06, 0.88, 0.14, 0.12
 
 
 class Bars:
@@ -37,7 +39,12 @@ class Bars:
         self._shown = wanted
         for place, (title, _, actor) in enumerate(found):
             arguments = bar_arguments(place, actor, background)
-            self._plotter.add_scalar_bar(title, mapper=actor.mapper, render=False, **arguments)
+            bar = self._plotter.add_scalar_bar(title, mapper=actor.mapper, render=False, **arguments)
+            if has_labels(actor):
+                bar.SetBarRatio(LABELLED_RATIO)
+                bar.SetTextPositionToPrecedeScalarBar()
+                # VTK centres names from the second picture on only.
+                bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()
 
 
 def bars_of(drawn: Sequence[tuple[Layer, Any]]) -> list[tuple[str, Layer, Any]]:
@@ -66,10 +73,15 @@ def bar_arguments(place: int, actor: Any, background: str) -> dict[str, Any]:
         "height": 0.5,
         "position_x": round(_FIRST - _STEP * place, 4),
         "position_y": 0.25,
-        "title_font_size": 13,
-        "label_font_size": 13,
     }
-    return {**found, "n_labels": 0} if getattr(actor, "shows_labels", False) else found
+    if has_labels(actor):
+        return {**found, "position_x": round(_FIRST - _STEP * place - _NAMES, 4), "n_labels": 0}
+    return {**found, "title_font_size": 13, "label_font_size": 13}
+
+
+def has_labels(actor: Any) -> bool:
+    """Whether an actor's bar names its numbers; it is narrow then, with the names at its right."""
+    return bool(getattr(actor, "shows_labels", False))
 
 
 def contrast(background: str) -> str:
@@ -90,4 +102,4 @@ def _title(layer: Layer, actor: Any) -> str | None:
 def _looks(layer: Layer, actor: Any) -> tuple[Any, ...]:
     """What a bar copies from its actor and does not follow by itself: of meshes all, of others the kind of labels."""
     own = tuple(layer.settings[name] for name in ("cmap", "log_scale") if name in layer.settings)
-    return (*own, tuple(layer.settings["clim"] or ()), getattr(actor, "shows_labels", False))
+    return (*own, tuple(layer.settings["clim"] or ()), has_labels(actor))

@@ -149,8 +149,8 @@ class Questions:
         Returns
         -------
         list of dict
-            ``layer, name``; and ``title, cmap, clim, log_scale`` where a map turns values into colours, ``color`` where
-            there is one, or ``directions`` where red, green and blue are right, front and up.
+            ``layer, name``; and ``title, cmap`` (None: the usual), ``clim, log_scale`` where a map is used, ``color``
+            where there is one, or ``directions`` where red, green and blue are right, front and up.
         """
         found = []
         for layer in self.state.layers:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web import layers
-from pvfiblets.web.bars import bar_arguments, bars_of
+from pvfiblets.web.bars import LABELLED_RATIO, bar_arguments, bars_of, has_labels
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
@@ -20,13 +20,14 @@ __all__ = ["as_script"]
 
 _UNSAID: dict[str, dict[str, Any]] = {
     "tractogram": {
-        "scalars": "orientation", "clim": None, "log_scale": False, "nan_color": None, "opacity": 1.0,
+        "scalars": "orientation", "cmap": None, "clim": None, "log_scale": False, "nan_color": None, "opacity": 1.0,
         "transparency": None, "lighting": True, "culling": "two-phase", "fit": None, "style": "surface", "halos": False,
         "illuminated": False, "tube_shading": False, "tube_radius": None, "ambient_occlusion": False,
         "depth_cue": False,
     },
     "tubes": {
-        "radius_scale": 1.0, "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0, "culling": "two-phase",
+        "radius_scale": 1.0, "cmap": None, "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0,
+        "culling": "two-phase",
         "solver": "auto", "silhouette": False, "ambient_occlusion": False, "depth_cue": False,
     },
     "volume": {
@@ -36,7 +37,7 @@ _UNSAID: dict[str, dict[str, Any]] = {
         "depth_cue": False,
     },
     "mesh": {
-        "clim": None, "log_scale": False, "opacity": 1.0, "style": "surface", "show_edges": False,
+        "cmap": None, "clim": None, "log_scale": False, "opacity": 1.0, "style": "surface", "show_edges": False,
         "smooth_shading": False, "specular": 0.0, "lighting": True, "culling": None,
     },
 }  # fmt: skip
@@ -277,7 +278,11 @@ class _Writer:
         drawn = [(layer, self._scene.actor(layer.id)) for layer in state.layers]
         for place, (title, layer, actor) in enumerate(bars_of(drawn)):
             arguments = bar_arguments(place, actor, state.background)
-            self._call("plotter.add_scalar_bar", repr(title), {}, f"mapper={self._names[layer.id]}.mapper", arguments)
+            mapper = f"mapper={self._names[layer.id]}.mapper"
+            self._call("bar = plotter.add_scalar_bar", repr(title), mapper, arguments)
+            if has_labels(actor):
+                self._lines += [f"bar.SetBarRatio({LABELLED_RATIO})", "bar.SetTextPositionToPrecedeScalarBar()"]
+                self._lines += ["bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()"]
 
     def _camera(self) -> None:
         camera = self._scene.camera()
@@ -316,7 +321,7 @@ class _Writer:
         if stem[0].isdigit() or keyword.iskeyword(stem):
             stem = f"layer_{stem}"
         reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
-        reserved |= {"scaled", "dataclasses"}
+        reserved |= {"scaled", "dataclasses", "bar"}
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
         found, count = stem, 2

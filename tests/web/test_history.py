@@ -39,7 +39,7 @@ def test_everything_that_was_done_is_undone_and_done_again(scene, history, clock
     do(lambda: scene.open("lines.fiblets"))
     (layer,) = scene.layers
     do(lambda: scene.set(layer.id, "scalars", "fa"))
-    do(lambda: scene.set(layer.id, "tube_radius", 0.8))
+    do(lambda: scene.set(layer.id, "line_width", 3))
     do(lambda: scene.set_filter(layer.id, "length", 30, 60))
     do(lambda: scene.set_groups(layer.id, ["far"]))
     do(lambda: scene.select(layer.id, [31, 40]))
