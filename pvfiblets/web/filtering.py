@@ -53,7 +53,10 @@ class FilterActions:
         left = int(np.count_nonzero(actor.shown)) if layer.filters.active else total
         filters = layer.filters
         amount = (filters.subset or {}).get("amount", 1.0)
-        join, regions = _flat(filters.regions)
+        try:
+            join, regions = _flat(filters.regions)
+        except ValueError:  # nested, by a session file: they hold, and whoever edits them is told so
+            join, regions = "and", []
         bounds = self._app.plotter.bounds
         page.filters = {
             "layer": layer.id,

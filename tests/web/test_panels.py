@@ -1,0 +1,61 @@
+"""What panels show and send back, without a browser."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets.web.controls import axis_of, controls, moved
+from pvfiblets.web.describe import typed
+from pvfiblets.web.filtering import _condition, _flat
+
+BOUNDS = (-10.0, 30.0, 0.0, 20.0, -5.0, 5.0)
+SPHERE = {"kind": "sphere", "center": [1.0, 2.0, 3.0], "radius": 4.0}
+
+
+def test_sliders_of_shapes_give_back_what_they_were_moved_to():
+    shapes = [
+        {"kind": "plane", "normal": [0.0, 2.0, 0.0], "origin": [1.0, 2.0, 3.0]},
+        {"kind": "slab", "normal": [1.0, 1.0, 0.0], "origin": [1.0, 2.0, 3.0], "thickness": 2.0},
+        {"kind": "box", "bounds": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]},
+        SPHERE,
+    ]
+    for shape in shapes:
+        for found in controls(shape, BOUNDS):
+            low, high = found["limits"]
+            assert low <= np.min(found["value"]) <= np.max(found["value"]) <= high
+            wanted = [low, high] if found["type"] == "range" else 0.5 * (low + high)
+            changed = {**shape, **moved(shape, found["name"], wanted)}
+            again = next(item for item in controls(changed, BOUNDS) if item["name"] == found["name"])
+            np.testing.assert_allclose(again["value"], wanted, atol=1e-9)
+        with pytest.raises(ValueError, match="has no 'colour'"):
+            moved(shape, "colour", 1.0)
+
+
+def test_planes_move_along_their_normal_only():
+    plane = {"kind": "plane", "normal": [0.0, 2.0, 0.0], "origin": [1.0, 2.0, 3.0]}
+    assert moved(plane, "position", 7.0)["origin"] == [1.0, 7.0, 3.0]
+    assert axis_of([0.0, -3.0, 0.0]) == "y"
+    assert axis_of([1.0, 1.0, 0.0]) == ""
+
+
+def test_regions_are_rows_joined_by_a_word_and_back():
+    rows = [
+        {"not": False, "how": "passes", "region": SPHERE},
+        {"not": True, "how": "ends_in", "region": SPHERE},
+    ]
+    assert _flat(_condition("or", rows)) == ("or", rows)
+    assert _condition("and", []) is None
+    assert _flat(None) == ("and", [])
+    nested = {"op": "and", "of": [{"op": "or", "of": [{"how": "passes", "region": SPHERE}]}]}
+    with pytest.raises(ValueError, match="nested"):
+        _flat(nested)
+
+
+def test_numbers_are_typed_with_points_commas_and_units():
+    assert typed("1.5", "x", optional=False) == 1.5
+    assert typed(" 1,5 mm", "x", optional=False) == 1.5
+    assert typed("", "x", optional=True) is None
+    for text in ("", "nan", "inf", "two"):
+        with pytest.raises(ValueError, match="is not a number"):
+            typed(text, "x", optional=False)
