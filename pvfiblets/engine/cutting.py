@@ -42,8 +42,8 @@ __all__ = ["BOUNDARIES_UNIT", "Cutter", "check_region"]
 BOUNDARIES_UNIT = 26
 """Texture unit of the boundaries."""
 
-RAYS_BINDING = 7
-"""Binding of the uniform block ``Rays``, of this module's own programs only."""
+RAYS_BINDING = 11
+"""Binding of the uniform block ``Rays``, of this module's own programs only: none of `BLOCKS`, which stay bound meanwhile."""
 
 _SCISSOR_TEST = 0x0C11
 

@@ -14,7 +14,7 @@
 //
 //   rows of a sphere   Qxx, Qyy, 2 Qxy, Q11 | 2 Qx1, 2 Qy1, Qxz, Qyz | Qzz, Qz1
 
-layout(std140, binding = 7) uniform Rays {
+layout(std140, binding = 11) uniform Rays {
     vec4 rays_rows[6 * {{ leaves }}];        // six a leaf
     vec4 rays_centres[{{ leaves }}];         // c; of a surface: the rectangle of pixels that it may touch
     ivec4 rays_surfaces[{{ leaves }}];       // of a surface: first layer, layers; first of its tallies, or -1

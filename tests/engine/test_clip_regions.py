@@ -74,6 +74,27 @@ def test_a_picture_shows_what_lies_in_the_region(gl, fabricate, random_lines, ca
     assert (picture.depth[picture.drawn] >= whole.depth[picture.drawn].astype(np.int64) - 2048).all()
 
 
+@pytest.mark.parametrize("pipeline", PIPELINES)
+@pytest.mark.parametrize("name", ["ball", "torus", "box without a ball"])
+def test_tubes_are_cut_and_are_else_as_they_were(gl, fabricate, random_lines, camera, name, pipeline):
+    region, style = REGIONS[name], Style(radius=1.5)
+    fiblets = fabricate(random_lines(60, seed=2), kind=2)
+    matrix = camera(SIZE, **FAR)
+    view, free = View(SIZE, matrix, (), region), View(SIZE, matrix)
+    whole = draw(gl, fiblets, free, style, pipeline=pipeline, culling=None)
+    renderer = FibletRenderer(gl, fiblets, pipeline=pipeline, culling=None)
+    first = read(renderer.render(view, style))
+    renderer.render(free, style)
+    again = read(renderer.render(view, style))  # with the boundaries that are there already
+    renderer.release()
+    assert_same(first, again)
+    assert first.drawn.sum() > 200
+    assert (sure(region, unprojected(view, first.window_depth))[first.drawn] >= 0).all()
+    kept = (sure(region, unprojected(view, whole.window_depth)) > 0) & whole.drawn
+    assert kept.sum() > 100
+    np.testing.assert_array_equal(first.depth[kept], whole.depth[kept])
+
+
 @pytest.mark.parametrize("pipeline", PIPELINES[1:])
 @pytest.mark.parametrize("style", [Style(), Style(6.0)], ids=["thin", "wide"])
 def test_pipelines_agree(gl, fabricate, random_lines, camera, pipeline, style):
