@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo serve test lint fuzz bench docs check-wheel wheel environment gl shaders browser clean
+.PHONY: demo serve test lint fuzz bench docs check-wheel wheel environment gl shaders browser display clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -17,7 +17,7 @@ serve: demo
 	$(BIN)/pvfiblets serve $(DEMO)/*.fiblets --root $(DEMO)
 
 test: export LEAST = 4.3
-test: environment gl shaders browser lint
+test: environment gl shaders browser display lint
 	$(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile
 
 lint: environment
@@ -54,6 +54,9 @@ gl: environment
 
 browser:
 	@scripts/browser.sh
+
+display:
+	@scripts/display.sh
 
 shaders:
 	@scripts/shader_tools.sh
