@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import json as json_
-import math
 import sys
 import time
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
 from pvfiblets import formats
 from pvfiblets.errors import FibletsError, FormatError
 from pvfiblets.formats.spool import gathered
+from pvfiblets.web.values import plain
 
 COMPRESSED = ".fiblets"
 
@@ -165,23 +163,6 @@ def show_progress(quiet: bool, json: bool) -> bool:
 def print_json(result: dict[str, Any]) -> None:
     """Print a result as strict JSON: no NaN, no NumPy types."""
     print(json_.dumps(plain(result), allow_nan=False))
-
-
-def plain(value: Any) -> Any:
-    """Return a value in JSON's own types; what is no finite number becomes null."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, (list, tuple, set, frozenset)):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace")
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value if isinstance(value, (str, int, float, bool)) or value is None else str(value)
 
 
 def readable(value: Any) -> str:

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
-from pvfiblets.cli_files import plain, print_json
+from pvfiblets.cli_files import print_json
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of
+from pvfiblets.web.values import plain
 
 # Where a scalar bar covers nothing of a brain.
 UPRIGHT = {"vertical": True, "height": 0.5, "position_x": 0.9, "position_y": 0.25}

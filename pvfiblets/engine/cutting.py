@@ -43,7 +43,8 @@ BOUNDARIES_UNIT = 26
 """Texture unit of the boundaries."""
 
 RAYS_BINDING = 11
-"""Binding of the uniform block ``Rays``, of this module's own programs only: none of `BLOCKS`, which stay bound meanwhile."""
+"""Binding of the uniform block ``Rays``, of this module's own programs only: no other of `BLOCKS`, which stay
+bound meanwhile."""
 
 _SCISSOR_TEST = 0x0C11
 

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from pvfiblets.web.actions import Actions
 
-class CameraActions:
-    """The camera of an application.
 
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
-
-    def __init__(self, app: Any) -> None:
-        self._app = app
+class CameraActions(Actions):
+    """The camera of an application."""
 
     def refresh(self) -> None:
         """Show how the camera stands."""

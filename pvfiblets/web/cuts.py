@@ -6,20 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.web.actions import Actions
 from pvfiblets.web.controls import AXES, axis_of, controls, moved
 
 
-class CutActions:
-    """The cuts of an application's scene.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
-
-    def __init__(self, app: Any) -> None:
-        self._app = app
+class CutActions(Actions):
+    """The cuts of an application's scene."""
 
     def refresh(self) -> None:
         """Show the cuts there are."""

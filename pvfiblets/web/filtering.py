@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short, steps
 from pvfiblets.web.controls import controls, moved
 from pvfiblets.web.describe import Charts, typed
@@ -14,7 +15,7 @@ from pvfiblets.web.document import LINES
 from pvfiblets.web.shapes import HOWS
 
 
-class FilterActions:
+class FilterActions(Actions):
     """The filters of the chosen layer of an application's scene.
 
     Parameters
@@ -26,7 +27,7 @@ class FilterActions:
     """
 
     def __init__(self, app: Any, charts: Charts) -> None:
-        self._app = app
+        super().__init__(app)
         self._charts = charts
 
     @property

@@ -10,6 +10,7 @@ from typing import Any
 
 from pvfiblets.formats.registry import suffixes
 from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
+from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
@@ -19,17 +20,11 @@ PIECE = MEBIBYTE  # bytes of an upload at a time
 LATEST = 0.2  # seconds between two reports of progress
 
 
-class FileActions:
-    """The files of an application.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
+class FileActions(Actions):
+    """The files of an application."""
 
     def __init__(self, app: Any) -> None:
-        self._app = app
+        super().__init__(app)
         self._stop = False
         self._opening = asyncio.Lock()
         self._for = ""  # what the file that is chosen next is for: a layer, or 'clip'

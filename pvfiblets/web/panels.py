@@ -87,6 +87,19 @@ def _controls(app: Any) -> None:
     def change(value: str) -> tuple[Any, str]:
         return app.set_property, f"[chosen, p.name, {value}]"
 
+    slider = {
+        "model_value": ("p.effective",),
+        "min": ("p.limits[0]",),
+        "max": ("p.limits[1]",),
+        "step": ("p.step",),
+        "end": change("$event"),
+        "density": "compact",
+        "hide_details": True,
+        "color": "primary",
+        "thumb_size": 14,
+        "track_size": 3,
+        "aria_label": ("p.label",),
+    }
     html.Span("{{ p.shown }}", v_if="p.read_only", classes="pv-value")
     v3.VSelect(
         v_else_if="p.type === 'choice'",
@@ -117,17 +130,7 @@ def _controls(app: Any) -> None:
     with v3.Template(v_else_if="p.type === 'number'"):
         v3.VSlider(
             v_if="p.limits && !p.wide",
-            model_value=("p.effective",),
-            min=("p.limits[0]",),
-            max=("p.limits[1]",),
-            step=("p.step",),
-            end=change("$event"),
-            density="compact",
-            hide_details=True,
-            color="primary",
-            thumb_size=14,
-            track_size=3,
-            aria_label=("p.label",),
+            **slider,
         )
         html.Input(
             classes="pv-num",
@@ -142,17 +145,7 @@ def _controls(app: Any) -> None:
         with html.Div(style="flex: 1; min-width: 0"):
             v3.VRangeSlider(
                 v_if="p.limits",
-                model_value=("p.effective",),
-                min=("p.limits[0]",),
-                max=("p.limits[1]",),
-                step=("p.step",),
-                end=change("$event"),
-                density="compact",
-                hide_details=True,
-                color="primary",
-                thumb_size=14,
-                track_size=3,
-                aria_label=("p.label",),
+                **slider,
             )
             with html.Div(classes="pv-pair", style="justify-content: space-between"):
                 for end in (0, 1):

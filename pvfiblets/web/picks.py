@@ -8,6 +8,7 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
+from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import profile_chart, short
 from pvfiblets.web.wire import number
 
@@ -16,17 +17,11 @@ DOWNLOADS = 16  # files that can be fetched; older ones are forgotten
 EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
 
 
-class SelectionActions:
-    """Picking and the selection of an application's scene.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
+class SelectionActions(Actions):
+    """Picking and the selection of an application's scene."""
 
     def __init__(self, app: Any) -> None:
-        self._app = app
+        super().__init__(app)
         self._files: OrderedDict[str, Path] = OrderedDict()
         self._latest: str = ""
         self._profile: str | None = None
