@@ -4,8 +4,9 @@ To add one, such as ``culling``: write ``pvfiblets/report/culling.py`` with an o
 :class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.culling"`` into ``MODULES``. Nothing else
 knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a quick run's time, asks
 ``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
-study: where no OpenGL context can be made). ``benchmarks/tube_errors.py``, ``halo_errors.py`` and ``culling.py``
-measure tubes, halos and culling so far, each in a form of its own; names are kept for them in ``PLANNED``.
+study: where no OpenGL context can be made). ``benchmarks/tube_errors.py``, ``halo_errors.py``, ``volume_errors.py``
+and ``culling.py`` measure tubes, halos, volumes and culling so far, each in a form of its own; names are kept for them
+in ``PLANNED``.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ MODULES = {
 PLANNED = {
     "culling": "benchmarks/culling.py",
     "tubes": "benchmarks/tube_errors.py",
-    "volume": "",
+    "volume": "benchmarks/volume_errors.py",
     "halos": "benchmarks/halo_errors.py",
 }
 
