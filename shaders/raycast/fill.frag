@@ -65,7 +65,9 @@ void main() {
         position += weights[k] * p;
         mean += weights[k] * far[k];
     }
-    bool alike = found == 4u;
+    // Beyond the outermost rays there is nothing to interpolate between.
+    bool between = all(greaterThanEqual(gl_FragCoord.xy - 0.5, from)) && all(lessThanEqual(gl_FragCoord.xy - 0.5, to));
+    bool alike = found == 4u && between;
 #if FEATURE_RAYCAST_SURFACE
     // Of a plane, depths of opposite corners have one sum.
     vec3 normal = vec3(0.0), first = unpacked(texelFetch(coarse_normal, at[0], 0).x);

@@ -181,6 +181,16 @@ def test_nodes_that_hardly_change_may_be_taken_as_their_mean(cast, matrix):
 
 
 @pytest.mark.parametrize("stride", [2, 4])
+def test_a_plane_is_as_deep_at_the_pictures_edges_as_without_sparse_rays(cast, camera, stride):
+    volume = RaycastVolume(np.indices((20, 20, 20)).astype(np.float32).sum(axis=0))
+    matrix = camera(SIZE, eye=(30, 22, 18), target=(9.5, 9.5, 9.5), height=5.0, near=5, far=100)
+    plain, _ = cast(volume, Casting(values=(28.5,)), matrix)
+    sparse, _ = cast(volume, Casting(values=(28.5,), sparse=stride), matrix)
+    assert plain.there.all()
+    np.testing.assert_allclose(sparse.depth, plain.depth, atol=2e-6)
+
+
+@pytest.mark.parametrize("stride", [2, 4])
 @pytest.mark.parametrize("mode", ["isosurface", "mip", "composite"])
 def test_sparse_casting(cast, matrix, mode, stride):
     volume = blobs()
