@@ -40,6 +40,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--millions", type=float, nargs="+", default=(1.0, 6.0, 60.0), help="segments")
     parser.add_argument("--seconds", type=float, default=10.0, help="of dragging")
+    parser.add_argument("--settle", type=float, default=6.0, help="that the server has before a page opens")
     parser.add_argument("--touches", type=int, default=10, help="single moves, whose latency is measured")
     parser.add_argument("--sessions", type=int, default=8, help="at once; 0 for none")
     parser.add_argument("--together", type=float, default=120.0, help="seconds that they last")
@@ -94,6 +95,7 @@ def one(browser: Any, path: Path, options: Any) -> dict[str, Any]:
         try:
             width, height = options.size
             visit = Visit(browser, served, width=width, height=height)
+            time.sleep(options.settle)
             began = time.monotonic()
             visit.page.goto(served.url)
             visit.page.wait_for_selector("#pv-view img[src^=blob]")
@@ -239,7 +241,7 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
         f"them, over loopback; a window of {width}×{height}, of which the panels leave the view. Streamlines of "
         f"{about['step_mm']:g} mm a segment, drawn as lines, dragged for {about['seconds']:g} s.",
         "",
-        "*first*: seconds from the address to a picture with something in it, the session's process included; "
+        "*first*: seconds from the address to a picture with something in it, of a server that has been up for a while; "
         "*latency*: ms from one move of the pointer to the first picture after it, 10th to 90th percentile; *rest*: "
         "messages in 3 s without a change; *memory*: MB of a session's process, and its share of what processes share.",
         "",

@@ -46,6 +46,7 @@ class FileActions(Actions):
                 self._app.complain(str(error))
         if self._app.options.demo:
             self.open_demo()
+        self._app.stream.warm()
 
     def open_demo(self) -> None:
         """Open the made-up tractogram."""

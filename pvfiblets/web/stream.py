@@ -165,6 +165,14 @@ class PictureStream:
         """Draw and send soon: something has changed."""
         self._wanted.set()
 
+    def warm(self) -> None:
+        """Draw before anybody looks, if nothing is drawn yet: by then programs are compiled and data are on the GPU."""
+        if not self.frames:
+            try:
+                self._draw()
+            except Exception as error:  # noqa: BLE001 - as when somebody looks
+                self._failed(error)
+
     @property
     def size(self) -> tuple[int, int]:
         """The picture's width and height in pixels."""
