@@ -241,7 +241,7 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
         f"them, over loopback; a window of {width}×{height}, of which the panels leave the view. Streamlines of "
         f"{about['step_mm']:g} mm a segment, drawn as lines, dragged for {about['seconds']:g} s.",
         "",
-        "*first*: seconds from the address to a picture with something in it, of a server that has been up for a while; "
+        "*first*: seconds from the address to a picture with something in it, of a server that is up for a while; "
         "*latency*: ms from one move of the pointer to the first picture after it, 10th to 90th percentile; *rest*: "
         "messages in 3 s without a change; *memory*: MB of a session's process, and its share of what processes share.",
         "",
