@@ -48,10 +48,8 @@ def main() -> None:
     parser = parsed()
     options = parser.parse_args()
     if options.quick:
-        given = parser.parse_args([])
-        for key, value in QUICK.items():
-            if getattr(options, key) == getattr(given, key):
-                setattr(options, key, value)
+        parser.set_defaults(**QUICK)
+        options = parser.parse_args()
     if options.run:
         for told in child(*options.run, options):
             print(json.dumps(told), flush=True)

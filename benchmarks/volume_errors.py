@@ -46,10 +46,8 @@ def main() -> None:
     parser = parsed()
     options = parser.parse_args()
     if options.quick:
-        given = parser.parse_args([])
-        for key, value in QUICK.items():
-            if getattr(options, key) == getattr(given, key):
-                setattr(options, key, value)
+        parser.set_defaults(**QUICK)
+        options = parser.parse_args()
     ctx = context()
     results = [row for name in options.data for mode in options.modes for row in measured(ctx, name, mode, options)]
     for row in results:

@@ -2,6 +2,7 @@
 # Looks for Chromium, with which the tests open the pages of `pvfiblets serve`.
 # Installs it where it may (Debian or Ubuntu, as root); else says what to install. Missing, it costs those tests only.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/wanted.sh"
 PACKAGES="chromium fonts-dejavu-core"
 
 opens() {
@@ -11,13 +12,7 @@ opens() {
     return 1
 }
 
-if opens; then exit 0; fi
-if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "Installing the browser for tests: $PACKAGES ..."
-    apt-get update -qq || true
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $PACKAGES >/dev/null || true
-    if opens; then exit 0; fi
-fi
+if wanted opens "the browser" "$PACKAGES"; then exit 0; fi
 {
     echo "There is no Chromium on this machine: tests that open pages in it are left out."
     echo "On Debian or Ubuntu install: sudo apt-get install $PACKAGES; or name one with CHROMIUM=..."

@@ -307,6 +307,20 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
                 context.release(self)
 
 
+class CutMapper(EngineMapper):
+    """Mapper of what a region can cut."""
+
+    @property
+    def region(self) -> Any:
+        """`pvfiblets.regions.Region` in world mm outside of which nothing is drawn; None for none."""
+        return self._region
+
+    @region.setter
+    def region(self, region: Any) -> None:
+        self._region = region
+        self._actor_modified()
+
+
 @calldata_type(VTK_OBJECT)
 def _update_shader(mapper: EngineMapper, _event: str, program: Any) -> None:
     mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever

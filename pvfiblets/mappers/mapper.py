@@ -8,13 +8,13 @@ from typing import Any
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.view import Style
-from pvfiblets.mappers.base import EngineMapper
+from pvfiblets.mappers.base import CutMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
-class FibletMapper(EngineMapper):
+class FibletMapper(CutMapper):
     """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
 
     Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
@@ -112,16 +112,6 @@ class FibletMapper(EngineMapper):
     @filtering.setter
     def filtering(self, wanted: Any) -> None:
         self._filtering = wanted
-        self._actor_modified()
-
-    @property
-    def region(self) -> Any:
-        """`pvfiblets.regions.Region` in world mm outside of which fiblets are cut away; None for none."""
-        return self._region
-
-    @region.setter
-    def region(self, region: Any) -> None:
-        self._region = region
         self._actor_modified()
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:

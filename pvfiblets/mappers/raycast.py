@@ -16,7 +16,7 @@ import numpy.typing as npt
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.gbuffer import EMPTY
-from pvfiblets.mappers.base import EngineMapper
+from pvfiblets.mappers.base import CutMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.extras import styled
@@ -69,7 +69,7 @@ class RayHit:
     value: float
 
 
-class RaycastMapper(EngineMapper):
+class RaycastMapper(CutMapper):
     """Mapper that draws a `RaycastVolume` through VTK's own lights, passes, clipping planes and selection.
 
     Parameters
@@ -136,16 +136,6 @@ class RaycastMapper(EngineMapper):
         same = (casting.mode == "composite") == (self._casting.mode == "composite")
         self.show(casting, self._colouring if same else None)
 
-    @property
-    def region(self) -> Any:
-        """`pvfiblets.regions.Region` in world mm outside of which nothing of the volume is; None for none."""
-        return self._region
-
-    @region.setter
-    def region(self, region: Any) -> None:
-        self._region = region
-        self._actor_modified()
-
     def show(self, casting: Casting, colouring: Colouring | None = None) -> None:
         """Change both from the next frame on.
 
@@ -163,7 +153,7 @@ class RaycastMapper(EngineMapper):
         colouring = _plain(casting) if colouring is None else colouring
         _check(casting, colouring)
         self._casting = casting
-        EngineMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
+        CutMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
         surface = casting.mode == "isosurface"
         if surface != ("normals" in self._extras):
             self.set_extra("normals", SurfaceNormals() if surface else None)
