@@ -88,6 +88,20 @@ def scene(plotter, folder):
     scene.close()
 
 
+@pytest.fixture
+def flat(scene):
+    """Return the scene with the sixty lines seen along z from above, 0.5 mm a pixel, without light or a bar."""
+    layer = scene.open("lines.trk")
+    scene.set(layer.id, "scalars", None)
+    scene.set(layer.id, "lighting", False)
+    scene.set_camera(
+        {"position": [30, 18, 300], "focal_point": [30, 18, 0], "up": [0, 1, 0], "view_angle": 30.0,
+         "parallel": True, "parallel_scale": 40.0}
+    )  # fmt: skip
+    scene.screenshot()
+    return scene
+
+
 # Pages in a browser: see browsing.py
 
 
