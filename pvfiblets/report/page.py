@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .record import Record, Report, StudyResult, Timing
+from .record import FRAME, Record, Report, StudyResult, Timing
 
 __all__ = ["page"]
 
@@ -100,15 +100,14 @@ def _defaults(study: StudyResult) -> list[str]:
     for record in (record for record in shown if record.default):
         cells = []
         for pair in pairs:
-            x, y = record.value(pair.x), record.value(pair.y)
-            scale = 1e9 if pair.x.startswith("times/") else 1.0
+            x, y = record.shown(pair.x), record.shown(pair.y)
             beaten = [
                 other.label
                 for other in shown
                 if (other.data, other.machine) == (record.data, record.machine)
                 and all(_less(other, record, path) for path in (pair.x, pair.y))
             ]
-            cells.append(f"{_number(y)} / {_number(scale * x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
+            cells.append(f"{_number(y)} / {_number(x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
         lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
     return lines
 
@@ -137,7 +136,8 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
     heads += [name if name.endswith(units[name]) else f"{name}, {units[name]}" for name in errors]
     for name in times:
         item = next(record.times[name].item for record in records if name in record.times)
-        heads += [f"{name}, M {item}s/s", "× default"] if default else [f"{name}, M {item}s/s"]
+        head = f"{name}, ms per frame" if item == FRAME else f"{name}, M {item}s/s"
+        heads += [head, "× default"] if default else [head]
     heads.append("front")
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     for record in records:
@@ -147,10 +147,10 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
         cells += [_number(record.value(f"errors/{name}")) for name in errors]
         for name in times:
             timing = record.times.get(name)
-            cells.append(_rate(timing))
+            cells.append(_speed(timing))
             if default:
                 base = default.times.get(name)
-                cells.append(_number(timing.rate / base.rate) if timing and base else "")
+                cells.append(_number(_ratio(timing, base)) if timing and base else "")
         cells.append(", ".join(record.front))
         lines.append("| " + " | ".join(map(_cell, cells)) + " |")
     return lines
@@ -165,9 +165,17 @@ def _unit(records: Sequence[Record], kind: str, name: str) -> str:
     return unit
 
 
-def _rate(timing: Timing | None) -> str:
+def _ratio(timing: Timing, base: Timing) -> float:
+    """The figure of the column before, over the default's: of speeds, but of times where pictures are told by them."""
+    return base.rate / timing.rate if timing.item == FRAME else timing.rate / base.rate
+
+
+def _speed(timing: Timing | None) -> str:
     if timing is None or not math.isfinite(timing.rate):
         return ""
+    if timing.item == FRAME:
+        median, low, high = (timing.scale * s / timing.items for s in (timing.median, timing.low, timing.high))
+        return f"{_number(median)} ({_number(low)}–{_number(high)})"
     low = timing.items / timing.high if timing.high > 0.0 else math.nan
     high = timing.items / timing.low if timing.low > 0.0 else math.nan
     return f"{_number(timing.rate / 1e6)} ({_number(low / 1e6)}–{_number(high / 1e6)})"

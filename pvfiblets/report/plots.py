@@ -54,17 +54,13 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
 
 
 def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
-    """Where a record is drawn: one place, or those of a series; times in ns."""
+    """Where a record is drawn: one place, or those of a series."""
     if pair.series:
         prefix = pair.y.partition("/")[2]
         numbers = [(name, figure.value) for name, figure in record.errors.items() if name.startswith(prefix)]
         return sorted((float(name[len(prefix) :]), value) for name, value in numbers if math.isfinite(value))
-    x, y = (_shown(record, path) for path in (pair.x, pair.y))
+    x, y = record.shown(pair.x), record.shown(pair.y)
     return [(x, y)] if math.isfinite(x) and math.isfinite(y) and x > 0.0 else []
-
-
-def _shown(record: Record, path: str) -> float:
-    return record.value(path) * (1e9 if path.startswith("times/") else 1.0)
 
 
 def _drawable(records: Sequence[Record], pair: Axes) -> bool:

@@ -17,10 +17,11 @@ from typing import Any
 
 from pvfiblets.errors import FormatError
 
-__all__ = ["FORMAT", "Axes", "Figure", "LeftOut", "Record", "Report", "StudyResult", "Timing"]
+__all__ = ["FORMAT", "FRAME", "Axes", "Figure", "LeftOut", "Record", "Report", "StudyResult", "Timing"]
 
 FORMAT = "pvfiblets report 1"
 NAME = "report.json"
+FRAME = "frame"  # the item of pictures
 DIGITS = 6
 
 
@@ -45,7 +46,7 @@ class Timing:
     items : float
         How many of ``item`` one call handles.
     item : str
-        Such as ``"point"``.
+        Such as ``"point"``. Times of a ``"frame"`` are told in ms, of all else in ns.
     clock : str
         What was read: ``"cpu"`` is the processor time of this process, which other programs disturb little.
     """
@@ -62,6 +63,11 @@ class Timing:
     def each(self) -> float:
         """Seconds for one item; NaN where there are none."""
         return self.median / self.items if self.items else math.nan
+
+    @property
+    def scale(self) -> float:
+        """What seconds for one item are multiplied by to be told."""
+        return 1e3 if self.item == FRAME else 1e9
 
     @property
     def rate(self) -> float:
@@ -111,6 +117,11 @@ class Record:
         """Way and setting."""
         return f"{self.way} ({self.setting})" if self.setting else self.way
 
+    def shown(self, path: str) -> float:
+        """Return one number in the unit that it is told in: times as :attr:`Timing.scale` has them."""
+        kind, _, name = path.partition("/")
+        return self.value(path) * (self.times[name].scale if kind == "times" and name in self.times else 1.0)
+
     def value(self, path: str) -> float:
         """Return one number.
 
@@ -144,7 +155,7 @@ class Axes:
     x, y : str
         Paths as :meth:`Record.value` takes them.
     x_label, y_label : str
-        With units. Times are drawn in ns per item.
+        With units. Times are drawn in ns per item, those of pictures in ms per frame.
     series : bool
         A line for each way instead: ``y`` is how the names of several errors begin, which end in the numbers that they
         are drawn at; ``x`` is empty, and there is no front.

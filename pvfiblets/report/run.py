@@ -82,6 +82,8 @@ def make_report(
         if quick:
             options.repeats = QUICK_REPEATS
         report.studies.append(one_study(name, options))
+        if options.driver:
+            report.about["driver"] = options.driver
         left -= name in studies.MODULES
         report.save(folder)
     return report

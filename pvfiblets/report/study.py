@@ -82,6 +82,8 @@ class Options:
         To which data sets are cut.
     machine : str
         Name of the machine for the records.
+    driver : str
+        OpenGL renderer and version; a study that draws writes them here.
     log : callable
         Takes lines that say how far the study is.
     """
@@ -93,6 +95,7 @@ class Options:
     repeats: int = 5
     points: int = 100_000
     machine: str = ""
+    driver: str = ""
     log: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
 
 

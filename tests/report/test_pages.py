@@ -101,6 +101,23 @@ def test_studies_to_come_make_a_page(tmp_path, capsys):
     assert "wrote" in capsys.readouterr().err
 
 
+def test_pictures_are_told_in_milliseconds_per_frame():
+    axes = [Axes("time", "times/draw", "errors/wrong", "ms per frame", "wrong pixels, %")]
+    records = [
+        Record("brain", "g", "pictures", way, "", {"wrong": Figure(error, "%")},
+               times={"draw": Timing(seconds, 0.5 * seconds, 2.0 * seconds, 3, 4, "frame", "cpu")},
+               ours=ours, default=ours)
+        for way, error, seconds, ours in (("ours", 0.5, 0.1, True), ("rival", 0.25, 0.02, False))
+    ]  # fmt: skip
+    text = page(Report(dict(ABOUT), [StudyResult("culling", "Culling", "", [], axes, records)]), {})
+    assert "| way | setting | wrong, % | draw, ms per frame | × default | front |" in text
+    assert "| **ours** |  | 0.5 | 25 (12.5–50) | 1 |  |" in text
+    assert "| rival |  | 0.25 | 5 (2.5–10) | 0.2 |  |" in text
+    assert "| brain | 0.5 / 25: rival |" in text
+    assert records[0].shown("times/draw") == 25.0
+    assert records[0].shown("errors/wrong") == 0.5
+
+
 def test_measuring_needs_no_vtk_and_no_matplotlib():
     code = (
         "import sys, pvfiblets.report.run, pvfiblets.report.codec, pvfiblets.report.decode, pvfiblets.cli_report\n"

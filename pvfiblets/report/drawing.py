@@ -1,0 +1,71 @@
+"""What the studies that draw share: a context of their own, and a clock that sees what drawing costs.
+
+Software OpenGL draws on threads of this process: the processor time of all of them is what a picture costs, and other
+programs disturb it little. What a card does shows in no processor time, so there the clock on the wall is read.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from .measure import Turns
+from .record import Timing
+from .study import Options, Unavailable
+
+__all__ = ["clock_of", "drawing_context", "timing", "turns_of"]
+
+SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
+
+
+@contextlib.contextmanager
+def drawing_context(options: Options) -> Iterator[Any]:
+    """Make a bare OpenGL context for a study, and give it back.
+
+    Parameters
+    ----------
+    options : Options
+        ``driver`` is set to what draws.
+
+    Raises
+    ------
+    Unavailable
+        If no context can be made.
+    """
+    try:
+        from pvfiblets.engine.errors import EngineError
+        from pvfiblets.engine.standalone import bare_context
+
+        ctx = bare_context()
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    except EngineError as error:
+        raise Unavailable(str(error)) from error
+    options.driver = f"{ctx.info['GL_RENDERER']}, {ctx.info['GL_VERSION']}"
+    try:
+        with ctx:  # what was current before is so again afterwards
+            yield ctx
+    finally:
+        ctx.release()
+
+
+def clock_of(ctx: Any) -> tuple[Callable[[], float], str]:
+    """Return the clock that sees what a context's pictures cost, and its name as in :class:`.Timing`."""
+    if SOFTWARE.search(str(ctx.info["GL_RENDERER"])):
+        return time.process_time, "cpu"
+    return time.perf_counter, "wall"
+
+
+def turns_of(ctx: Any) -> Turns:
+    """Return turns that are timed by a context's clock; what they call must end with ``ctx.finish()``."""
+    return Turns(*clock_of(ctx))
+
+
+def timing(seconds: list[float], items: float, item: str, clock: str) -> Timing:
+    """Return what repeats of one call took, which handles so many items."""
+    return Timing(float(np.median(seconds)), min(seconds), max(seconds), len(seconds), float(items), item, clock)
