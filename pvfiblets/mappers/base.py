@@ -31,6 +31,7 @@ from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
+USUAL_DPI = 72  # of a vtkRenderWindow that nobody has changed
 
 
 class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
@@ -272,9 +273,13 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         return None
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window."""
+        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window.
+
+        Pictures with fewer dots per inch than usual have thinner lines, as they have smaller letters.
+        """
         enlarged = max(1.0, viewport[2] / max(1, renderer.GetSize()[0]))
-        style = Style(line_width=self._width * enlarged, values=self._colouring.point_source)
+        enlarged *= min(1.0, renderer.GetRenderWindow().GetDPI() / USUAL_DPI)
+        style = Style(line_width=max(1.0, self._width * enlarged), values=self._colouring.point_source)
         return styled(style, self._extras.values())
 
     @property

@@ -44,7 +44,7 @@ class SelectionActions(Actions):
         """
         if not isinstance(places, list) or not 1 <= len(places) <= 501:
             raise ValueError("a tool needs places in the picture")
-        width, height = self._app.stream.size
+        width, height = self._app.stream.settle()
         pixels = []
         for place in places:
             if not isinstance(place, list) or len(place) != 2:

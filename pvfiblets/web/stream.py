@@ -1,8 +1,9 @@
 """Pictures for browsers: drawn when something changed, coarse while the camera moves, full at rest.
 
 Nothing is drawn and nothing is sent while nothing changes. While the pointer drags, frames are coded at a low quality,
-and the next is drawn only when the last one has left for the browser; as soon as the pointer rests, the same pixels
-are coded once more at full quality, without drawing again.
+and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
+fewer pixels meanwhile, which the browser enlarges. As soon as the pointer rests, the whole picture comes at full
+quality; where it had all its pixels, without drawing again.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ logger = logging.getLogger("pvfiblets.web")
 REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
+SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
+REDUCED = 0.5  # of the width and the height of these
+BRISK = 0.25 * SLOW  # of a reduced frame; if less, all pixels can be drawn
 
 
 class PictureStream:
@@ -80,7 +84,10 @@ class PictureStream:
         self._streamer: Any = None
         self._wanted = asyncio.Event()
         self._moved = 0.0
-        self._size = (300, 300)
+        self._size = (300, 300)  # of the whole picture
+        self._drawn_at = 1.0  # of that size
+        self._moving_at = 1.0
+        self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
         self._pressed: set[str] = set()
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="pictures")
         self._task: asyncio.Task[None] | None = None
@@ -108,7 +115,7 @@ class PictureStream:
         wanted = max(int(size["w"] * scale), 16), max(int(size["h"] * scale), 16)
         if wanted != self._size:
             self._size = wanted
-            self._plotter.iren.interactor.UpdateSize(*wanted)
+            self._plotter.iren.interactor.UpdateSize(*self._pixels)
         self.request()  # always: a page that was reloaded has no picture yet
 
     def on_interaction(self, _origin: str, event: dict[str, Any]) -> None:
@@ -145,8 +152,9 @@ class PictureStream:
         width, height = float(event.get("w") or 0), float(event.get("h") or 0)
         if not (width > 0 and height > 0):
             return event
-        across, down = self._size[0] / width, self._size[1] / height
-        scaled = event | {"w": self._size[0], "h": self._size[1]}
+        columns, rows = self._pixels
+        across, down = columns / width, rows / height
+        scaled = event | {"w": columns, "h": rows}
         for name, factor in (("x", across), ("y", down)):
             if name in event:
                 scaled[name] = int(event[name] * factor)
@@ -173,9 +181,10 @@ class PictureStream:
             except Exception as error:  # noqa: BLE001 - as when somebody looks
                 self._failed(error)
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """The picture's width and height in pixels."""
+    def settle(self) -> tuple[int, int]:
+        """Have the whole picture drawn, if fewer pixels were drawn last, and return its width and height."""
+        if self._drawn_at < 1.0:
+            self._draw()
         return self._size
 
     @property
@@ -208,7 +217,7 @@ class PictureStream:
             started = time.monotonic()
             moving = self.moving
             try:
-                pixels = self._draw()
+                pixels = self._draw(self._moving_at if moving else 1.0)
                 self._after()
             except Exception as error:
                 logger.exception("drawing failed")
@@ -217,8 +226,13 @@ class PictureStream:
             coarse = moving and self.codec != "png"
             await self._send(pixels, self.moving_quality if coarse else self.still_quality)
             await self._drained()
-            if coarse and await self._rests():
-                await self._send(pixels, self.still_quality)
+            if moving and (coarse or self._drawn_at < 1.0) and await self._rests():
+                if self._drawn_at < 1.0:
+                    self.request()
+                else:
+                    await self._send(pixels, self.still_quality)
+            if moving:
+                self._moving_at = self._next()
             await asyncio.sleep(max(0.0, FASTEST - (time.monotonic() - started)))
 
     async def _rests(self) -> bool:
@@ -231,9 +245,40 @@ class PictureStream:
         while self._pending() > UNSENT:
             await asyncio.sleep(0.005)
 
-    def _draw(self) -> NDArray[np.uint8]:
+    @property
+    def _pixels(self) -> tuple[int, int]:
+        """Width and height of what is drawn now."""
+        width, height = self._size
+        return max(round(width * self._drawn_at), 16), max(round(height * self._drawn_at), 16)
+
+    def _next(self) -> float:
+        """Return the share of the size at which the next frame of the moving camera is drawn."""
+        last = list(self.times)[-2:]
+        if self._drawn_at == 1.0:
+            return REDUCED if len(last) == 2 and min(last) > SLOW else 1.0
+        return 1.0 if len(last) == 2 and max(last) < BRISK else REDUCED
+
+    def _resize(self, share: float) -> None:
+        """Draw at a share of the size from now on, and let the pointer be where it was."""
+        interactor = self._plotter.iren.interactor
+        before, last, place = self._pixels, interactor.GetLastEventPosition(), interactor.GetEventPosition()
+        self._drawn_at = share
+        self.times.clear()
+        samples, dpi = self._sharp
+        # Letters and lines keep their size on the page. Enlarged pixels have no use for samples.
+        self._plotter.render_window.SetDPI(max(1, round(dpi * share)))
+        self._plotter.render_window.SetMultiSamples(samples if share == 1.0 else 0)
+        interactor.UpdateSize(*self._pixels)
+        for at in (last, place):  # an event moves the place before to the last
+            interactor.SetEventPosition(
+                *(int(k * now / then) for k, now, then in zip(at, self._pixels, before, strict=True))
+            )
+
+    def _draw(self, share: float = 1.0) -> NDArray[np.uint8]:
         from vtkmodules.util.numpy_support import vtk_to_numpy
 
+        if share != self._drawn_at:
+            self._resize(share)
         started = time.perf_counter()
         self._plotter.render()
         self._grab.Modified()

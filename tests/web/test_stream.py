@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+import io
+
+import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 
-from pvfiblets.web.stream import PictureStream
+from pvfiblets.web.stream import REST, PictureStream, encode
 
 
 def test_a_session_is_warm_before_anybody_looks(plotter):
@@ -34,15 +39,136 @@ def test_what_fails_while_warming_is_told(plotter, monkeypatch):
 
 @pytest.mark.parametrize("codec", ["jpeg", "png", "webp"])
 def test_pictures_of_every_codec_are_pictures(plotter, codec):
-    import io
-
-    import numpy as np
-    from PIL import Image
-
-    from pvfiblets.web.stream import encode
-
     pixels = np.zeros((40, 60, 3), np.uint8)
     pixels[:20] = 200, 30, 90
     found = np.asarray(Image.open(io.BytesIO(encode(pixels, codec, 92))).convert("RGB")).astype(int)
     assert found.shape == pixels.shape
     assert abs(found - pixels)[2:18].max() <= (0 if codec == "png" else 12)
+
+
+def slow_stream(plotter, seconds=1.0, **settings):
+    """Return a stream whose frames seem to take some time."""
+    stream = PictureStream(plotter, "view", **settings)
+    stream.update_size("", {"w": 200, "h": 120, "p": 1.0})
+    draw = stream._draw
+
+    def measured(share=1.0):
+        pixels = draw(share)
+        stream.times[-1] = seconds
+        return pixels
+
+    stream._draw = measured
+    return stream
+
+
+class Streamer:
+    """Notes what is sent."""
+
+    def __init__(self):
+        self.sizes = []
+        self.qualities = []
+
+    def push_content(self, _name, meta, _content):
+        self.sizes.append((meta["w"], meta["h"]))
+        self.qualities.append(meta["quality"])
+
+
+def drag(stream, streamer, moves=6):
+    """Drag over the picture, a frame a move, let go and wait until nothing more comes."""
+
+    def event(kind, x):
+        keys = {"ctrlKey": False, "altKey": False, "shiftKey": False}
+        return {"type": kind, "x": x, "y": 50, "w": 200, "h": 120, **keys}
+
+    async def run():
+        stream.set_streamer(streamer)
+        stream.on_interaction("", event("LeftButtonPress", 40))
+        for k in range(moves):
+            sent = len(streamer.sizes)
+            stream.on_interaction("", event("MouseMove", 40 + 4 * k))
+            async with asyncio.timeout(30):
+                while len(streamer.sizes) == sent:
+                    await asyncio.sleep(0.002)
+        stream.on_interaction("", event("LeftButtonRelease", 40 + 4 * moves))
+        async with asyncio.timeout(30):
+            while streamer.sizes[-1] != (200, 120) or streamer.qualities[-1] != stream.still_quality:
+                await asyncio.sleep(0.01)
+        await asyncio.sleep(2 * REST)
+        await stream.close()
+
+    asyncio.run(run())
+
+
+def test_slow_scenes_have_fewer_pixels_while_the_camera_moves_and_all_at_rest(plotter):
+    plotter.add_mesh(pv.Sphere())
+    stream, streamer = slow_stream(plotter), Streamer()
+    drag(stream, streamer)
+    assert streamer.sizes[0] == (200, 120)
+    assert (100, 60) in streamer.sizes
+    assert streamer.sizes[-1] == (200, 120)
+    assert streamer.qualities[-1] == stream.still_quality
+    assert tuple(plotter.render_window.GetSize()) == (200, 120)
+    assert plotter.render_window.GetMultiSamples() == stream._sharp[0]
+
+
+def test_quick_scenes_keep_their_pixels(plotter):
+    plotter.add_mesh(pv.Sphere())
+    stream, streamer = slow_stream(plotter, 0.01), Streamer()
+    drag(stream, streamer)
+    assert set(streamer.sizes) == {(200, 120)}
+    assert stream.frames <= len(streamer.sizes)  # the last is coded again, not drawn again
+
+
+def test_fewer_pixels_turn_the_camera_as_far(plotter):
+    """The same way of the pointer, over pictures of either size."""
+    plotter.add_mesh(pv.Cube())
+    places = []
+    for seconds in (0.01, 1.0):
+        plotter.camera_position = "xy"
+        plotter.reset_camera()
+        stream = slow_stream(plotter, seconds)
+        stream._moving_at = 0.5 if seconds == 1.0 else 1.0
+        drag(stream, Streamer(), moves=8)
+        places.append(np.array(plotter.camera.position))
+    moved = np.linalg.norm(places[0] - np.array([0.0, 0.0, np.linalg.norm(places[0])]))
+    assert moved > 0.5
+    np.testing.assert_allclose(places[0], places[1], atol=0.05 * moved)
+
+
+def test_a_picture_that_is_asked_for_is_whole(plotter):
+    plotter.add_mesh(pv.Sphere())
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 200, "h": 120, "p": 1.0})
+    whole = stream._draw()
+    assert stream._draw(0.5).shape == (60, 100, 3)
+    assert stream.settle() == (200, 120)
+    assert tuple(plotter.render_window.GetSize()) == (200, 120)
+    stream._draw(0.5)
+    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(stream.picture()))), whole)
+
+
+def test_letters_keep_their_size_on_the_page(plotter):
+    """Of half the pixels letters cover about the same share."""
+    plotter.background_color = "white"
+    plotter.add_text("tractogram", font_size=30, color="black", position=(0.1, 0.4), viewport=True)
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 400, "h": 240, "p": 1.0})
+    whole, reduced = stream._draw(), stream._draw(0.5)
+    shares = [float((pixels < 128).any(-1).mean()) for pixels in (whole, reduced)]
+    columns = [
+        float(np.ptp(np.nonzero((pixels < 128).any((0, 2)))[0])) / pixels.shape[1] for pixels in (whole, reduced)
+    ]
+    assert shares[1] == pytest.approx(shares[0], rel=0.25)
+    assert columns[1] == pytest.approx(columns[0], rel=0.1)
+
+
+def test_wide_lines_keep_their_width_on_the_page(plotter):
+    line = np.stack([np.linspace(-1.0, 1.0, 50), np.zeros(50), np.zeros(50)], 1)
+    plotter.add_fiblets([line], line_width=8, color="black")
+    plotter.background_color = "white"
+    plotter.view_xy()
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 400, "h": 240, "p": 1.0})
+    shares = [float((stream._draw(share) < 128).any(-1).mean()) for share in (1.0, 0.5)]
+    assert shares[0] > 0.01
+    assert shares[1] == pytest.approx(shares[0], rel=0.1)
