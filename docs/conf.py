@@ -27,7 +27,11 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
+    "mathml",
 ]
+html_math_renderer = "mathml"
+myst_enable_extensions = ["dollarmath"]
+myst_update_mathjax = False
 myst_heading_anchors = 4
 exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.py", "gallery/*.py.md5", "gallery/*.zip"]
 default_role = "py:obj"
