@@ -23,7 +23,6 @@ from orbit import card_slug, context, machine, make_brain, write
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # the tests' server and pages
 
-STEP = 0.5  # mm
 GOALS = {"frames_per_second": 8.0, "first_picture_s": 3.0}
 """Of 6 million segments while dragging, and of a file that is ready."""
 
@@ -39,6 +38,7 @@ def main() -> None:
     """Measure, and write the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--millions", type=float, nargs="+", default=(1.0, 6.0, 60.0), help="segments")
+    parser.add_argument("--steps", type=float, nargs="+", default=(0.1, 0.5), help="mm a segment")
     parser.add_argument("--seconds", type=float, default=10.0, help="of dragging")
     parser.add_argument("--settle", type=float, default=6.0, help="that the server has before a page opens")
     parser.add_argument("--touches", type=int, default=10, help="single moves, whose latency is measured")
@@ -53,7 +53,7 @@ def main() -> None:
         folder.mkdir(parents=True, exist_ok=True)
         results, many = measure(options, folder)
     ctx = context()
-    about = {**machine(ctx), "size": list(options.size), "seconds": options.seconds, "step_mm": STEP, "together": many}
+    about = {**machine(ctx), "size": list(options.size), "seconds": options.seconds, "together": many}
     write(options.output / f"web-{card_slug(ctx)}", about, results, table(about, results, many), plot)
 
 
@@ -66,22 +66,24 @@ def measure(options: Any, folder: Path) -> tuple[list[dict[str, Any]], dict[str,
     results, many = [], None
     with sync_api.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=chromium(), args=list(FLAGS))
-        for millions in options.millions:
-            path = made(folder, millions)
-            results.append({"millions": millions, "file_bytes": path.stat().st_size, **one(browser, path, options)})
-            print(results[-1], flush=True)
+        for step in options.steps:
+            for millions in options.millions:
+                path = made(folder, millions, step)
+                data = {"millions": millions, "step_mm": step, "file_bytes": path.stat().st_size}
+                results.append({**data, **one(browser, path, options)})
+                print(results[-1], flush=True)
         if options.sessions:
-            many = together(browser, made(folder, min(options.millions)), options)
+            many = together(browser, made(folder, min(options.millions), max(options.steps)), options)
             print(many, flush=True)
         browser.close()
     return results, many
 
 
-def made(folder: Path, millions: float) -> Path:
-    """Return a compressed made-up brain of so many segments."""
-    home = folder / f"{millions:g}M"
+def made(folder: Path, millions: float, step: float) -> Path:
+    """Return a compressed made-up brain of so many segments of so many mm."""
+    home = folder / f"{millions:g}M-{step:g}mm"
     home.mkdir(exist_ok=True)
-    make_brain(1e6 * millions, STEP, home, "hilbert")
+    make_brain(1e6 * millions, step, home, "hilbert")
     (path,) = home.glob("*.fiblets")
     return path
 
@@ -219,6 +221,7 @@ def told(row: dict[str, Any]) -> str:
     low, high = row["latency_ms_spread"]
     cells = (
         f"{row['millions']:g} M",
+        f"{row['step_mm']:g}",
         f"{row['file_bytes'] / 1e6:.1f}",
         f"{row['view'][0]}×{row['view'][1]}",
         f"{row['first_picture_s']:.1f}",
@@ -238,20 +241,22 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
         f"# pvfiblets serve in a browser on {about['card']}",
         "",
         f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}. Server and Chromium share "
-        f"them, over loopback; a window of {width}×{height}, of which the panels leave the view. Streamlines of "
-        f"{about['step_mm']:g} mm a segment, drawn as lines, dragged for {about['seconds']:g} s.",
+        f"them, over loopback; a window of {width}×{height}, of which the panels leave the view. Streamlines drawn as "
+        f"lines, dragged for {about['seconds']:g} s.",
         "",
         "*first*: seconds from the address to a picture with something in it, of a server that is up for a while; "
         "*latency*: ms from one move of the pointer to the first picture after it, 10th to 90th percentile; *rest*: "
         "messages in 3 s without a change; *memory*: MB of a session's process, and its share of what processes share.",
         "",
-        "| segments | file, MB | view | first, s | frames a second | latency, ms | kB a frame | rest | memory, MB |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| segments | mm each | file, MB | view | first, s | frames a second | latency, ms | kB a frame | rest | "
+        "memory, MB |",
+        "|---|---|---|---|---|---|---|---|---|---|",
         *map(told, results),
         "",
     ]
     said += [
-        f"The goals: {GOALS['frames_per_second']:g} frames a second while 6 M segments are dragged, "
+        f"The goals, of {row['step_mm']:g} mm: {GOALS['frames_per_second']:g} frames a second while 6 M segments are "
+        f"dragged, "
         f"{kept(row['frames_per_second'] >= GOALS['frames_per_second'])}; the first picture within "
         f"{GOALS['first_picture_s']:g} s, {kept(row['first_picture_s'] <= GOALS['first_picture_s'])}."
         for row in results
@@ -277,14 +282,18 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
     import matplotlib.pyplot as plt
 
     figure, left = plt.subplots(figsize=(6, 4))
-    sizes = [row["millions"] for row in results]
-    left.loglog(sizes, [row["frames_per_second"] for row in results], "o-", color="tab:blue")
+    right = left.twinx()
+    for step, style in zip(sorted({row["step_mm"] for row in results}), ("-", "--", ":", "-."), strict=False):
+        rows = [row for row in results if row["step_mm"] == step]
+        sizes = [row["millions"] for row in rows]
+        rates, waits = ([row[name] for row in rows] for name in ("frames_per_second", "latency_ms"))
+        left.loglog(sizes, rates, "o" + style, color="tab:blue", label=f"{step:g} mm")
+        right.loglog(sizes, waits, "s" + style, color="tab:red")
     left.axhline(GOALS["frames_per_second"], color="tab:blue", linestyle=":")
     left.set_title(f"dragged in a window of {about['size'][0]}×{about['size'][1]}")
     left.set_xlabel("segments, millions")
     left.set_ylabel("frames a second", color="tab:blue")
-    right = left.twinx()
-    right.loglog(sizes, [row["latency_ms"] for row in results], "s--", color="tab:red")
+    left.legend(title="a segment")
     right.set_ylabel("latency, ms", color="tab:red")
     figure.tight_layout()
     figure.savefig(path, dpi=120)
