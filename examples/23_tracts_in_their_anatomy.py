@@ -22,7 +22,7 @@ from pvfiblets.raycast import RaycastVolume, as_raycast_volume
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.synthetic.vessels import brain_like
 
-DATA = Path(os.environ.get("PVFIBLETS_DATA", Path(__file__).resolve().parents[2] / "shared" / "data"))
+DATA = Path(os.environ.get("PVFIBLETS_DATA", Path(sys.argv[0]).resolve().parents[2] / "shared" / "data"))
 TEMPLATE = DATA / "nv_MNI152_2009_template.nii.gz"
 WINDOW = regions.Box((4, 120, -14, 160, 6, 120))  # what is cut out, mm: right, front and up
 FACES = regions.Box((1.5, 120, -16.5, 160, 3.5, 120)) - WINDOW  # what lies just behind the cut
