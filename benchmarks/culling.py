@@ -19,6 +19,8 @@ from pathlib import Path
 import numpy as np
 from orbit import add_places, card_slug, context, machine, make_brain, segments_of, view, write
 
+from pvfiblets.report.culling_pictures import streamlines_of
+
 CULLINGS = ("none", "coverage", "two-phase")
 STILL = 0.001
 
@@ -72,7 +74,7 @@ def measure_all(ctx, fiblets, options) -> list[dict]:
                 if frame < 2:
                     continue
                 times[culling].append(time.perf_counter() - start)
-                shown = streamlines(picture)
+                shown = streamlines_of(picture)
                 if right is None:
                     right = shown
                     covered.append(int((right >= 0).sum()))
@@ -92,14 +94,6 @@ def measure_all(ctx, fiblets, options) -> list[dict]:
             renderer.release()
             print(results[-1], flush=True)
     return results
-
-
-def streamlines(picture) -> np.ndarray:
-    """Return the streamline that each pixel shows, -1 where none."""
-    width, height = picture.size
-    depth = np.frombuffer(picture.depth.read(), "<u4")
-    ids = np.frombuffer(picture.ids.read(), "<u4").reshape(-1, 2)[:, 0]
-    return np.where(depth == 0xFFFFFFFF, -1, ids.astype(np.int64)).reshape(height, width)
 
 
 def table(about: dict, results: list[dict]) -> str:

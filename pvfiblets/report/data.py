@@ -16,7 +16,7 @@ from pvfiblets.streamlines import Streamlines
 from .record import LeftOut
 from .study import Options
 
-__all__ = ["DataSet", "data_sets", "files_of", "thinned"]
+__all__ = ["DataSet", "data_sets", "file_sets", "files_of", "thinned"]
 
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 0.5)
@@ -43,12 +43,17 @@ def data_sets(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
         for step in QUICK_STEPS if options.quick else STEPS:
             kind = "noisy" if noisy else "smooth"
             yield DataSet(f"{kind}, {step:g} mm", kind, made_up(step, noisy, options.points, options.seed))
+    yield from file_sets(options, options.points, left_out)
+
+
+def file_sets(options: Options, points: int, left_out: list[LeftOut]) -> Iterator[DataSet]:
+    """Read one file after the other, the largest first, each cut to so many points."""
     paths, reason = files_of(options.files)
     if reason:
         left_out.append(LeftOut("real files", reason))
     for path in paths:
         try:
-            streamlines, note = thinned(formats.iter_chunks(path), options.points)
+            streamlines, note = thinned(formats.iter_chunks(path), points)
         except (ValueError, OSError) as error:
             left_out.append(LeftOut(path.name, " ".join(str(error).replace(str(path), path.name).split())))
             continue

@@ -21,6 +21,7 @@ __all__ = ["MODULES", "PLANNED", "chosen_names", "find"]
 MODULES = {
     "codec": "pvfiblets.report.codec",
     "decode": "pvfiblets.report.decode",
+    "culling": "pvfiblets.report.culling",
 }
 PLANNED = {
     "culling": "benchmarks/culling.py",

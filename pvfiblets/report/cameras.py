@@ -1,0 +1,166 @@
+"""Cameras of the studies that draw: orbits around data, and the rays of their pixels in float64."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "orbit", "unit"]
+
+VERTICAL_ANGLE = 45.0  # degrees; this and the distances are those of Russig et al. 2020, section 4
+VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
+ELEVATION = 15.0  # degrees above the plane of the orbit
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A camera that looks at a place: what VTK and bare OpenGL need to show the same picture."""
+
+    size: tuple[int, int]
+    eye: Array
+    centre: Array
+    near: float
+    far: float
+
+    @property
+    def pixels(self) -> float:
+        """What 1 mm takes in the picture at a distance of 1 mm."""
+        return 0.5 * self.size[1] / math.tan(math.radians(VERTICAL_ANGLE / 2))
+
+    @property
+    def backwards(self) -> Array:
+        """From the centre to the eye, a unit vector."""
+        away = self.eye - self.centre
+        return away / np.linalg.norm(away)
+
+    @property
+    def world_to_camera(self) -> Array:
+        """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
+        right = np.cross([0.0, 0.0, 1.0], self.backwards)
+        right /= np.linalg.norm(right)
+        matrix = np.eye(4)
+        matrix[:3, :3] = right, np.cross(self.backwards, right), self.backwards
+        matrix[:3, 3] = -matrix[:3, :3] @ self.eye
+        return matrix
+
+    @property
+    def model_view_projection(self) -> Array:
+        """(4, 4) data coordinates to OpenGL clip coordinates."""
+        t, near, far = 1.0 / math.tan(math.radians(VERTICAL_ANGLE / 2)), self.near, self.far
+        projection = np.zeros((4, 4))
+        projection[0, 0], projection[1, 1] = t * self.size[1] / self.size[0], t
+        projection[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
+        projection[3, 2] = -1.0
+        return projection @ self.world_to_camera
+
+    def aim(self, plotter: Any) -> None:
+        """Make a plotter look through this camera."""
+        camera = plotter.camera
+        camera.position, camera.focal_point, camera.up = self.eye, self.centre, (0.0, 0.0, 1.0)
+        camera.view_angle = VERTICAL_ANGLE
+        camera.clipping_range = self.near, self.far
+
+
+def orbit(tubes: Any, view: str, frames: int, size: tuple[int, int]) -> list[Camera]:
+    """Return cameras all around a set: *far*, where all of it fits into the picture, or *close*, at a third of that."""
+    box = np.array(tubes.bounds).reshape(3, 2)
+    centre = box.mean(axis=1)
+    radius = float((np.linalg.norm(tubes.points - centre, axis=1) + tubes.radius).max())
+    narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
+    distance = VIEWS[view] * radius / math.sin(math.atan(narrow))
+    near, far = max(distance - 1.02 * radius, 2e-3 * radius), distance + 1.02 * radius
+    up = math.radians(ELEVATION)
+    cameras = []
+    for turn in 2.0 * np.pi * np.arange(frames) / frames + 0.3:
+        direction = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
+        cameras.append(Camera((size[0], size[1]), centre + distance * direction, centre, near, far))
+    return cameras
+
+
+def unit(vectors: Array) -> Array:
+    """Return vectors, (..., 3), at length 1."""
+    found: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Lens:
+    """A camera of any angle, and its pixels' rays in float64.
+
+    Attributes
+    ----------
+    size : tuple of int
+    eye : numpy.ndarray
+        (3,) mm.
+    backwards : numpy.ndarray
+        (3,) unit vector from what is looked at to the eye; not upright.
+    slant : float
+        Tangent of half the angle from top to bottom.
+    near, far : float
+        mm from the eye's plane.
+    """
+
+    size: tuple[int, int]
+    eye: Array
+    backwards: Array
+    slant: float
+    near: float
+    far: float
+
+    @classmethod
+    def of(cls, camera: Camera) -> Lens:
+        """Return the lens of an orbit's camera."""
+        slant = float(np.tan(np.radians(VERTICAL_ANGLE / 2)))
+        return cls(camera.size, camera.eye, camera.backwards, slant, camera.near, camera.far)
+
+    @property
+    def axes(self) -> Array:
+        """(3, 3): rows to the right, up, backwards."""
+        right = unit(np.cross([0.0, 0.0, 1.0], self.backwards))
+        return np.array([right, np.cross(self.backwards, right), self.backwards])
+
+    @property
+    def pixel(self) -> float:
+        """What a pixel takes at 1 mm from the eye, mm."""
+        return 2.0 * self.slant / self.size[1]
+
+    @property
+    def matrix(self) -> Array:
+        """(4, 4) data coordinates to OpenGL clip coordinates."""
+        to_camera = np.eye(4)
+        to_camera[:3, :3] = self.axes
+        to_camera[:3, 3] = -self.axes @ self.eye
+        projection = np.zeros((4, 4))
+        projection[0, 0], projection[1, 1] = self.size[1] / self.size[0] / self.slant, 1.0 / self.slant
+        depth = self.far - self.near
+        projection[2, 2:] = -(self.far + self.near) / depth, -2.0 * self.far * self.near / depth
+        projection[3, 2] = -1.0
+        return projection @ to_camera
+
+    def seen(self, points: Array) -> Array:
+        """Return (n, 3): tangents to the right and up, and distance in front of the eye."""
+        local = (points - self.eye) @ self.axes.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.column_stack([local[:, :2] / -local[:, 2:], -local[:, 2]])
+
+    def rays(self, pixels: npt.NDArray[np.int64]) -> tuple[Array, Array]:
+        """Return unit directions (n, 3) of pixels, numbered row by row from below, and mm forwards by mm of ray."""
+        width, height = self.size
+        x, y = pixels % width + 0.5, pixels // width + 0.5
+        local = np.stack([self.pixel * (x - width / 2), self.pixel * (y - height / 2), -np.ones(len(pixels))], axis=1)
+        forwards = 1.0 / np.linalg.norm(local, axis=1)
+        return unit(local @ self.axes), forwards
+
+    def depth(self, w: Array) -> Array:
+        """Return window depth, 0 to 1, of what lies w in front of the eye."""
+        return self.far / (self.far - self.near) * (1.0 - self.near / w)
+
+    def distance(self, farness: Array) -> Array:
+        """Return the mm in front of the eye of 1 less a window depth."""
+        return self.far * self.near / (farness * (self.far - self.near) + self.near)

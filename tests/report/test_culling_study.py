@@ -1,0 +1,175 @@
+"""The study of culling on very little data, and what it measures by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pvfiblets import formats
+from pvfiblets.codec.reference import first_frame
+from pvfiblets.engine import standalone
+from pvfiblets.engine.errors import EngineError
+from pvfiblets.report import culling, data
+from pvfiblets.report.culling_pictures import Flight, Shown, apart, averaged, colours, directions, errors, views
+from pvfiblets.report.record import LeftOut
+from pvfiblets.report.study import Budget, Options, Unavailable
+
+
+def little(**rest):
+    return Options(quick=True, repeats=1, log=lambda line: None, machine="m", **rest)
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr(culling, "QUICK_SEGMENTS", 20_000)
+    monkeypatch.setattr(culling, "QUICK_SIZE", (96, 64))
+    monkeypatch.setattr(culling, "STEP", 0.5)
+    monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
+
+
+def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
+    formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 2000, 0))
+    left = []
+    records = list(culling.STUDY.run(little(files=(tmp_path,)), left))
+    assert not left
+    scenes = {record.data for record in records}
+    assert scenes == {
+        "brain, far, 1.14° a frame", "brain, inside, 1.14° a frame", "some.tck, far, 1.14° a frame",
+    }  # fmt: skip
+    labels = {f"{way.name} ({way.setting})" for way in culling.ways(True)}
+    for scene in scenes:
+        found = {record.label: record for record in records if record.data == scene}
+        assert set(found) == labels
+        assert [record.label for record in found.values() if record.default] == ["two-phase (0.5 px)"]
+        for record in found.values():
+            assert all(math.isfinite(figure.value) for figure in record.errors.values())
+            assert record.costs["memory"].value > 96 * 64 * 24 / 1e6
+            assert 0.0 < record.costs["drawn"].value <= 100.0
+            assert record.times["draw"].item == "frame"
+            assert record.value("times/draw") > 0.0
+        right = found["none (every point)"].errors
+        assert {right[name].value for name in ("wrong", "coverage", "colour", "wrong by culling")} == {0.0}
+        assert right["colour, finely"].value > 0.0
+        # Two-phase culling changes no pixel: its errors are those of the level of detail, to the last digit.
+        for setting in ("0.5 px", "every point"):
+            plain, culled = (found[f"{name} ({setting})"].errors for name in ("none", "two-phase"))
+            assert plain == culled
+            assert culled["wrong by culling"].value == 0.0
+        fewer = found["fewer streamlines (1 of 2)"]
+        assert "wrong by culling" not in fewer.errors
+        assert fewer.errors["coverage"].value > found["two-phase (0.5 px)"].errors["coverage"].value
+        assert fewer.costs["drawn"].value < 0.7 * found["none (0.5 px)"].costs["drawn"].value
+
+
+def test_what_time_did_not_suffice_for_is_named(gl, small):
+    left = []
+    assert list(culling.STUDY.run(little(budget=Budget(0.0)), left)) == []
+    late = [item.what for item in left if item.reason == "the time given was used up"]
+    assert late == ["brain, far, 1.14° a frame: everything", "brain, inside, 1.14° a frame: everything"]
+    assert "real files" in {item.what for item in left}
+
+
+def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monkeypatch):
+    monkeypatch.setattr(culling, "QUICK_FLIGHTS", ())
+    monkeypatch.setattr(culling, "ways", lambda quick: [])
+    for name in ("a", "b"):
+        formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 800, 0))
+    left = []
+    assert list(culling.STUDY.run(little(files=(tmp_path,)), left)) == []
+    assert left == [LeftOut("smaller files", "the largest are enough to see what culling does")]
+
+
+def test_without_opengl_it_is_unavailable(small, monkeypatch):
+    def none():
+        raise EngineError("no OpenGL 3.2 or later could be started")
+
+    monkeypatch.setattr(standalone, "bare_context", none)
+    with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
+        list(culling.STUDY.run(little(), []))
+
+
+# ----------------------------------------------------------------------------------------------------- what it measures
+
+
+def picture(streamline, tangent=None):
+    streamline = np.asarray(streamline, np.int64)
+    return Shown(streamline, np.zeros(streamline.shape, np.uint32) if tangent is None else np.asarray(tangent))
+
+
+def test_errors_are_shares_of_what_the_right_picture_covers():
+    right = picture([[1, 2], [3, 4], [-1, -1]])
+    shown = picture([[1, 9], [-1, 4], [5, -1]])
+    found = errors([shown, right], [right, right])
+    assert found["wrong"].value == pytest.approx(100.0 * 3 / 8)
+    assert found["coverage"].value == pytest.approx(100.0 * 2 / 8)
+    assert {figure.unit for figure in found.values()} == {"%"}
+    nothing = picture([[-1]])
+    assert {figure.value for figure in errors([nothing], [nothing]).values()} == {0.0}
+
+
+def test_colours_are_those_of_directions_and_black_elsewhere():
+    along_x, along_y = 0, 32767
+    found = colours(picture([[7, 7, -1]], np.array([[along_x, along_y, along_y]], np.uint32)))
+    np.testing.assert_allclose(found[0], [[1, 0, 0], [0, 1, 0], [0, 0, 0]], atol=1e-6)
+    # Of three pixels one shows nothing in both; x for y is two thirds of white apart.
+    other = colours(picture([[7, 7, -1]], np.array([[along_y, along_y, along_x]], np.uint32)))
+    assert apart([found], [other]).value == pytest.approx(100.0 * (2 / 3) / 2)
+    assert apart([found], [found]).value == 0.0
+
+
+def test_directions_are_those_that_the_codec_packs():
+    rng = np.random.default_rng(0)
+    words = np.array([u & 0xFFFF | (v & 0xFFFF) << 16 for u, v in rng.integers(-32767, 32768, (200, 2)).tolist()])
+    w, x, y, z = np.array([first_frame(int(word))[1] for word in words]).T
+    forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
+    np.testing.assert_allclose(directions(words), forward, atol=1e-6)
+
+
+def test_samples_of_a_pixel_are_averaged():
+    fine = np.arange(4 * 6 * 3, dtype=np.float32).reshape(4, 6, 3)
+    found = averaged(fine, 2)
+    assert found.shape == (2, 3, 3)
+    np.testing.assert_allclose(found[1, 2], fine[2:4, 4:6].reshape(4, 3).mean(axis=0))
+
+
+@pytest.mark.parametrize("size", [(160, 90), (90, 160)])
+def test_cameras_turn_around_the_middle(size):
+    bounds = (10.0, 30.0, -5.0, 5.0, 100.0, 130.0)
+    corners = np.array(np.meshgrid(*np.reshape(bounds, (3, 2)), [1.0])).reshape(4, -1).T
+    for kind, whole in (("far", True), ("close", False), ("inside", False)):
+        path = views(bounds, kind, 20.0, 3, size)
+        assert [view.size for view in path] == [size] * 3
+        clips = [corners @ view.model_view_projection.T for view in path]
+        places = np.array(
+            [np.abs(clip[:, :2] / clip[:, 3:]).max() if (clip[:, 3] > 0).all() else 9.0 for clip in clips]
+        )
+        assert (places < 1.0).all() == whole
+        eyes = [np.linalg.svd(view.model_view_projection[[0, 1, 3]])[2][-1] for view in path]
+        eyes = [eye[:3] / eye[3] - np.reshape(bounds, (3, 2)).mean(axis=1) for eye in eyes]
+        flat = [eye[:2] / np.linalg.norm(eye[:2]) for eye in eyes]
+        assert np.degrees(np.arccos(flat[0] @ flat[1])) == pytest.approx(20.0)
+        inside = (np.abs(eyes[0]) < [10.0, 5.0, 15.0]).all()
+        assert inside == (kind == "inside")
+
+
+def test_every_picture_of_a_flight_is_one_step_from_the_one_before(monkeypatch):
+    seen = []
+
+    class Renderer:
+        def render(self, view, style):
+            seen.append(view)
+
+    class Context:
+        def finish(self):
+            seen.append("done")
+
+    from pvfiblets.report import culling_pictures
+
+    monkeypatch.setattr(culling_pictures, "shown", lambda buffer: None)
+    flight = Flight(Context(), Renderer(), [0, 1, 2], None)
+    flight.pictures()
+    flight()
+    flight()
+    assert seen == [0, 1, 2, 1, "done", 0, "done", 1, "done", 2, "done"]
