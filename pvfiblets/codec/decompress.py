@@ -11,7 +11,6 @@ import numpy.typing as npt
 from ..errors import FormatError
 from ..ragged import blocks
 from ..streamlines import Streamlines
-from . import decode_kernels
 from .archive import forget
 from .layout import MAX_POINTS, PAGE_BITS, unpack
 from .places import Places, places_of
@@ -73,6 +72,8 @@ def decode_fiblets(
     p = fiblets.parameters
     low = fiblets.anchors_low
     arrays = (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1]))
+    from . import decode_kernels  # compiled code: opening and drawing a file need none
+
     damaged = decode_kernels.decode(
         which,
         destination,

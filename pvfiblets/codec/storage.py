@@ -19,7 +19,6 @@ import numpy.typing as npt
 from ..errors import FormatError
 from ..streamlines import Streamlines
 from .archive import Member, array_member, check_members, open_archive, write_archive
-from .compress import compress
 from .fibletset import FibletSet
 from .layout import PAGE
 from .parameters import Parameters
@@ -256,6 +255,8 @@ def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamli
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     """Compress with default settings, every per-point array kept at one byte a point, and save."""
+    from .compress import compress
+
     compress(streamlines, per_point=tuple(streamlines.per_point)).save(path)
 
 

@@ -10,9 +10,25 @@ mappers resolve into VTK's picture. The shader sources are in the repository's `
 
 from __future__ import annotations
 
-from .errors import EngineError
-from .gbuffer import GBuffer
-from .renderer import FibletRenderer
-from .view import Style, View
+from typing import TYPE_CHECKING
+
+from ..later import names_from
+
+if TYPE_CHECKING:
+    from .errors import EngineError
+    from .gbuffer import GBuffer
+    from .renderer import FibletRenderer
+    from .view import Style, View
+
 
 __all__ = ["EngineError", "FibletRenderer", "GBuffer", "Style", "View"]
+
+_HOME = {
+    "EngineError": "errors",
+    "FibletRenderer": "renderer",
+    "GBuffer": "gbuffer",
+    "Style": "view",
+    "View": "view",
+}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)

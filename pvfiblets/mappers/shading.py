@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
-from pvfiblets.engine.effects.ambient_occlusion import MAX_SAMPLES
-from pvfiblets.engine.effects.halos import WIDEST
 from pvfiblets.mappers.extras import Draw
 from pvfiblets.mappers.tubes import normals_to_view
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
 
 __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
 
@@ -113,6 +113,8 @@ class AmbientOcclusion(_Piece):
     def __post_init__(self) -> None:
         if self.radius is not None:
             object.__setattr__(self, "radius", positive(self.radius, "radius of ambient occlusion", "mm"))
+        from pvfiblets.engine.effects.ambient_occlusion import MAX_SAMPLES
+
         if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:
             raise ValueError(
                 f"samples of ambient occlusion is {self.samples!r}; give a whole number from 1 to {MAX_SAMPLES}"
@@ -122,6 +124,8 @@ class AmbientOcclusion(_Piece):
 
     def make(self, ctx: Any) -> AmbientOcclusionPass:
         """Make the passes."""
+        from pvfiblets.engine.effects import AmbientOcclusionPass
+
         return AmbientOcclusionPass(ctx)
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
@@ -224,6 +228,8 @@ class Halos(_Piece):
 
     def make(self, ctx: Any) -> HaloPass:
         """Make the passes."""
+        from pvfiblets.engine.effects import HaloPass
+
         return HaloPass(ctx)
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
@@ -288,6 +294,8 @@ class Silhouette(_Piece):
 
     def make(self, ctx: Any) -> OutlinePass:
         """Make the passes."""
+        from pvfiblets.engine.effects import OutlinePass
+
         return OutlinePass(ctx)
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
@@ -307,6 +315,8 @@ class Silhouette(_Piece):
 
 def lens_of(draw: Draw) -> Lens:
     """Return what effects must know of a draw's camera."""
+    from pvfiblets.engine.effects import Lens
+
     return Lens(draw.view.size, draw.frame.projection)
 
 
@@ -335,6 +345,8 @@ def background(renderer: Any) -> tuple[Colour, Colour]:
 
 def widen(program: Any, draw: Draw) -> None:
     """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
+    from pvfiblets.engine.effects.halos import WIDEST
+
     margin = draw.style.line_width / 2.0 + 2.0 + max(WIDEST, MAX_OUTLINE * _enlarged(draw))
     slack = draw.fiblets.promise + (draw.style.radius or 0.0)
     rectangle = draw.frame.rectangle(draw.fiblets.bounds, slack, margin)

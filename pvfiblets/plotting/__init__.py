@@ -8,19 +8,27 @@ points (see ``pyproject.toml``), which name the modules ``component``, ``spline_
 ``halo_component``, ``halo_point_component``, ``raycast_component`` and ``accessor`` here. ``files``
 serves ``pyvista.read`` and ``save``. The actor's colours are found in ``scalars`` and made into a
 look-up table in ``colours``; the drawing is the mapper's.
+
+Importing this package registers the components, which import actors, mappers and the engine when
+something is added: a scene of lines loads no volumes, and a file that is compressed already no compiler.
 """
 
 from __future__ import annotations
 
-from pvfiblets.plotting.actor import FibletActor
+from typing import TYPE_CHECKING
+
+from pvfiblets.later import names_from
 from pvfiblets.plotting.component import AddFiblets, FibletsComponent
 from pvfiblets.plotting.halo_component import AddHaloLines, HaloLinesComponent
-from pvfiblets.plotting.halo_kinds import HaloLineActor, HaloPointActor
 from pvfiblets.plotting.halo_point_component import AddHaloPoints, HaloPointsComponent
-from pvfiblets.plotting.raycast_actor import RaycastActor
 from pvfiblets.plotting.raycast_component import AddRaycastVolume, RaycastVolumesComponent
-from pvfiblets.plotting.spline_actor import SplineTubeActor
 from pvfiblets.plotting.spline_component import AddSplineTubes, SplineTubesComponent
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.actor import FibletActor
+    from pvfiblets.plotting.halo_kinds import HaloLineActor, HaloPointActor
+    from pvfiblets.plotting.raycast_actor import RaycastActor
+    from pvfiblets.plotting.spline_actor import SplineTubeActor
 
 __all__ = [
     "AddFiblets",
@@ -39,3 +47,13 @@ __all__ = [
     "SplineTubeActor",
     "SplineTubesComponent",
 ]
+
+_HOME = {
+    "FibletActor": "actor",
+    "HaloLineActor": "halo_kinds",
+    "HaloPointActor": "halo_kinds",
+    "RaycastActor": "raycast_actor",
+    "SplineTubeActor": "spline_actor",
+}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)

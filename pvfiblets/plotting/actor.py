@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, EngineOptions
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engines import EngineOptions
+from pvfiblets.mappers.mapper import FibletMapper
 from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.engines import Engines
 from pvfiblets.plotting.filtering import Filtering
-from pvfiblets.plotting.mapper import PlottedMapper
+from pvfiblets.plotting.mapper import Plotted
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.scalars import find_scalars
 from pvfiblets.plotting.selecting import Selecting
@@ -25,6 +27,16 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes import VolumeSource
     from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.plotting.scalars import Scalars
+
+
+class PlottedMapper(Plotted, FibletMapper):
+    """A fiblet mapper with scalar bars.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    """
 
 
 class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency, pv.Actor):
@@ -235,4 +247,3 @@ class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency
         if choice is None and self._settings.color is not None:
             return None
         return find_scalars(fiblets, choice)
-

@@ -15,28 +15,23 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.codec.compress import compress
-from pvfiblets.engine.capabilities import PipelineTable, pipelines
-from pvfiblets.mappers import EngineOptions
-from pvfiblets.mappers.windows import borrowed_context
-from pvfiblets.plotting.actor import FibletActor
-from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.picking import Picking
-from pvfiblets.plotting.sources import as_fiblets
 from pvfiblets.plotting.widgets import Widgets
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.engine.capabilities import PipelineTable
+    from pvfiblets.plotting.actor import FibletActor
     from pvfiblets.streamlines import Streamlines
 
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
 
 
 @pv.register_plotter_component("fiblets")
-class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
+class FibletsComponent(Keeping["FibletActor"], Picking, Widgets):
     """The fiblet actors of one plotter.
 
     Parameters
@@ -195,6 +190,11 @@ class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
         >>> actor = pl.add_fiblets(brain_streamlines(1000), scalars="length", cmap="plasma")
         >>> actor.line_width = 2
         """
+        from pvfiblets.mappers.engines import EngineOptions
+        from pvfiblets.plotting.actor import FibletActor
+        from pvfiblets.plotting.colours import ColourSettings
+        from pvfiblets.plotting.sources import as_fiblets
+
         _check_options(options)
         theme = self._plotter.theme
         engine = EngineOptions(pipeline=pipeline, culling=culling, fit=fit)  # before the slow part
@@ -258,6 +258,9 @@ class FibletsComponent(Keeping[FibletActor], Picking, Widgets):
         >>> [info.name for info in pl.fiblets.pipelines() if info.available]  # doctest: +SKIP
         ['compute', 'tessellation', 'geometry']
         """
+        from pvfiblets.engine.capabilities import pipelines
+        from pvfiblets.mappers.windows import borrowed_context
+
         window = self._plotter.render_window
         if window is None:
             raise RuntimeError("this plotter is closed and has no OpenGL; ask a new one")
@@ -291,6 +294,11 @@ class AddFiblets:
 
 def _check_options(options: dict[str, Any]) -> None:
     """Refuse what compressing does not know, before it is said of a function that nobody called."""
+    if not options:
+        return
+    from pvfiblets.codec.compress import compress
+    from pvfiblets.plotting.actor import FibletActor
+
     unknown = sorted(set(options) - set(inspect.signature(compress).parameters))
     live = [name for name in unknown if isinstance(getattr(FibletActor, name, None), property)]
     if live:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.mapper import PlottedMapper
+    from pvfiblets.plotting.actor import PlottedMapper
 
 
 class Engines:

@@ -28,7 +28,7 @@ from pvfiblets.plotting.cutting import as_region
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.query.predicates import Predicate
-    from pvfiblets.plotting.mapper import PlottedMapper
+    from pvfiblets.plotting.actor import PlottedMapper
     from pvfiblets.regions import Region
 
 
@@ -160,9 +160,7 @@ class Filtering(Clipping):
 
     # Subsets ------------------------------------------------------------------------------------
 
-    def subset(
-        self, amount: float | None = None, *, seed: int = 0, every: int | None = None
-    ) -> None:
+    def subset(self, amount: float | None = None, *, seed: int = 0, every: int | None = None) -> None:
         """Show some streamlines only, whatever they are.
 
         Parameters
@@ -277,8 +275,7 @@ class Filtering(Clipping):
                 ) from error
             criteria[name] = Criterion(name, c.what, values, c.range, c.keep_nan)
         conditions = {
-            name: Condition(name, c.predicate, select(fiblets, c.predicate))
-            for name, c in old.conditions.items()
+            name: Condition(name, c.predicate, select(fiblets, c.predicate)) for name, c in old.conditions.items()
         }
         same = fiblets.n_streamlines == self._data.n_streamlines
         groups = old.groups if old.groups and set(old.groups) <= set(fiblets.groups) else None
@@ -316,9 +313,7 @@ def _same(a: Any, b: Any) -> bool:
     return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
 
 
-def _subset(
-    count: int, amount: float | None, seed: int, every: int | None
-) -> np.ndarray | None:
+def _subset(count: int, amount: float | None, seed: int, every: int | None) -> np.ndarray | None:
     """Return (count,) bool, None for all."""
     if amount is not None and every is not None:
         raise ValueError(f"amount is {amount} and every is {every}; give one of them")

@@ -9,11 +9,12 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.halos import HaloLines, Look
-from pvfiblets.mappers import Colouring, HaloOptions
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.halo_look import LookSettings, Spacing
 from pvfiblets.plotting.halo_scalars import Held, coloured, filtered, find_scalars
-from pvfiblets.plotting.mapper import PlottedHalos
+from pvfiblets.plotting.mapper import Plotted
 from pvfiblets.plotting.report import added_up
 
 if TYPE_CHECKING:
@@ -22,6 +23,18 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.scalars import Scalars
 
 BACKGROUND = "background"
+
+
+class PlottedHalos(Plotted, HaloMapper):
+    """A mapper of lines or points with halos, with scalar bars.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        What to draw.
+    look : Look
+        How.
+    """
 
 
 class HaloActor(Coloured, pv.Actor):

@@ -13,11 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import HaloOptions
-from pvfiblets.plotting.colours import ColourSettings
-from pvfiblets.plotting.halo_kinds import HaloLineActor
-from pvfiblets.plotting.halo_look import WIDTH_CUE, LookSettings
-from pvfiblets.plotting.halo_scalars import as_lines
+from pvfiblets.plotting.halo_defaults import WIDTH_CUE
 from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.printing import Printing
 
@@ -27,6 +23,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.halos import HaloLines
     from pvfiblets.halos.displacement import Displacement
+    from pvfiblets.plotting.halo_kinds import HaloLineActor
     from pvfiblets.plotting.halo_look import Threshold
     from pvfiblets.streamlines import Streamlines
 
@@ -35,7 +32,7 @@ if TYPE_CHECKING:
 
 
 @pv.register_plotter_component("halo_lines")
-class HaloLinesComponent(Printing, Keeping[HaloLineActor]):
+class HaloLinesComponent(Printing, Keeping["HaloLineActor"]):
     """The lines with halos of one plotter.
 
     Parameters
@@ -214,6 +211,12 @@ class HaloLinesComponent(Printing, Keeping[HaloLineActor]):
         >>> actor.filter_by = np.sin(3 * t)
         >>> actor.threshold = 0.0
         """
+        from pvfiblets.mappers.halos import HaloOptions
+        from pvfiblets.plotting.colours import ColourSettings
+        from pvfiblets.plotting.halo_kinds import HaloLineActor
+        from pvfiblets.plotting.halo_look import LookSettings
+        from pvfiblets.plotting.halo_scalars import as_lines
+
         options = HaloOptions(culling)  # before the slow part
         held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
         looks = LookSettings(

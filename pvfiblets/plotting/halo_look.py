@@ -11,14 +11,12 @@ import numpy as np
 from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.halos.displacement import as_displacement
 from pvfiblets.halos.spacing import default_widths
+from pvfiblets.plotting.halo_defaults import WIDTH_CUE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     Threshold: TypeAlias = float | Sequence[float | None] | None
-
-WIDTH_CUE = 0.5
-"""Share by which the farthest lines are thinner, by default."""
 
 TAPERED = (2, 0.2)
 """Vertices over which ends narrow, and where along the mask those end: the paper's (section 3.4)."""

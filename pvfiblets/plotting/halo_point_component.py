@@ -8,11 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import HaloOptions
-from pvfiblets.plotting.colours import ColourSettings
-from pvfiblets.plotting.halo_kinds import HaloPointActor
-from pvfiblets.plotting.halo_look import WIDTH_CUE, LookSettings
-from pvfiblets.plotting.halo_scalars import as_points
+from pvfiblets.plotting.halo_defaults import WIDTH_CUE
 from pvfiblets.plotting.keeping import Keeping, same_as
 from pvfiblets.plotting.printing import Printing
 
@@ -21,6 +17,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.halos import HaloPoints
     from pvfiblets.halos.displacement import Displacement
+    from pvfiblets.plotting.halo_kinds import HaloPointActor
     from pvfiblets.plotting.halo_look import Threshold
     from pvfiblets.streamlines import Streamlines
 
@@ -29,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @pv.register_plotter_component("halo_points")
-class HaloPointsComponent(Printing, Keeping[HaloPointActor]):
+class HaloPointsComponent(Printing, Keeping["HaloPointActor"]):
     """The points with halos of one plotter.
 
     Parameters
@@ -165,6 +162,12 @@ class HaloPointsComponent(Printing, Keeping[HaloPointActor]):
         >>> pl = pv.Plotter(off_screen=True)
         >>> actor = pl.add_halo_points(ball, point_size=0.15, halo_size=1.5, max_displacement=4)
         """
+        from pvfiblets.mappers.halos import HaloOptions
+        from pvfiblets.plotting.colours import ColourSettings
+        from pvfiblets.plotting.halo_kinds import HaloPointActor
+        from pvfiblets.plotting.halo_look import LookSettings
+        from pvfiblets.plotting.halo_scalars import as_points
+
         options = HaloOptions(culling)  # before the slow part
         held = as_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
         looks = LookSettings(

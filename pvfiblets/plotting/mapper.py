@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pyvista as pv
 
-from pvfiblets.mappers import FibletMapper, HaloMapper, RaycastMapper, SplineMapper
-
 if TYPE_CHECKING:
     from pvfiblets.plotting.coloured import Coloured
 
@@ -31,47 +29,3 @@ class Plotted:
 
     def _shown_by(self) -> Coloured:
         return cast("Coloured", cast("Any", self).actor)
-
-
-class PlottedMapper(Plotted, FibletMapper):
-    """A fiblet mapper with scalar bars.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        What to draw.
-    """
-
-
-class PlottedSplines(Plotted, SplineMapper):
-    """A mapper of spline tubes with scalar bars.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        What to draw.
-    """
-
-
-class PlottedHalos(Plotted, HaloMapper):
-    """A mapper of lines or points with halos, with scalar bars.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What to draw.
-    look : Look
-        How.
-    """
-
-
-class PlottedRaycast(Plotted, RaycastMapper):
-    """A mapper of a volume that rays are cast through, with scalar bars.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-        What to draw.
-    casting : Casting
-        How.
-    """

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.mappers.raycast import RaycastMapper
 from pvfiblets.plotting.clipping import Clipping
-from pvfiblets.plotting.mapper import PlottedRaycast
+from pvfiblets.plotting.mapper import Plotted
 from pvfiblets.plotting.raycast_opacity import is_number
 from pvfiblets.plotting.raycast_settings import RAYS, SURFACE, RaySettings
 from pvfiblets.plotting.raycast_shading import RaycastShading
@@ -27,6 +28,18 @@ if TYPE_CHECKING:
     from pvfiblets.regions import Region
 
 __all__ = ["RaycastActor"]
+
+
+class PlottedRaycast(Plotted, RaycastMapper):
+    """A mapper of a volume that rays are cast through, with scalar bars.
+
+    Parameters
+    ----------
+    volume : RaycastVolume
+        What to draw.
+    casting : Casting
+        How.
+    """
 
 
 class RaycastActor(RaySettings, RaycastShading, Clipping, pv.Actor):

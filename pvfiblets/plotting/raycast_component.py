@@ -13,22 +13,19 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.keeping import Keeping, same_as
-from pvfiblets.plotting.raycast_actor import RaycastActor
-from pvfiblets.raycast.casting import MODES
-from pvfiblets.raycast.sources import as_raycast_volume
 
 if TYPE_CHECKING:
     from os import PathLike
 
+    from pvfiblets.plotting.raycast_actor import RaycastActor
     from pvfiblets.raycast import RaycastVolume
 
     Source: TypeAlias = str | PathLike[str] | pv.ImageData | np.ndarray | tuple[Any, Any] | RaycastVolume
 
 
 @pv.register_plotter_component("raycast_volumes")
-class RaycastVolumesComponent(Keeping[RaycastActor]):
+class RaycastVolumesComponent(Keeping["RaycastActor"]):
     """The volumes of one plotter that rays are cast through.
 
     Parameters
@@ -237,6 +234,11 @@ class RaycastVolumesComponent(Keeping[RaycastActor]):
         >>> actor.casting.values
         (0.4,)
         """
+        from pvfiblets.plotting.colours import ColourSettings
+        from pvfiblets.plotting.raycast_actor import RaycastActor
+        from pvfiblets.raycast.casting import MODES
+        from pvfiblets.raycast.sources import as_raycast_volume
+
         if mode not in MODES:  # before the slow part
             raise ValueError(f"mode is {mode!r}; choose one of {MODES}")
         volume = as_raycast_volume(

@@ -13,11 +13,11 @@ from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.picked import Picked, checked_box, everything, visible
 from pvfiblets.plotting.profiles import SelectionMeasures
 from pvfiblets.plotting.report import added_up
-from pvfiblets.plotting.standout import Standout
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.scalars import Scalars
+    from pvfiblets.plotting.standout import Standout
 
 MODES = ("replace", "add", "remove", "toggle")
 _AS_BEFORE: Any = object()
@@ -283,9 +283,7 @@ class Selecting(SelectionMeasures):
             style = replace(style, radius=float(radius))
         if silhouette is not _AS_BEFORE:
             outline = "white" if silhouette is True else silhouette
-            style = replace(
-                style, silhouette=pv.Color(outline).float_rgb if _is_colour(outline) else None
-            )
+            style = replace(style, silhouette=pv.Color(outline).float_rgb if _is_colour(outline) else None)
         if style != self._selection_style:
             self._selection_style = style
             self._show_selection()
@@ -312,6 +310,8 @@ class Selecting(SelectionMeasures):
             self._standout = self._make_standout(style)
 
     def _make_standout(self, style: SelectionStyle) -> Standout:
+        from pvfiblets.plotting.standout import Standout
+
         width = self._mapper.line_width if style.width is None else style.width
         radius = style.radius if style.as_tubes else None
         return Standout(

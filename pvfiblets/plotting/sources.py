@@ -12,7 +12,6 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets import formats
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.codec.query.measures import Distance, measure
@@ -76,8 +75,7 @@ def as_fiblets(
         if max_error is not None or options:
             given = ", ".join(sorted([*options, *(["max_error"] if max_error is not None else [])]))
             raise ValueError(
-                f"{given} cannot be applied: the source is compressed already. "
-                "Give it where the source is compressed"
+                f"{given} cannot be applied: the source is compressed already. Give it where the source is compressed"
             )
         return with_point_values(source, scalars)
     streamlines = as_streamlines(source)
@@ -91,6 +89,8 @@ def as_fiblets(
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
             keep.append(UNNAMED)
             scalars = UNNAMED
+    from pvfiblets.codec.compress import compress  # what is compressed already needs no compiler
+
     fiblets = compress(
         streamlines,
         max_error=max_error,
@@ -104,9 +104,7 @@ def as_fiblets(
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
 
 
-def with_point_values(
-    fiblets: FibletSet, scalars: Any
-) -> tuple[FibletSet, Colours]:
+def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colours]:
     """Store ``scalars`` with the fiblets if they are an array with one number per point.
 
     Parameters
@@ -172,9 +170,7 @@ def as_streamlines(source: Any) -> Streamlines:
         arrays = [np.asarray(line) for line in source]
         for index, line in enumerate(arrays):
             if line.ndim != 2 or line.shape[1] != 3:
-                raise TypeError(
-                    f"item {index} of source has shape {line.shape}; expected (n, 3) points"
-                )
+                raise TypeError(f"item {index} of source has shape {line.shape}; expected (n, 3) points")
         return Streamlines.from_list(arrays)
     raise TypeError(
         f"source is a {type(source).__name__}; expected a path, FibletSet, Streamlines, PolyData "

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, SplineOptions
+from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
+from pvfiblets.mappers.splines import SplineMapper, SplineOptions
 from pvfiblets.plotting.coloured import Coloured
-from pvfiblets.plotting.mapper import PlottedSplines
+from pvfiblets.plotting.mapper import Plotted
 from pvfiblets.plotting.report import added_up
 from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.spline_scalars import find_tube_scalars, with_built_in, with_node_values
@@ -24,6 +25,16 @@ if TYPE_CHECKING:
 
 
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
+
+
+class PlottedSplines(Plotted, SplineMapper):
+    """A mapper of spline tubes with scalar bars.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    """
 
 
 class _OfLines:

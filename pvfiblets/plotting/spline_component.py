@@ -13,16 +13,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers import SplineOptions
-from pvfiblets.plotting.colours import ColourSettings
 from pvfiblets.plotting.keeping import Keeping, same_as
-from pvfiblets.plotting.spline_actor import SplineTubeActor
-from pvfiblets.plotting.spline_scalars import as_tubes
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.plotting.spline_actor import SplineTubeActor
     from pvfiblets.splines.tubes import SplineTubes
     from pvfiblets.streamlines import Streamlines
 
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @pv.register_plotter_component("spline_tubes")
-class SplineTubesComponent(Keeping[SplineTubeActor]):
+class SplineTubesComponent(Keeping["SplineTubeActor"]):
     """The spline tubes of one plotter.
 
     Parameters
@@ -202,6 +199,11 @@ class SplineTubesComponent(Keeping[SplineTubeActor]):
         >>> nodes, slopes = np.array([(0, 0, 0), (10, 0, 0)]), np.array([(0, 20, 0), (0, 20, 0)])
         >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")
         """
+        from pvfiblets.mappers.splines import SplineOptions
+        from pvfiblets.plotting.colours import ColourSettings
+        from pvfiblets.plotting.spline_actor import SplineTubeActor
+        from pvfiblets.plotting.spline_scalars import as_tubes
+
         theme = self._plotter.theme
         options = SplineOptions(silhouettes, solver, iterations, min_width, culling)  # before the slow part
         tubes, choice = as_tubes(

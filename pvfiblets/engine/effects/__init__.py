@@ -6,10 +6,26 @@ They know no lines, only pixels: what they cost depends on the picture's size al
 
 from __future__ import annotations
 
-from .ambient_occlusion import AmbientOcclusionPass
-from .halos import HaloPass
-from .lens import Lens
-from .outline import OutlinePass
-from .screen import ScreenEffect
+from typing import TYPE_CHECKING
+
+from ...later import names_from
+
+if TYPE_CHECKING:
+    from .ambient_occlusion import AmbientOcclusionPass
+    from .halos import HaloPass
+    from .lens import Lens
+    from .outline import OutlinePass
+    from .screen import ScreenEffect
+
 
 __all__ = ["AmbientOcclusionPass", "HaloPass", "Lens", "OutlinePass", "ScreenEffect"]
+
+_HOME = {
+    "AmbientOcclusionPass": "ambient_occlusion",
+    "HaloPass": "halos",
+    "Lens": "lens",
+    "OutlinePass": "outline",
+    "ScreenEffect": "screen",
+}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)

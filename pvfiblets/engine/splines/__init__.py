@@ -9,7 +9,22 @@ with it (``shaders/splines/solver.glsl``) and keeps segment, place and depth; on
 
 from __future__ import annotations
 
-from .choices import SILHOUETTES, SOLVERS, check_choices
-from .renderer import SplineRenderer
+from typing import TYPE_CHECKING
+
+from ...later import names_from
+
+if TYPE_CHECKING:
+    from .choices import SILHOUETTES, SOLVERS, check_choices
+    from .renderer import SplineRenderer
+
 
 __all__ = ["SILHOUETTES", "SOLVERS", "SplineRenderer", "check_choices"]
+
+_HOME = {
+    "SILHOUETTES": "choices",
+    "SOLVERS": "choices",
+    "SplineRenderer": "renderer",
+    "check_choices": "choices",
+}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)
