@@ -13,9 +13,10 @@ from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.errors import EngineError
 
-from .culling_pictures import Flight, Shown, Singles, apart, averaged, colours, errors, shown, views
+from .culling_pictures import Shown, Singles, apart, averaged, colours, errors, shown, views
 from .data import file_sets
 from .drawing import drawing_context, turns_of
+from .flights import Flight
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
 
@@ -119,7 +120,7 @@ class _Basis:
             renderer = FibletRenderer(self._ctx, self._scene.fiblets, culling=None)
             try:
                 flight = Flight(self._ctx, renderer, self._scene.path, Style(tolerance=tolerance))
-                self._plain[tolerance] = flight.pictures()
+                self._plain[tolerance] = flight.pictures(shown)
             finally:
                 renderer.release()
         return self._plain[tolerance]
@@ -243,7 +244,7 @@ def measured(ctx: Any, scene: Scene, way: Way, basis: _Basis, turns: Turns, stac
     renderer = FibletRenderer(ctx, fiblets, culling=way.culling)
     stack.callback(renderer.release)
     flight = Flight(ctx, renderer, scene.path, Style(tolerance=way.tolerance))
-    pictures = flight.pictures()
+    pictures = flight.pictures(shown)
     told: dict[str, Any] = renderer.explain()
     turns.add(flight)
     found = errors(pictures, basis.plain(0.0))

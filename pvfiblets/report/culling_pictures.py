@@ -1,4 +1,4 @@
-"""What a picture of fiblets shows, how far it is from another, and cameras that fly from picture to picture."""
+"""What a picture of fiblets shows, how far it is from another, and from where it is taken."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import View
 from pvfiblets.engine.gbuffer import EMPTY
 
 from .cameras import ELEVATION, VERTICAL_ANGLE, Camera
@@ -18,7 +18,6 @@ from .record import Figure
 
 __all__ = [
     "DISTANCES",
-    "Flight",
     "Shown",
     "apart",
     "averaged",
@@ -146,32 +145,3 @@ def errors(pictures: Sequence[Shown], right: Sequence[Shown]) -> dict[str, Figur
         covered += int((b >= 0).sum())
     share = 100.0 / max(covered, 1)
     return {"wrong": Figure(share * wrong, "%"), "coverage": Figure(share * coverage, "%")}
-
-
-class Flight:
-    """A camera that flies through views, and back the next time: every picture is one step from the one before.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    renderer : FibletRenderer
-    path : sequence of View
-        The first is where the camera is before it flies.
-    style : Style
-    """
-
-    def __init__(self, ctx: Any, renderer: FibletRenderer, path: Sequence[View], style: Style) -> None:
-        self._ctx, self._renderer, self._style = ctx, renderer, style
-        self._path = list(path)
-
-    def pictures(self) -> list[Shown]:
-        """Fly forth from the beginning, and return what is shown on the way."""
-        self._renderer.render(self._path[0], self._style)
-        return [shown(self._renderer.render(view, self._style)) for view in self._path[1:]]
-
-    def __call__(self) -> None:
-        """Fly back, or forth again, after :meth:`pictures`."""
-        self._path.reverse()
-        for view in self._path[1:]:
-            self._renderer.render(view, self._style)
-            self._ctx.finish()

@@ -12,7 +12,8 @@ from pvfiblets.codec.reference import first_frame
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.report import culling, data
-from pvfiblets.report.culling_pictures import Flight, Shown, apart, averaged, colours, directions, errors, views
+from pvfiblets.report.culling_pictures import Shown, apart, averaged, colours, directions, errors, views
+from pvfiblets.report.flights import Flight
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Options, Unavailable
 
@@ -154,22 +155,21 @@ def test_cameras_turn_around_the_middle(size):
         assert inside == (kind == "inside")
 
 
-def test_every_picture_of_a_flight_is_one_step_from_the_one_before(monkeypatch):
+def test_every_picture_of_a_flight_is_one_step_from_the_one_before():
     seen = []
 
     class Renderer:
         def render(self, view, style):
             seen.append(view)
+            return f"{style} {view}"
 
     class Context:
         def finish(self):
             seen.append("done")
 
-    from pvfiblets.report import culling_pictures
-
-    monkeypatch.setattr(culling_pictures, "shown", lambda buffer: None)
-    flight = Flight(Context(), Renderer(), [0, 1, 2], None)
-    flight.pictures()
+    flight = Flight(Context(), Renderer(), [0, 1, 2], "plain")
+    assert len(flight) == 2
+    assert flight.pictures(str.upper) == ["PLAIN 1", "PLAIN 2"]
     flight()
     flight()
     assert seen == [0, 1, 2, 1, "done", 0, "done", 1, "done", 2, "done"]

@@ -1,0 +1,44 @@
+"""A camera that flies from picture to picture, as when somebody turns what they look at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+__all__ = ["Flight"]
+
+Read = TypeVar("Read")
+
+
+class Flight:
+    """A camera that flies through views, and back the next time: every picture is one step from the one before.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    renderer : object
+        ``render(view, style)`` draws, and returns what is to be read.
+    path : sequence of View
+        The first is where the camera is before it flies.
+    style : Style
+    """
+
+    def __init__(self, ctx: Any, renderer: Any, path: Sequence[Any], style: Any) -> None:
+        self._ctx, self._renderer, self._style = ctx, renderer, style
+        self._path = list(path)
+
+    def __len__(self) -> int:
+        """Pictures on the way."""
+        return len(self._path) - 1
+
+    def pictures(self, read: Callable[[Any], Read]) -> list[Read]:
+        """Fly forth from the beginning, and return what is shown on the way, as a function reads it."""
+        self._renderer.render(self._path[0], self._style)
+        return [read(self._renderer.render(view, self._style)) for view in self._path[1:]]
+
+    def __call__(self) -> None:
+        """Fly back, or forth again, after :meth:`pictures`."""
+        self._path.reverse()
+        for view in self._path[1:]:
+            self._renderer.render(view, self._style)
+            self._ctx.finish()
