@@ -148,14 +148,14 @@ class CullingStudy:
     axes = (
         Axes("wrong", "times/draw", "errors/wrong", "ms per frame", "pixels of another streamline, %"),
         Axes("colour", "times/draw", "errors/colour", "ms per frame", "mean difference of colours, %"),
-        Axes("fine", "times/draw", "errors/colour, finely", "ms per frame", "difference to a fine picture, %"),
+        Axes("fine", "times/draw", "errors/fine", "ms per frame", "difference to a fine picture, %"),
         Axes("culled", "times/draw", "errors/wrong by culling", "ms per frame", "pixels changed by culling, %"),
     )
     notes = (
         "The right picture draws every point of every fiblet in the view volume. *wrong*: pixels that show another "
         "streamline than that, or one where there is none, or none where there is one, as a share of those that show "
         "one; *coverage*: only the latter two; *colour*: how far the colours of directions are apart, black where "
-        "nothing is; *colour, finely*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
+        "nothing is; *fine*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
         "than their distance, so that which of them a pixel shows is chance, and this says how far the right picture "
         "is off itself. *wrong by culling*: as *wrong*, from the picture of the same level of detail without "
         "culling, so that it is what culling alone changes.",
@@ -249,7 +249,7 @@ def measured(ctx: Any, scene: Scene, way: Way, basis: _Basis, turns: Turns, stac
     turns.add(flight)
     found = errors(pictures, basis.plain(0.0))
     coloured = [colours(picture) for picture in pictures]
-    found |= {"colour": apart(coloured, basis.coloured), "colour, finely": apart(coloured, basis.fine)}
+    found |= {"colour": apart(coloured, basis.coloured), "fine": apart(coloured, basis.fine)}
     if way.of == 1:
         found["wrong by culling"] = errors(pictures, basis.plain(way.tolerance))["wrong"]
     costs = {"memory": Figure(sum(buffer["bytes"] for buffer in told["buffers"]) / 1e6, "MB")}

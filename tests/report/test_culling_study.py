@@ -52,7 +52,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
             assert record.value("times/draw") > 0.0
         right = found["none (every point)"].errors
         assert {right[name].value for name in ("wrong", "coverage", "colour", "wrong by culling")} == {0.0}
-        assert right["colour, finely"].value > 0.0
+        assert right["fine"].value > 0.0
         # Two-phase culling changes no pixel: its errors are those of the level of detail, to the last digit.
         for setting in ("0.5 px", "every point"):
             plain, culled = (found[f"{name} ({setting})"].errors for name in ("none", "two-phase"))
