@@ -66,9 +66,7 @@ def sentence(error: BaseException) -> str:
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(
-        prog="pvfiblets", description="Compress, check and draw tractograms of any size."
-    )
+    parser = argparse.ArgumentParser(prog="pvfiblets", description="Compress, check and draw tractograms of any size.")
     parser.add_argument("--version", action=_Version)
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -154,7 +152,9 @@ def make_parser() -> argparse.ArgumentParser:
         help="measure error against run time of every approximation in the program, beside its rivals",
         description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
     )
-    report.add_argument("--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volume, halos")
+    report.add_argument(
+        "--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volume, halos, stability"
+    )
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",
         help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",

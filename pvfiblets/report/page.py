@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .record import FRAME, Record, Report, StudyResult, Timing
+from .record import FRAME, CaseResult, Record, Report, StudyResult, Timing
 
 __all__ = ["page"]
 
@@ -59,11 +59,16 @@ def _overview(studies: Sequence[StudyResult]) -> list[str]:
         if study.unavailable:
             lines.append(f"| {study.name} | not available | {_cell(study.unavailable)} |")
             continue
-        sets = len({record.data for record in study.records})
-        found = f"{len(study.records)} records on {sets} data sets, {study.seconds:.0f} s"
+        found = f"{_found(study)}, {study.seconds:.0f} s"
         more = f"{len(study.left_out)} left out, named below" if study.left_out else ""
         lines.append(f"| [{study.name}](#{_anchor(study.title)}) | {found} | {more} |")
     return lines
+
+
+def _found(study: StudyResult) -> str:
+    if study.cases:
+        return f"{sum(case.held for case in study.cases)} of {len(study.cases)} extreme cases hold"
+    return f"{len(study.records)} records on {len({record.data for record in study.records})} data sets"
 
 
 def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]:
@@ -77,6 +82,9 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
     if study.left_out:
         lines += ["", "### Left out", "", "| what | why |", "|---|---|"]
         lines += [f"| {_cell(item.what)} | {_cell(item.reason)} |" for item in study.left_out]
+    lines += _cases(study.cases)
+    if not study.records:
+        return lines
     lines += ["", "### All figures"]
     for data in dict.fromkeys(record.data for record in study.records):
         records = [record for record in study.records if record.data == data]
@@ -109,6 +117,23 @@ def _defaults(study: StudyResult) -> list[str]:
             ]
             cells.append(f"{_number(y)} / {_number(x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
         lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
+    return lines
+
+
+def _cases(cases: Sequence[CaseResult]) -> list[str]:
+    """A table for each system: what was done, what must hold, by what figure, and whether it does."""
+    lines = []
+    for system in dict.fromkeys(case.system for case in cases):
+        lines += ["", f"### {system[:1].upper()}{system[1:]}", ""]
+        lines += [
+            "| case | what is done | what must hold | measured | at most | held | |",
+            "|---|---|---|---|---|---|---|",
+        ]
+        for case in (case for case in cases if case.system == system):
+            measured = f"{_number(case.measured.value) or 'none'} {case.measured.unit}"
+            held = "yes" if case.held else "**no**"
+            cells = (case.name, case.does, case.must, measured, _number(case.limit), held, case.note)
+            lines.append("| " + " | ".join(map(_cell, cells)) + " |")
     return lines
 
 

@@ -17,10 +17,11 @@ from typing import Any
 
 from pvfiblets.errors import FormatError
 
-__all__ = ["FORMAT", "FRAME", "Axes", "Figure", "LeftOut", "Record", "Report", "StudyResult", "Timing"]
+__all__ = ["FORMAT", "FRAME", "Axes", "CaseResult", "Figure", "LeftOut", "Record", "Report", "StudyResult", "Timing"]
 
 FORMAT = "pvfiblets report 1"
 NAME = "report.json"
+LISTED = ("records", "cases")  # one to a line; a file without cases is read as one whose studies have none
 FRAME = "frame"  # the item of pictures
 DIGITS = 6
 
@@ -170,6 +171,37 @@ class Axes:
 
 
 @dataclass(frozen=True)
+class CaseResult:
+    """What one named extreme case found.
+
+    Attributes
+    ----------
+    system, name : str
+        Part of the program, and the case.
+    does, must : str
+        What was done, and what must hold.
+    measured : Figure
+        NaN where it ended in an error that was not expected.
+    limit : float
+        What must hold does where ``measured`` is no larger.
+    held : bool
+    note : str
+        What else is worth saying, such as an error's message.
+    seconds : float
+    """
+
+    system: str
+    name: str
+    does: str
+    must: str
+    measured: Figure
+    limit: float
+    held: bool
+    note: str = ""
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
 class LeftOut:
     """Something that was not measured, and the reason."""
 
@@ -194,6 +226,8 @@ class StudyResult:
         Why nothing could be measured; empty if it could.
     seconds : float
         How long the study took.
+    cases : list of CaseResult
+        Of a study of what holds rather than of what costs what.
     """
 
     name: str
@@ -205,6 +239,7 @@ class StudyResult:
     left_out: list[LeftOut] = field(default_factory=list)
     unavailable: str = ""
     seconds: float = 0.0
+    cases: list[CaseResult] = field(default_factory=list)
 
 
 @dataclass
@@ -281,9 +316,11 @@ def _text(plain: dict[str, Any]) -> str:
 
     parts = []
     for study in plain["studies"]:
-        records = ",\n".join(one(record) for record in study["records"])
-        rest = one({name: value for name, value in study.items() if name != "records"})
-        parts.append(f'{rest[:-1]}, "records": [\n{records}\n]}}')
+        rest = one({name: value for name, value in study.items() if name not in LISTED})
+        for name in LISTED:
+            rows = ",\n".join(one(row) for row in study[name])
+            rest = f'{rest[:-1]}, "{name}": [\n{rows}\n]}}' if rows or name == "records" else rest
+        parts.append(rest)
     studies = ",\n".join(parts)
     about = one(plain["about"], indent=1)
     return f'{{"format": {one(plain["format"])},\n"about": {about},\n"studies": [\n{studies}\n]}}\n'
@@ -321,10 +358,16 @@ def _record(data: Mapping[str, Any]) -> Record:
     return Record(**{**data, **inner})
 
 
+def _case(data: Mapping[str, Any]) -> CaseResult:
+    measured = Figure(_number(data["measured"]["value"]), data["measured"]["unit"])
+    return CaseResult(**{**data, "measured": measured, "limit": _number(data["limit"])})
+
+
 def _study(data: Mapping[str, Any]) -> StudyResult:
     lists: dict[str, Any] = {
         "axes": [Axes(**axes) for axes in data["axes"]],
         "records": [_record(record) for record in data["records"]],
         "left_out": [LeftOut(**item) for item in data["left_out"]],
+        "cases": [_case(item) for item in data.get("cases", [])],
     }
     return StudyResult(**{**data, **lists})

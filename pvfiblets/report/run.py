@@ -10,7 +10,7 @@ from pathlib import Path
 from . import machine, studies
 from .data import files_of
 from .front import mark_fronts
-from .record import Report, StudyResult
+from .record import CaseResult, Report, StudyResult
 from .study import Budget, Options, Unavailable
 
 __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
@@ -99,7 +99,11 @@ def one_study(name: str, options: Options) -> StudyResult:
     result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
     options.log(f"{name}: {study.title}")
     try:
-        result.records = list(study.run(options, result.left_out))
+        for found in study.run(options, result.left_out):
+            if isinstance(found, CaseResult):
+                result.cases.append(found)
+            else:
+                result.records.append(found)
     except Unavailable as error:
         result.unavailable = str(error)
         options.log(f"{name}: {error}")

@@ -22,6 +22,7 @@ MODULES = {
     "codec": "pvfiblets.report.codec",
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
+    "stability": "pvfiblets.report.stability.study",
 }
 PLANNED = {
     "culling": "benchmarks/culling.py",

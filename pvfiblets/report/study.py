@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from .record import Axes, LeftOut, Record
+from .record import Axes, CaseResult, LeftOut, Record
 
 __all__ = ["Budget", "Options", "Study", "Unavailable"]
 
@@ -53,6 +53,10 @@ class Budget:
     def left(self) -> float:
         """Seconds that are left, 0 at least."""
         return max(self._seconds - self.spent, 0.0)
+
+    def share(self, part: float = 1.0) -> Budget:
+        """Return a budget of such a part of what is left, which knows of no measurement before it."""
+        return Budget(self.left * part, self._clock)
 
     def allows(self, factor: float = 1.0) -> bool:
         """Say whether another measurement fits, ``factor`` times as long as the longest so far."""
@@ -108,6 +112,6 @@ class Study(Protocol):
     axes: Sequence[Axes]
     notes: Sequence[str]
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        """Yield records as they are measured."""
+    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record | CaseResult]:
+        """Yield records, and results of extreme cases, as they are measured."""
         ...

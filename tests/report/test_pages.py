@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from pvfiblets.cli import main
+from pvfiblets.report import studies
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
@@ -78,9 +79,8 @@ def test_page_and_plots_are_made_again_from_the_file_alone(tmp_path):
 def test_a_wrong_study_is_one_clear_error(tmp_path, capsys):
     assert main(["report", "--only", "codec", "colour", "-o", str(tmp_path)]) == 1
     error = capsys.readouterr().err
-    assert error == (
-        "pvfiblets: there is no study 'colour'; choose among codec, decode, culling, tubes, volume, halos\n"
-    )
+    assert error.startswith("pvfiblets: there is no study 'colour'; choose among codec, decode, ")
+    assert all(name in error for name in studies.chosen_names())
     assert not list(tmp_path.iterdir())
 
 

@@ -1,0 +1,76 @@
+"""Streamlines that are hard to keep, to draw or to pick, made by formulas and seeded random numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.streamlines import Streamlines
+
+__all__ = ["apart", "helix", "lines_of", "tracking", "turning", "zigzag"]
+
+Array = npt.NDArray[np.float64]
+
+
+def lines_of(*lines: npt.ArrayLike) -> Streamlines:
+    """Return streamlines of ``(n, 3)`` arrays."""
+    return Streamlines.from_list([np.asarray(line, np.float64).reshape(-1, 3) for line in lines])
+
+
+def tracking(n: int = 12, points: int = 130, step: float = 0.5, seed: int = 0) -> Streamlines:
+    """Smooth lines of constant step that wander within some 100 mm, as tracking gives them."""
+    rng = np.random.default_rng(seed)
+    turns = np.cumsum(rng.normal(0.0, 0.03, (n, points, 3)), axis=1)
+    ways = rng.normal(size=(n, 1, 3)) + turns
+    ways *= step / np.linalg.norm(ways, axis=2, keepdims=True)
+    places = np.cumsum(ways, axis=1) + rng.uniform(-30.0, 30.0, (n, 1, 3))
+    return Streamlines(places.reshape(-1, 3), points * np.arange(n + 1))
+
+
+def turning(turn: float, points: int = 130, step: float = 0.5) -> Array:
+    """One line of constant step that turns by an angle at every point, about an axis that turns as well."""
+    way, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    ways = [way]
+    for _ in range(points - 2):
+        side = np.cross(up, way)
+        way, up = _turned(way, side, turn), _turned(up, side, 0.37)  # the second about the new way, more or less
+        way /= np.linalg.norm(way)
+        up -= (up @ way) * way
+        up /= np.linalg.norm(up)
+        ways.append(way)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(step * np.array(ways), axis=0)])
+
+
+def _turned(a: Array, b: Array, angle: float) -> Array:
+    """A unit vector turned towards another at a right angle to it; small angles keep their digits."""
+    turned: Array = a - 2.0 * np.sin(angle / 2.0) ** 2 * a + np.sin(angle) * b
+    return turned
+
+
+def zigzag(points: int = 500, step: float = 1.0) -> Array:
+    """A line that goes back and forth between two places."""
+    line = np.zeros((points, 3))
+    line[1::2, 0] = step
+    return line
+
+
+def helix(points: int = 500, turn: float = np.pi - 1e-3, pitch: float = 0.01, radius: float = 0.5) -> Array:
+    """A helix sampled so coarsely that it turns by nearly half a circle from point to point."""
+    i = np.arange(points)
+    return np.stack([radius * np.cos(turn * i), radius * np.sin(turn * i), pitch * i], axis=1)
+
+
+def apart(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+    """Distances of points one by one, right for denormal and for huge ones too."""
+    delta = np.abs(np.asarray(a, np.float64) - np.asarray(b, np.float64))
+    most = delta.max(axis=1, initial=0.0)
+    scale = np.where(most > 0.0, most, 1.0)[:, None]
+    found: Array = most * np.sqrt(((delta / scale) ** 2).sum(axis=1))
+    return found
+
+
+def concatenated(parts: Sequence[Streamlines]) -> Streamlines:
+    """Return the streamlines of several sets."""
+    return Streamlines.concatenate(list(parts))

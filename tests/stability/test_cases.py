@@ -1,0 +1,32 @@
+"""What must hold of extreme cases does: one test for each of the table that the report prints."""
+
+from __future__ import annotations
+
+import pytest
+
+from pvfiblets.report.stability import MODULES, all_cases
+from pvfiblets.report.stability.case import Setting
+
+CASES = all_cases()
+
+
+def named(case):
+    return f"{case.system}: {case.name}"
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if not case.draws], ids=named)
+def test_what_must_hold_does(case):
+    outcome = case.run(Setting())
+    assert outcome.held, f"{outcome.measured:.4g} {outcome.unit}, at most {outcome.limit:.4g}: {outcome.note}"
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case.draws], ids=named)
+def test_what_must_hold_of_pictures_does(gl, case):
+    outcome = case.run(Setting(ctx=gl))
+    assert outcome.held, f"{outcome.measured:.4g} {outcome.unit}, at most {outcome.limit:.4g}: {outcome.note}"
+
+
+def test_every_case_says_what_it_does_and_what_must_hold():
+    assert len({named(case) for case in CASES}) == len(CASES)
+    assert len({case.system for case in CASES}) == len(MODULES)
+    assert all(case.name and case.does and case.must for case in CASES)
