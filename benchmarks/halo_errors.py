@@ -19,17 +19,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from halo_ways import darkness_of, look_of, make_set, orbit
+from halo_ways import make_set
 from orbit import card_slug, context, machine, write
 
 from pvfiblets.engine import View
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+from pvfiblets.engine.halos import HaloRenderer
+from pvfiblets.report.halos_pictures import WRONG, differences, finer, look_of, orbit, picture
 
 SETS = ("fibres-subset", "office", "shape-small")
 GRIDS = (1, 2, 3, 4)  # samples along a pixel's side
 REFERENCE = 8
-MOST_PIXELS = 1 << 24  # of one rendering; larger ones are drawn in tiles
-WRONG = 0.25  # of black and white: pixels that are off by more are told as a share
 
 
 def main() -> None:
@@ -67,64 +66,21 @@ def _measured(ctx: Any, renderer: Any, name: str, drawn: Any, cameras: list[Any]
     right, other = ([picture(renderer, camera, looks[smooth], options.reference) for camera in cameras]
                     for smooth in (False, True))  # fmt: skip
     common = {"set": name, "vertices": drawn.n_points}
-    rows = [{**common, "reference": True, **errors(other, right)}]
+    rows = [{**common, "reference": True, **differences(other, right)}]
     for grid in options.grids:
         for smooth, look in looks.items():
             pictures = [picture(renderer, camera, look, grid) for camera in cameras]
             times = [seconds(ctx, renderer, camera, look, grid) for _ in range(options.repeats) for camera in cameras]
             low, median, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
             rows.append({**common, "reference": False, "samples": grid**2, "smooth": smooth, "ms": median,
-                         "ms_spread": [low, high], **errors(pictures, right)})  # fmt: skip
+                         "ms_spread": [low, high], **differences(pictures, right)})  # fmt: skip
             print(rows[-1], flush=True)
     return rows
 
 
-def picture(renderer: Any, camera: Any, look: Any, times: int, most: int = MOST_PIXELS) -> np.ndarray:
-    """Return a picture of so many samples along a pixel's side, averaged.
-
-    Parameters
-    ----------
-    renderer : HaloRenderer
-    camera : Camera
-        Of the picture's size.
-    look : Look
-        Its least width is in pixels of the picture, however many samples these have.
-    times : int
-        Samples along a pixel's side.
-    most : int
-        Samples that are drawn at once; a picture of more is drawn in tiles.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(height, width)`` float32, 0 white to 1 black, the bottom row first.
-    """
-    width, height = camera.size
-    # Tiles are all as large as each other and of whole pixels.
-    possible = [n for n in range(1, min(width, height) + 1) if width % n == height % n == 0]
-    tiles = next((n for n in possible if width * height * times**2 <= most * n**2), None)
-    if tiles is None:
-        raise ValueError(
-            f"a picture of {width} x {height} pixels, {times}x{times} samples each, has no tiles of {most} samples or "
-            "fewer; choose a width and a height with more common divisors"
-        )
-    style = HaloStyle(look=dataclasses.replace(look, min_width=look.min_width * times))
-    size = (width // tiles * times, height // tiles * times)
-    rows = []
-    for j in range(tiles):
-        row = []
-        for i in range(tiles):
-            crop = np.diag([tiles, tiles, 1.0, 1.0])
-            crop[:2, 3] = tiles - 1 - 2 * i, tiles - 1 - 2 * j
-            fine = darkness_of(renderer.render(View(size, crop @ camera.model_view_projection), style))
-            row.append(fine.reshape(height // tiles, times, width // tiles, times).mean(axis=(1, 3)))
-        rows.append(row)
-    return np.block(rows)
-
-
 def seconds(ctx: Any, renderer: Any, camera: Any, look: Any, times: int) -> float:
     """Return how long a picture of so many samples along a pixel's side takes to draw, averaging left out."""
-    style = HaloStyle(look=dataclasses.replace(look, min_width=look.min_width * times))
+    style = finer(look, times)
     size = tuple(times * side for side in camera.size)
     away = View(size, np.diag([1.0, 1.0, 1.0, 1.001]) @ camera.model_view_projection)  # else nothing is drawn anew
     renderer.render(away, style)
@@ -133,13 +89,6 @@ def seconds(ctx: Any, renderer: Any, camera: Any, look: Any, times: int) -> floa
     renderer.render(View(size, camera.model_view_projection), style)
     ctx.finish()
     return time.perf_counter() - start
-
-
-def errors(pictures: list[np.ndarray], right: list[np.ndarray]) -> dict[str, float]:
-    """Return by how much pixels differ, as shares of the difference between black and white."""
-    off = np.abs(np.stack(pictures) - np.stack(right))
-    return {"mean": float(off.mean()), "rms": float(np.sqrt((off**2).mean())), "p99": float(np.percentile(off, 99)),
-            "max": float(off.max()), "wrong": float((off > WRONG).mean())}  # fmt: skip
 
 
 def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:

@@ -6,17 +6,16 @@ differs is said with each way in :data:`ABOUT`.
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from orbit import DEGREES_PER_FRAME, context
-from tube_reference import ELEVATION, VERTICAL_ANGLE, Camera
+from orbit import context
 
 from pvfiblets.halos import HaloLines, HaloPoints, Look
-from pvfiblets.halos.spacing import default_widths
+from pvfiblets.report.cameras import Camera
+from pvfiblets.report.halos_pictures import darkness_of, helices, orbit
 
 ABOUT = {
     "vtk": "VTK's plain lines, one pixel wide, or its plain points, as large as ours are in the middle of the "
@@ -27,9 +26,6 @@ ABOUT = {
 }
 STEREO = ("vtk", "plotter")
 """Ways that draw anaglyphs."""
-
-WIDTH_CUE = 0.4
-"""The plotter's own."""
 
 PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")
 """Buffers that grow with the picture, not with the data."""
@@ -79,64 +75,6 @@ def make_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
     from pvfiblets.synthetic.halos import halo_set
 
     return halo_set(name, seed)
-
-
-def helices(count: int, vertices: int = 40) -> HaloLines:
-    """Return helices about one axis."""
-    t = np.linspace(0.0, 4.0 * np.pi, vertices)
-    shift = 2.0 * np.pi * np.arange(count)[:, None] / count
-    points = np.stack(np.broadcast_arrays(np.cos(t + shift), np.sin(t + shift), 0.3 * t), axis=2)
-    return HaloLines(points.reshape(-1, 3), vertices * np.arange(count + 1))
-
-
-def look_of(drawn: HaloLines | HaloPoints, **more: Any) -> Look:
-    """Return the look that the plotter gives data by default."""
-    line, strip, displacement = default_widths(drawn)
-    if isinstance(drawn, HaloPoints):
-        more["n_tapered"] = 0
-    return Look(line, strip, displacement, **{"width_cue": WIDTH_CUE, **more})
-
-
-def orbit(drawn: HaloLines | HaloPoints, places: int, frames: int, size: tuple[int, int]) -> list[list[Camera]]:
-    """Return cameras that have the data fill the window, all from one distance.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What is looked at.
-    places : int
-        All around it, about the vertical axis.
-    frames : int
-        At each place, a small turn apart, as in an animation; one before these is there to warm up.
-    size : tuple of int
-        Of the window, pixels.
-
-    Returns
-    -------
-    list of list of Camera
-        ``frames + 1`` cameras for each place.
-    """
-    centre = np.array(drawn.bounds).reshape(3, 2).mean(axis=1)
-    points = drawn.points[:: max(1, drawn.n_points // 50_000)]
-    extreme = np.concatenate([drawn.points.argmin(axis=0), drawn.points.argmax(axis=0)])
-    points = np.concatenate([points, drawn.points[extreme]]).astype(np.float64) - centre
-    narrow = math.tan(math.radians(VERTICAL_ANGLE / 2)) * np.array([size[0] / size[1], 1.0])
-    up = math.radians(ELEVATION)
-    rotations = []
-    for place in range(places):
-        for frame in range(-1, frames):
-            turn = 0.3 + 2.0 * math.pi * place / places + math.radians(DEGREES_PER_FRAME * frame)
-            back = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
-            right = np.array([-math.sin(turn), math.cos(turn), 0.0])
-            rotations.append(np.stack([right, np.cross(back, right), back]))
-    seen = [points @ rotation.T for rotation in rotations]
-    radius = float(np.linalg.norm(points, axis=1).max())
-    # A point is in the picture where the eye is at least so far from the centre.
-    distance = 1.01 * max(float((p[:, 2] + (abs(p[:, :2]) / narrow).max(axis=1)).max()) for p in seen)
-    nearest = distance - max(float(p[:, 2].max()) for p in seen)
-    near, far = max(nearest - 0.05 * radius, 1e-3 * radius), distance + 1.05 * radius
-    cameras = [Camera(tuple(size), centre + distance * rotation[2], centre, near, far) for rotation in rotations]
-    return [cameras[i : i + frames + 1] for i in range(0, len(cameras), frames + 1)]
 
 
 def run(way: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
@@ -295,14 +233,6 @@ class _Engine:
     def close(self) -> None:
         self.renderer.release()
         self.ctx.release()
-
-
-def darkness_of(gbuffer: Any) -> np.ndarray:
-    """Return a G-buffer as black lines with white halos: (height, width) float32, 1 where it is black."""
-    width, height = gbuffer.size
-    keys = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width)
-    ink = np.frombuffer(gbuffer.across.read(), np.float16).reshape(height, width)
-    return np.where(keys != 0xFFFFFFFF, ink, np.float16(0.0)).astype(np.float32)
 
 
 def _told(report: dict[str, Any]) -> dict[str, Any]:

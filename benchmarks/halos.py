@@ -19,10 +19,11 @@ import subprocess
 import sys
 from typing import Any
 
-from halo_ways import ABOUT, ROWS, STEREO, UnmeasuredError, look_of, make_set, row_of, run
+from halo_ways import ABOUT, ROWS, STEREO, UnmeasuredError, make_set, row_of, run
 from orbit import add_places, card_slug, context, machine, write
 
 from pvfiblets.halos import HaloLines
+from pvfiblets.report.halos_pictures import look_of
 
 TIME, BYTES, MANY = 1.5, 20.0, 1_000_000
 """The goals: as many times as long as VTK's plain lines at so many vertices, bytes a vertex."""

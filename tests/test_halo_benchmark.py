@@ -17,6 +17,7 @@ import pytest
 
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.report.cameras import Camera
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = (160, 120)
@@ -29,7 +30,7 @@ def bench(monkeypatch):
     names = {"ways": "halo_ways", "command": "halos", "errors": "halo_errors"}
     modules = {key: importlib.import_module(name) for key, name in names.items()}
     yield SimpleNamespace(**modules)
-    for name in (*names.values(), "orbit", "tube_reference", "tessellated"):
+    for name in (*names.values(), "orbit"):
         sys.modules.pop(name, None)
 
 
@@ -113,8 +114,6 @@ def test_data_fill_the_window_at_every_place(bench, size):
 
 def across(bench, size=(64, 48)):
     """Return one line across a picture, its look and a camera that shows it 64 x 16 pixels wide."""
-    from tube_reference import Camera
-
     camera = Camera(size, np.array([0.0, -100.0, 0.0]), np.zeros(3), 50.0, 150.0)
     k = camera.pixels / 100.0
     line = HaloLines([[-80.0, 0.0, 0.0], [80.0, 0.0, 0.0]], [0, 2])
@@ -144,7 +143,7 @@ def test_the_least_width_is_in_pixels_of_the_picture(gl, bench):
 def test_tiles_make_the_whole_picture(gl, bench):
     lines = bench.ways.helices(6)
     camera = bench.ways.orbit(lines, 1, 1, (64, 48))[0][0]
-    look = bench.ways.look_of(lines)
+    look = bench.errors.look_of(lines)
     renderer = HaloRenderer(gl, lines)
     whole = bench.errors.picture(renderer, camera, look, 4)
     tiled = bench.errors.picture(renderer, camera, look, 4, most=64 * 48)
@@ -161,7 +160,7 @@ def test_errors_of_pictures(bench):
     right = np.zeros((2, 10, 10))
     shown = right.copy()
     shown[0, 0, :4] = 0.5
-    told = bench.errors.errors(list(shown), list(right))
+    told = bench.errors.differences(list(shown), list(right))
     assert told["mean"] == pytest.approx(0.01)
     assert told["rms"] == pytest.approx(math.sqrt(0.25 * 4 / 200))
     assert (told["max"], told["wrong"]) == (0.5, 0.02)
