@@ -13,6 +13,8 @@ COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5
 def histogram_chart(counts: ArrayLike) -> str:
     """Return bars of the square roots of counts, so that rare values are seen beside frequent ones.
 
+    A few bars that stand far above the others, such as that of the air around a head, are cut off.
+
     Parameters
     ----------
     counts : array_like, shape (n,)
@@ -21,7 +23,8 @@ def histogram_chart(counts: ArrayLike) -> str:
     heights = np.sqrt(np.maximum(np.nan_to_num(np.asarray(counts, np.float64)), 0.0))
     if not heights.size or heights.max() <= 0.0:
         return ""
-    heights /= heights.max()
+    usual = np.sort(heights)[-1 - len(heights) // 24]
+    heights = np.minimum(heights / (min(heights.max(), 1.5 * usual) if usual > 0.0 else heights.max()), 1.0)
     bars = "".join(
         f'<rect x="{i}" y="{1 - h:.3f}" width=".92" height="{h:.3f}"/>' for i, h in enumerate(heights) if h > 0.0
     )

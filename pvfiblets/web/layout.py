@@ -31,7 +31,9 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
+.pv-view[data-ground=light] :is(.pv-edge, .pv-status) { color: #000; text-shadow: 0 0 3px #fff, 0 0 3px #fff }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
+@media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
 .pv-over svg { width: 100%; height: 100% }
 .pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
@@ -41,12 +43,14 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
 .pv-value { font-size: 13px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .pv-head { font-size: 11px; letter-spacing: .08em; text-transform: uppercase; opacity: .6; padding: 10px 12px 2px }
+.pv-name { font-size: 13px; font-weight: 600; padding: 10px 12px 0 }
 .pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; color: inherit; background: transparent;
   border: 1px solid rgba(128,128,128,.5); border-radius: 4px; padding: 3px 6px }
 .pv-num:focus { outline: 2px solid rgb(var(--v-theme-primary)); outline-offset: -1px }
 .pv-colour { width: 44px; height: 26px; padding: 0; border: 1px solid rgba(128,128,128,.5); border-radius: 4px;
   background: none }
 .pv-pair { display: flex; gap: 6px; align-items: center; min-width: 0 }
+.pv-chart { margin: 0 6px } /* as wide as the slider below, so that its thumbs point at bars */
 .pv-chart svg { width: 100%; height: 36px; display: block }
 .pv-small { font-size: 12px; opacity: .75 }
 .pv-code { white-space: pre; overflow: auto;
@@ -59,11 +63,13 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-layer { min-height: 34px !important; padding-inline: 6px !important }
 .pv-layer .v-list-item__spacer { width: 4px !important }
 .v-switch .v-selection-control { min-height: 28px !important }
-.v-switch__thumb { height: 16px !important; width: 16px !important }
+.v-switch__thumb { height: 16px !important; width: 16px !important; background: #fff !important }
+.v-switch .v-selection-control--dirty .v-switch__thumb { background: rgb(var(--v-theme-primary)) !important }
 .v-overlay .v-list-item { min-height: 34px !important }
 .v-overlay .v-list-item-title { font-size: 13px }
 .v-toolbar__content > .v-btn { margin-inline: 0 !important }
 .v-slider.v-input--horizontal { margin-inline: 6px }
+.v-field-label { font-size: 13px !important }
 .v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;
   padding-bottom: 3px !important }
 """
@@ -144,7 +150,9 @@ def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None
 
 
 def _view(app: Any) -> None:
-    with html.Div(classes="pv-view", id="pv-view"):
+    # A bright background needs dark letters, whatever the theme of the panels is.
+    bright = "[1, 3, 5].reduce((sum, k) => sum + parseInt(background.slice(k, k + 2), 16), 0) > 382"
+    with html.Div(classes="pv-view", id="pv-view", data_ground=(f"{bright} ? 'light' : 'dark'",)):
         area = rca.RemoteControlledArea(
             name=VIEW,
             display="image",
