@@ -6,12 +6,12 @@ import time
 from typing import Any
 
 import numpy as np
-from tube_error_rays import GOAL, Lens, clearance, radius_at, share, summary
-from tube_reference import orbit
 
 from pvfiblets.engine import Style, View
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.engine.splines import SOLVERS, SplineRenderer
+from pvfiblets.report.cameras import Lens, orbit
+from pvfiblets.report.tubes_rays import GOAL, clearance, radius_at, share, summary
 from pvfiblets.splines import curves
 from pvfiblets.splines.reference import ENTRY, EXIT, MISS, hits
 
@@ -156,8 +156,10 @@ def _tangents(x: np.ndarray, w: np.ndarray, reach: np.ndarray) -> tuple[np.ndarr
         low, high = middle - wide, middle + wide
     behind = ~(distance > reach)
     edge = np.pi / 2 - 1e-6
-    return (np.where(behind | (low < -edge), -np.inf, np.tan(np.clip(low, -edge, edge))),
-            np.where(behind | (high > edge), np.inf, np.tan(np.clip(high, -edge, edge))))
+    return (
+        np.where(behind | (low < -edge), -np.inf, np.tan(np.clip(low, -edge, edge))),
+        np.where(behind | (high > edge), np.inf, np.tan(np.clip(high, -edge, edge))),
+    )
 
 
 def whole(tubes: Any, picture: Picture, count: int, rng: Any) -> dict[str, Any]:
@@ -206,8 +208,11 @@ def measured(ctx: Any, name: str, tubes: Any, options: Any) -> list[dict[str, An
     size = tuple(options.size)
     small = tuple(max(16, n // REDUCED) for n in size)
     rng = np.random.default_rng(1)
-    lenses = {(view, this): [Lens.of(camera) for camera in orbit(tubes, view, max(options.frames, 2), this)]
-              for view in ("far", "close") for this in (size, small)}
+    lenses = {
+        (view, this): [Lens.of(camera) for camera in orbit(tubes, view, max(options.frames, 2), this)]
+        for view in ("far", "close")
+        for this in (size, small)
+    }
     for solver in ("auto", *SOLVERS):
         renderer = SplineRenderer(ctx, tubes, solver=solver)
         try:

@@ -2,67 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from tube_error_pictures import Picture, nearest
-from tube_error_rays import GOAL, Lens, Rays, aimed, clearance, halves, share, summary, unit
 
 from pvfiblets import SplineTubes
 from pvfiblets.engine import Style, View
 from pvfiblets.engine.splines import SplineRenderer
 from pvfiblets.engine.splines.probe import SolverProbe
+from pvfiblets.report.cameras import Lens, unit
+from pvfiblets.report.tubes_rays import GOAL, clearance, share, summary
+from pvfiblets.report.tubes_sweeps import SWEEPS
 from pvfiblets.splines import curves
 
 LIMITS = (GOAL, 1e-2)  # of the radius
-DECADES = tuple(10.0**k for k in range(7))
 EXTENT = 24.0  # radii from the middle of the tubes that pictures sweep to their ends
 
 
-def longer(ratio: float, count: int, rng: Any) -> Rays:
-    return aimed(halves(count, rng, ratio, 1.0, 0.1, 0.3), rng)
-
-
-def thicker(ratio: float, count: int, rng: Any) -> Rays:
-    return aimed(halves(count, rng, 1.0, ratio, 0.1, 0.3 / ratio), rng)
-
-
-def overshooting(ratio: float, count: int, rng: Any) -> Rays:
-    """Return rays at halves of Hermite segments with tangents of so many chords, the radius a tenth of a chord."""
-    chord = unit(rng.normal(size=(count, 3)))
-    slopes = ratio * unit(chord[:, None] + 0.5 * rng.normal(size=(count, 2, 3)))
-    made = np.zeros((count, 3, 4))
-    inner = np.stack([curves.MIDDLE * slopes[:, 0], chord - curves.MIDDLE * slopes[:, 1]], axis=1)
-    made[:, 1, :3], made[:, 2, :3] = inner[:, 0], inner.mean(axis=1)
-    made[:, :, 3] = 0.1
-    return aimed(made, rng)
-
-
-def widening(ratio: float, count: int, rng: Any) -> Rays:
-    made = halves(count, rng, 1.0, 0.1, 0.1, 0.0)
-    made[:, :, 3] += ratio * (0.5 * np.arange(3) + rng.uniform(-0.1, 0.1, (count, 3)) * [0.0, 1.0, 0.0])
-    return aimed(made, rng)
-
-
-def lengthwise(degrees: float, count: int, rng: Any) -> Rays:
-    """Return rays at so many degrees from the axis of straight halves, 20 radii long."""
-    made = halves(count, rng, 20.0, 1.0, 0.0, 0.3)
-    axis = unit(made[:, 2, :3])
-    beside = unit(np.cross(axis, rng.normal(size=axis.shape)))
-    angle = np.radians(degrees)
-    return aimed(made, rng, np.cos(angle) * axis + np.sin(angle) * beside)
-
-
-SWEEPS: dict[str, tuple[str, tuple[float, ...], Callable[[float, int, Any], Rays]]] = {
-    "length": ("length over radius", (1.0, 10.0, 100.0, 300.0, 500.0, 1e3, 3e3, 1e4, 3e4, 1e5, 1e6), longer),
-    "radius": ("radius over length", DECADES, thicker),
-    "tangents": ("tangents over chord", (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 300.0, 1000.0), overshooting),
-    "slope": ("change of radius over length", (0.0, 0.1, 0.5, 0.9, 0.99, 1.0, 1.01, 1.1, 2.0, 5.0, 10.0, 30.0, 100.0),
-              widening),
-    "angle": ("degrees between ray and axis", (90.0, 60.0, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1, 0.01, 0.001, 0.0),
-              lengthwise),
-}  # fmt: skip
 EYES = (1.1, 1.5, 3.0, 10.0, *(10.0**k for k in range(2, 8)))
 OFFSETS = (0.0, 1.0, *(10.0**k for k in range(1, 8)))
 PICTURES = {"eye": ("distance of the eye over radius", EYES), "offset": ("distance from 0 over extent", OFFSETS)}
@@ -77,8 +34,14 @@ def swept(ctx: Any, way: tuple[str, str, bool, int], options: Any) -> list[dict[
     for key, (_, ratios, make) in SWEEPS.items():
         for ratio in ratios:
             rays = make(ratio, options.rays // 4, np.random.default_rng(3))
-            rows.append({"sweep": key, "ratio": ratio, "way": name,
-                         **rays.errors(*probe.hits(rays.controls, rays.origins, rays.directions))})
+            rows.append(
+                {
+                    "sweep": key,
+                    "ratio": ratio,
+                    "way": name,
+                    **rays.errors(*probe.hits(rays.controls, rays.origins, rays.directions)),
+                }
+            )
     probe.release()
     for key, ratio, tubes, lens in pictures(options):
         renderer = SplineRenderer(ctx, tubes, solver=solver, iterations=iterations, min_width=0.0)

@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 from orbit import card_slug, context, machine, write
 from tube_error_pictures import NEAREST, measured
-from tube_error_rays import CLASSES, GOAL, Rays, of_class, of_set
 from tube_error_sweeps import ABOUT, LIMITS, PICTURES, approximation, holding, swept
 from tube_ways import make_set
 
 from pvfiblets.engine.splines import SOLVERS, SplineRenderer
 from pvfiblets.engine.splines.probe import SolverProbe
+from pvfiblets.report.tubes_rays import CLASSES, GOAL, Rays, of_class, of_set
 
 SETS = ("fibers", "hotroom", "bundle", "brain", "furball")
 ITERATIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40)
@@ -104,8 +104,18 @@ def alone(ctx: Any, data: dict[str, Rays], default: tuple[str, str, bool, int], 
     probes = {way: SolverProbe(ctx, way[1], way[3], chain=way[2]) for way in ways(options.iterations)}
     rows = []
     for name, rays in data.items():
-        here = {way: {"of": name, "way": way[0], "solver": way[1], "chain": way[2], "iterations": way[3],
-                      "own": way[3] == SOLVERS[way[1]].iterations, "default": way == default} for way in probes}
+        here = {
+            way: {
+                "of": name,
+                "way": way[0],
+                "solver": way[1],
+                "chain": way[2],
+                "iterations": way[3],
+                "own": way[3] == SOLVERS[way[1]].iterations,
+                "default": way == default,
+            }
+            for way in probes
+        }
         times: dict[Any, list[float]] = {way: [] for way in probes}
         for turn in range(options.repeats + 1):
             for way, probe in probes.items():  # in turns: what else the machine does then disturbs all of them

@@ -1,4 +1,4 @@
-"""Cameras of the tube benchmark, what a picture of spline tubes should cover, and how far one is from that.
+"""What a picture of spline tubes should cover, and how far one is from that.
 
 The reference is a fine mesh of the volume that the spheres sweep, drawn by VTK: the circles in which each sphere
 touches the envelope of all (they lie ahead of its middle where the radius shrinks, and behind where it grows), and
@@ -13,80 +13,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from tessellated import across
 
-VERTICAL_ANGLE = 45.0  # degrees; this and the distances are the paper's (Russig et al. 2020, section 4)
-VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
-ELEVATION = 15.0  # degrees above the plane of the orbit
+from pvfiblets.report.cameras import VERTICAL_ANGLE, Camera
+from pvfiblets.report.rivals.tessellated import across
+from pvfiblets.report.tubes_pictures import outline
+
 SIDES = (16, 32, 64, 128)
 STEPS = (2, 4, 8, 16)
 FINE = 0.05  # pixels of the reference's own picture
 BATCH = 6_000_000  # triangles that VTK holds at a time
-
-
-@dataclass(frozen=True, eq=False)
-class Camera:
-    """A camera that looks at a place: what VTK and bare OpenGL need to show the same picture."""
-
-    size: tuple[int, int]
-    eye: np.ndarray
-    centre: np.ndarray
-    near: float
-    far: float
-
-    @property
-    def pixels(self) -> float:
-        """What 1 mm takes in the picture at a distance of 1 mm."""
-        return 0.5 * self.size[1] / math.tan(math.radians(VERTICAL_ANGLE / 2))
-
-    @property
-    def backwards(self) -> np.ndarray:
-        """From the centre to the eye, a unit vector."""
-        away = self.eye - self.centre
-        return away / np.linalg.norm(away)
-
-    @property
-    def world_to_camera(self) -> np.ndarray:
-        """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
-        right = np.cross([0.0, 0.0, 1.0], self.backwards)
-        right /= np.linalg.norm(right)
-        matrix = np.eye(4)
-        matrix[:3, :3] = right, np.cross(self.backwards, right), self.backwards
-        matrix[:3, 3] = -matrix[:3, :3] @ self.eye
-        return matrix
-
-    @property
-    def model_view_projection(self) -> np.ndarray:
-        """(4, 4) data coordinates to OpenGL clip coordinates."""
-        t, near, far = 1.0 / math.tan(math.radians(VERTICAL_ANGLE / 2)), self.near, self.far
-        projection = np.zeros((4, 4))
-        projection[0, 0], projection[1, 1] = t * self.size[1] / self.size[0], t
-        projection[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
-        projection[3, 2] = -1.0
-        return projection @ self.world_to_camera
-
-    def aim(self, plotter: Any) -> None:
-        """Make a plotter look through this camera."""
-        camera = plotter.camera
-        camera.position, camera.focal_point, camera.up = self.eye, self.centre, (0.0, 0.0, 1.0)
-        camera.view_angle = VERTICAL_ANGLE
-        camera.clipping_range = self.near, self.far
-
-
-def orbit(tubes: Any, view: str, frames: int, size: tuple[int, int]) -> list[Camera]:
-    """Return cameras all around a set: *far*, where all of it fits into the picture, or *close*, at a third of that."""
-    box = np.array(tubes.bounds).reshape(3, 2)
-    centre = box.mean(axis=1)
-    radius = float((np.linalg.norm(tubes.points - centre, axis=1) + tubes.radius).max())
-    narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
-    distance = VIEWS[view] * radius / math.sin(math.atan(narrow))
-    near, far = max(distance - 1.02 * radius, 2e-3 * radius), distance + 1.02 * radius
-    up = math.radians(ELEVATION)
-    cameras = []
-    for turn in 2.0 * np.pi * np.arange(frames) / frames + 0.3:
-        direction = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
-        cameras.append(Camera(tuple(size), centre + distance * direction, centre, near, far))
-    return cameras
 
 
 def covered(plotter: Any) -> np.ndarray:
@@ -148,13 +83,6 @@ def supersampled(same_size: np.ndarray, fine: np.ndarray) -> Reference:
     times = fine.shape[0] // height
     shares = fine.reshape(height, times, width, times).mean(axis=(1, 3), dtype=np.float32)
     return Reference(same_size, shares, outline(fine) / times)
-
-
-def outline(mask: np.ndarray) -> float:
-    """Return the length of a mask's outline in its pixels: Crofton's formula with lines in four directions."""
-    straight = (mask[1:] != mask[:-1]).sum() + (mask[:, 1:] != mask[:, :-1]).sum()
-    slanted = (mask[1:, 1:] != mask[:-1, :-1]).sum() + (mask[1:, :-1] != mask[:-1, 1:]).sum()
-    return math.pi / 8.0 * (float(straight) + float(slanted) / math.sqrt(2.0))
 
 
 def fine_coverage(tubes: Any, camera: Camera, times: int) -> Reference:
@@ -224,9 +152,9 @@ def joined(tubes: Any) -> np.ndarray:
     stops = np.bincount(tubes.segments[:, 1], minlength=tubes.n_nodes)
     # Spheres that swallow their neighbours change the envelope faster than their circles follow.
     slopes = np.linalg.norm(tubes.tangents, axis=1) > 2.0 * np.abs(tubes.radius_slopes)
-    return np.stack([(stops > 0) & slopes, (starts > 0) & slopes], axis=1)[
-        tubes.segments, [0, 1]
-    ] & (tubes.segments[:, :1] != tubes.segments[:, 1:])
+    return np.stack([(stops > 0) & slopes, (starts > 0) & slopes], axis=1)[tubes.segments, [0, 1]] & (
+        tubes.segments[:, :1] != tubes.segments[:, 1:]
+    )
 
 
 def _fineness(controls: np.ndarray, camera: Camera, pixels: float) -> tuple[np.ndarray, np.ndarray]:
@@ -244,8 +172,10 @@ def _fineness(controls: np.ndarray, camera: Camera, pixels: float) -> tuple[np.n
     sides = np.pi / np.arccos(1.0 - FINE / radius)
     bend = 2.0 * np.linalg.norm(controls[:, 0] - 2.0 * controls[:, 1] + controls[:, 2], axis=1)
     steps = np.sqrt(scale * bend / (8.0 * FINE))
-    found = [np.array((0, *choices))[1 + np.minimum(np.searchsorted(choices, need), len(choices) - 1)]
-             for choices, need in ((SIDES, sides), (STEPS, steps))]
+    found = [
+        np.array((0, *choices))[1 + np.minimum(np.searchsorted(choices, need), len(choices) - 1)]
+        for choices, need in ((SIDES, sides), (STEPS, steps))
+    ]
     return tuple(np.where(outside, 0, many) for many in found)
 
 
@@ -279,9 +209,12 @@ def _strips(controls: np.ndarray, sides: int, steps: int) -> tuple[np.ndarray, n
 def _spheres(controls: np.ndarray, sides: int, _: int) -> tuple[np.ndarray, np.ndarray]:
     """Return points and triangles of spheres: circles of latitude, the poles included."""
     turn, tilt = 2.0 * np.pi * np.arange(sides) / sides, np.pi * np.arange(sides // 2 + 1) / (sides // 2)
-    unit = np.stack(np.broadcast_arrays(
-        np.sin(tilt)[:, None] * np.cos(turn), np.sin(tilt)[:, None] * np.sin(turn), np.cos(tilt)[:, None]
-    ), axis=2)
+    unit = np.stack(
+        np.broadcast_arrays(
+            np.sin(tilt)[:, None] * np.cos(turn), np.sin(tilt)[:, None] * np.sin(turn), np.cos(tilt)[:, None]
+        ),
+        axis=2,
+    )
     return _grid(controls[:, 0, None, None, :3] + controls[:, 0, None, None, 3:] * _wider(sides) * unit)
 
 

@@ -14,8 +14,11 @@ from typing import Any
 
 import numpy as np
 from orbit import context
-from tessellated import TessellatedTubes
-from tube_reference import Camera, covered, fine_coverage, orbit
+from tube_reference import covered, fine_coverage
+
+from pvfiblets.report.cameras import Camera, orbit
+from pvfiblets.report.rivals.tessellated import TessellatedTubes
+from pvfiblets.report.tubes_pictures import helices
 
 ABOUT = {
     "lines-as-tubes": "VTK's lines with tube shading, as wide as the mean radius is in the middle of the picture",
@@ -48,25 +51,6 @@ def make_set(name: str, seed: int = 0) -> Any:
     from pvfiblets.synthetic.tubes import tube_set
 
     return tube_set(name, seed)
-
-
-def helices(count: int, nodes: int = 25) -> Any:
-    """Return tubes of varying radius around helices, beside each other on a circle."""
-    from pvfiblets import SplineTubes
-
-    t = np.linspace(0.0, 4.0 * np.pi, nodes)
-    shift = 2.0 * np.pi * np.arange(count)[:, None] / count
-    ring = 0.8 * count * np.stack([np.cos(shift), np.sin(shift), 0.0 * shift], axis=2)
-    points = ring + np.stack(np.broadcast_arrays(np.cos(t + shift), np.sin(t + shift), 0.5 * t), axis=2)
-    slopes = np.stack(np.broadcast_arrays(-np.sin(t + shift), np.cos(t + shift), 0.5), axis=2)
-    radius = np.broadcast_to(0.4 + 0.2 * np.sin(2.0 * t), (count, nodes))
-    growth = np.broadcast_to(0.4 * np.cos(2.0 * t), (count, nodes))
-    first = (np.arange(count)[:, None] * nodes + np.arange(nodes - 1)).ravel()
-    return SplineTubes(
-        points=points.reshape(-1, 3), segments=np.stack([first, first + 1], axis=1), radius=radius.ravel(),
-        tangents=slopes.reshape(-1, 3) * t[1], radius_slopes=growth.ravel() * t[1], scaled=False,
-        tubes=np.repeat(np.arange(count), nodes - 1), n_tubes=count,
-    )  # fmt: skip
 
 
 def polylines(tubes: Any, samples: int = 1) -> Any:

@@ -23,8 +23,10 @@ from typing import Any
 
 import numpy as np
 from orbit import add_places, card_slug, context, machine, write
-from tube_reference import VIEWS, Reference
+from tube_reference import Reference
 from tube_ways import ABOUT, DEFAULT, TUBE, TooMuchError, make_set, reference, run
+
+from pvfiblets.report.cameras import VIEWS
 
 SETS = ("fibers", "hotroom", "bundle", "brain", "furball")
 ERRORS = (0.2, 0.1, 0.05, 0.02)  # pixels, for which the least memory is looked up
@@ -138,9 +140,7 @@ def started(way: str, name: str, path: Path, options: Any) -> dict[str, Any]:
     # The reference is no way: it is given four times as long before errors go unmeasured.
     seconds = options.limit[0] * (4 if way == "reference" else 1)
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, check=False, timeout=seconds, env=environment
-        )
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=seconds, env=environment)
     except subprocess.TimeoutExpired:
         return {"unmeasured": f"takes more than {seconds:g} s here"}
     if done.returncode != 0:

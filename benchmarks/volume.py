@@ -27,11 +27,12 @@ import numpy as np
 from orbit import card_slug, context, machine, write
 from volume_effects import EFFECTS, effects
 from volume_measure import run
-from volume_scene import FOLDER, MODES, circle, known_data, look_of, make_data, truth
+from volume_scene import FOLDER, MODES, known_data, make_data
 from volume_told import plot, table
 from volume_ways import EQUAL, WAYS
 
 from pvfiblets.raycast import RaycastVolume
+from pvfiblets.report.volume_scene import circle, look_of, truth
 
 DATA = ("vessels-64", "vessels-128", "vessels-256", "vessels-512", "brain")
 PICTURE = 256  # pixels along a side of the pictures whose errors are measured

@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 from volume_measure import Measured, nudged
-from volume_scene import circle, look_of, make_data
+from volume_scene import make_data
 from volume_ways import Plotter
+
+from pvfiblets.report.volume_scene import circle, look_of
 
 PAPER = {
     "dof": {"static": (15.70, 16.15), "circle": (14.25, 14.63)},

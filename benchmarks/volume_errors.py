@@ -14,23 +14,23 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from orbit import card_slug, context, machine, write
-from tube_reference import Camera
 from volume_effects import DIFFERS, differing
 from volume_errors_told import plot, table
 from volume_measure import Measured, nudged
-from volume_scene import FOLDER, MODES, Look, Truth, circle, known_data, look_of, make_data, truth
-from volume_ways import colours_of
+from volume_scene import FOLDER, MODES, known_data, make_data
 
 from pvfiblets.engine import View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.raycast import FILTERS, RaycastVolume, reference
+from pvfiblets.raycast import FILTERS
 from pvfiblets.raycast.casting import INTEGRATORS, Casting
+from pvfiblets.report.cameras import Camera
+from pvfiblets.report.volume_pictures import Right, colours_of, places, right_of
+from pvfiblets.report.volume_scene import circle, look_of
 
 STEPS = (2.0, 1.0, 0.5, 0.25, 0.125)
 FEW_STEPS = (1.0, 0.5, 0.25)
@@ -108,28 +108,6 @@ def settings(mode: str, steps: list[float], spread: float) -> Iterator[tuple[str
         yield from (("sparse", {"sparse": stride, "sparse_threshold": at}) for at in THRESHOLDS)
 
 
-@dataclass(frozen=True, eq=False)
-class Right:
-    """What is right by one filter: colours, and of surfaces how far along their rays they are."""
-
-    colours: Truth
-    rays: list[Any]
-    along: list[np.ndarray] | None  # (n,) mm for each camera, NaN where there is no surface
-
-
-def right_of(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, filter: str) -> Right:  # noqa: A002
-    """Return what is right in so many pixels of each camera's picture."""
-    colours = truth(volume, look, cameras, count, filter)
-    rays = [
-        reference.rays(camera.model_view_projection, camera.size, volume)[at[:, 0], at[:, 1]]
-        for camera, at in zip(cameras, colours.pixels, strict=True)
-    ]
-    along = None
-    if look.mode == "isosurface":
-        along = [reference.isosurface(volume, look.value, through, filter=filter).t for through in rays]
-    return Right(colours, rays, along)
-
-
 def measured(ctx: Any, name: str, mode: str, options: Any) -> list[dict[str, Any]]:
     """Return a row for each setting of one mode."""
     volume = make_data(name, options.seed, options.data_folder)
@@ -190,44 +168,6 @@ def said(casting: Casting) -> dict[str, Any]:
     if casting.mode == "composite":
         told |= {"integrator": casting.integrator, "stop": casting.stop, "homogeneous": casting.homogeneous}
     return told
-
-
-def along_of(keys: np.ndarray, rays: Any) -> np.ndarray:
-    """Return how far along rays the depths are that a G-buffer's keys mean: ``(n,)`` mm, NaN where there is nothing."""
-    depth = 2.0 * (1.0 - (0xFFFFFFFF - keys.astype(np.float64)) / 2.0**32) - 1.0
-    z, w = np.moveaxis(rays.origins @ rays.matrix[2:, :3].T + rays.matrix[2:, 3], -1, 0)
-    dz, dw = np.moveaxis(rays.directions @ rays.matrix[2:, :3].T, -1, 0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(keys == 0xFFFFFFFF, np.nan, (depth * w - z) / (dz - depth * dw))
-
-
-def places(of: Right, depths: list[np.ndarray], spacing: float) -> dict[str, Any]:
-    """Return how far surfaces are off along their rays, in voxels.
-
-    Returns
-    -------
-    dict
-        ``position``: mean, what is missed, too many, or off by more than a voxel counted as one voxel, over the pixels
-        that show or ought to show a surface; ``median`` and ``p99`` of those that are no more off; ``missed`` and
-        ``false``: shares of surfaces that are not there, too far by more than a voxel included, or should not be, or
-        not as near.
-    """
-    assert of.along is not None
-    keys = [depth[at[:, 0], at[:, 1]] for depth, at in zip(depths, of.colours.pixels, strict=True)]
-    shown = np.concatenate([along_of(key, rays) for key, rays in zip(keys, of.rays, strict=True)])
-    wanted = np.concatenate(of.along)
-    there, ought = ~np.isnan(shown), ~np.isnan(wanted)
-    off = np.abs(shown - wanted) / spacing
-    near = there & ought & (off <= 1.0)
-    either = there | ought
-    far = there & ought & (off > 1.0)
-    return {
-        "position": float(np.where(near, off, 1.0)[either].mean()) if either.any() else 0.0,
-        "median": float(np.median(off[near])) if near.any() else None,
-        "p99": float(np.percentile(off[near], 99)) if near.any() else None,
-        "missed": float(((ought & ~there) | (far & (shown > wanted))).sum() / max(ought.sum(), 1)),
-        "false": float(((there & ~ought) | (far & (shown < wanted))).sum() / max(ought.sum(), 1)),
-    }
 
 
 def beaten(row: dict[str, Any], rows: list[dict[str, Any]], error: str) -> bool:

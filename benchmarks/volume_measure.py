@@ -8,9 +8,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from tube_reference import Camera
-from volume_scene import Look, Truth, circle, look_of, make_data
+from volume_scene import make_data
 from volume_ways import EQUAL, WAYS, Way
+
+from pvfiblets.report.cameras import Camera
+from pvfiblets.report.volume_scene import Look, Truth, circle, look_of
 
 STATIC_TOO = ("engine", "plotter", "vtk-gpu", EQUAL)
 """Ways that are also timed in the static view: the other one is the mapper of these once more."""

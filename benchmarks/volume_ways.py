@@ -1,7 +1,7 @@
 """The ways of casting rays through volumes that the benchmark compares.
 
-Every way shows the same (`volume_scene`) at the same step, on black, without anti-aliasing and without jitter. What
-differs is said with each way in :data:`ABOUT`.
+Every way shows the same (`pvfiblets.report.volume_scene`) at the same step, on black, without anti-aliasing and without
+jitter. What differs is said with each way in :data:`ABOUT`.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 from orbit import context
-from tube_reference import Camera
 from volume_memory import held
-from volume_scene import Look, Truth, grey_of, lit
 
 from pvfiblets.raycast import RaycastVolume
+from pvfiblets.report.cameras import Camera
+from pvfiblets.report.volume_pictures import colours_of
+from pvfiblets.report.volume_scene import Look, Truth
 
 ABOUT = {
     "engine": "this program's ray casting on a bare context, without VTK: a G-buffer, not lit",
@@ -255,37 +256,6 @@ def transfer_to(prop: Any, look: Look) -> None:
     prop.SetInterpolationTypeToLinear()
     if look.mode == "isosurface":
         prop.GetIsoSurfaceValues().SetValue(0, look.value)
-
-
-def colours_of(gbuffer: Any, look: Look, camera: Camera) -> np.ndarray:
-    """Return the picture that a G-buffer means, by the lamp of meshes: ``(height, width, 3)``, row 0 at the bottom."""
-    width, height = gbuffer.size
-    there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != 0xFFFFFFFF
-    if look.mode == "composite":
-        rgba = np.frombuffer(gbuffer.colours.read(), np.uint8).reshape(height, width, 4) / 255.0
-        shown = rgba[..., :3] * rgba[..., 3:]
-    elif look.mode == "mip":
-        shown = grey_of(np.frombuffer(gbuffer.position.read(), np.float32).reshape(height, width, 2)[..., 1], look)
-    else:
-        normals = directions_of(np.frombuffer(gbuffer.across.read(), np.uint32)).reshape(height, width, 3)
-        # They face the eye already.
-        shown = lit(normals, -normals, camera.backwards)
-    return np.where(there[..., None], shown, 0.0)
-
-
-def directions_of(words: np.ndarray) -> np.ndarray:
-    """Return ``(n, 3)`` unit vectors of words, each an octahedral map about +x in two signed 16 bits."""
-    from pvfiblets.codec.layout import DIRECTION_SCALE
-
-    u, v = ((words >> shift).astype(np.uint16).view(np.int16) / DIRECTION_SCALE for shift in (0, 16))
-    x = 1.0 - abs(u) - abs(v)
-    behind = x < 0.0
-    u, v = (
-        np.where(behind, (1.0 - abs(v)) * np.where(u < 0.0, -1.0, 1.0), u),
-        np.where(behind, (1.0 - abs(u)) * np.where(v < 0.0, -1.0, 1.0), v),
-    )
-    found = np.stack([x, u, v], axis=-1)
-    return found / np.linalg.norm(found, axis=-1, keepdims=True)
 
 
 def told(report: dict[str, Any], volume: RaycastVolume) -> dict[str, Any]:

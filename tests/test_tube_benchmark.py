@@ -15,6 +15,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pvfiblets.report.cameras import ELEVATION, orbit
+from pvfiblets.report.rivals import tessellated
+
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = (160, 90)
 
@@ -23,7 +26,7 @@ SIZE = (160, 90)
 def bench(monkeypatch):
     """Return the benchmark's modules, which are no package."""
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
-    names = ("tessellated", "tube_reference", "tube_ways", "tubes")
+    names = ("tube_reference", "tube_ways", "tubes")
     modules = {name: importlib.import_module(name) for name in names}
     yield SimpleNamespace(**modules)
     for name in (*names, "orbit"):
@@ -37,7 +40,7 @@ def ball(bench):
 
     tubes = SplineTubes(points=[[10, 0, 0]], segments=[[0, 0]], radius=[2.0], tangents=[[0, 0, 0]],
                         radius_slopes=[0.0], scaled=True, tubes=[0], n_tubes=1)  # fmt: skip
-    near = bench.tube_reference.orbit(tubes, "far", 4, SIZE)[1]
+    near = orbit(tubes, "far", 4, SIZE)[1]
     return tubes, dataclasses.replace(near, eye=1.5 * near.eye - 0.5 * near.centre, far=2.0 * near.far)
 
 
@@ -111,16 +114,16 @@ def test_a_tessellated_tube_is_as_wide_as_it_should_be(bench):
 
     tubes = SplineTubes(points=[[0, 0, -5], [0, 0, 5]], segments=[[0, 1]], radius=[1, 1], tangents=[[0, 0, 1]] * 2,
                         radius_slopes=[0, 0], scaled=True, tubes=[0], n_tubes=1)  # fmt: skip
-    camera = bench.tube_reference.orbit(tubes, "far", 4, (1600, 900))[0]
+    camera = orbit(tubes, "far", 4, (1600, 900))[0]
     options = SimpleNamespace(size=(1600, 900))
     drawn = bench.tube_ways._Tessellated("tessellated", tubes, options)
     drawn.draw(camera)
     shown = drawn.covered()
-    sides = bench.tessellated.MOST_SIDES
+    sides = tessellated.MOST_SIDES
     assert drawn.facts([camera])["primitives"] == 4 * sides - 2  # straight: one step along, of which OpenGL makes two
     drawn.close()
     distance = np.hypot(*(camera.eye - camera.centre)[:2])  # the tube stands upright, the camera looks down on it
-    tilt = np.cos(np.radians(bench.tube_reference.ELEVATION))
+    tilt = np.cos(np.radians(ELEVATION))
     expected = 2.0 * np.tan(np.arcsin(1.0 / distance)) * camera.pixels * tilt
     assert shown[450].sum() == pytest.approx(expected, abs=2.0)
 
@@ -129,7 +132,7 @@ def test_normals_turn_as_little_as_can_be(bench):
     t = np.linspace(0.0, 6.0, 200)
     tangents = np.stack([-np.sin(t), np.cos(t), np.full(200, 0.3)], axis=1)
     segments = np.stack([np.arange(199), np.arange(1, 200)], axis=1)
-    normals = bench.tessellated.carried_normals(tangents, segments)
+    normals = tessellated.carried_normals(tangents, segments)
     np.testing.assert_allclose(np.einsum("ij,ij->i", normals, tangents), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
     turns = np.linalg.norm(np.diff(normals, axis=0), axis=1)

@@ -14,6 +14,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pvfiblets.report.cameras import Lens, orbit
+from pvfiblets.report.tubes_rays import Rays, of_class, of_set
+from pvfiblets.report.tubes_sweeps import lengthwise
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -21,11 +25,11 @@ ROOT = Path(__file__).resolve().parents[1]
 def bench(monkeypatch):
     """Return the report's modules, which are no package."""
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
-    names = {"rays": "tube_error_rays", "pictures": "tube_error_pictures", "sweeps": "tube_error_sweeps",
-             "command": "tube_errors", "ways": "tube_ways", "reference": "tube_reference"}  # fmt: skip
+    names = {"pictures": "tube_error_pictures", "sweeps": "tube_error_sweeps", "command": "tube_errors",
+             "ways": "tube_ways", "reference": "tube_reference"}  # fmt: skip
     modules = {key: importlib.import_module(name) for key, name in names.items()}
     yield SimpleNamespace(**modules)
-    for name in (*names.values(), "orbit", "tessellated"):
+    for name in (*names.values(), "orbit"):
         sys.modules.pop(name, None)
 
 
@@ -71,7 +75,7 @@ def test_the_error_of_a_ray_by_a_sphere(bench):
     ball = np.tile([1.0, 2.0, 3.0, 0.5], (5, 3, 1))
     beside = np.array([0.0, 0.3, 0.4, 0.49, 0.6])
     origins = np.stack([1.0 + beside, np.full(5, 2.0), np.full(5, -7.0)], axis=1)
-    rays = bench.rays.Rays(ball, origins, np.tile([0.0, 0.0, 1.0], (5, 1)))
+    rays = Rays(ball, origins, np.tile([0.0, 0.0, 1.0], (5, 1)))
     depth = 10.0 - np.sqrt(np.maximum(0.25 - beside**2, 0.0))
     np.testing.assert_allclose(rays.clearance, beside - 0.5, atol=1e-12)
     right = rays.errors(np.where(beside < 0.5, depth, np.nan), np.full(5, 0.5), (beside < 0.5).astype(int))
@@ -86,7 +90,7 @@ def test_the_error_of_a_ray_by_a_sphere(bench):
 
 
 def test_rays_are_aimed_at_their_halves(bench, tubes):
-    for rays in (bench.rays.of_class("bent", 500), bench.rays.of_set(tubes, 500, (320, 180))):
+    for rays in (of_class("bent", 500), of_set(tubes, 500, (320, 180))):
         assert len(rays.controls) == 500
         np.testing.assert_allclose(np.linalg.norm(rays.directions, axis=1), 1.0)
         share = (rays.truth.kind > 0).mean()
@@ -95,8 +99,8 @@ def test_rays_are_aimed_at_their_halves(bench, tubes):
 
 
 def test_a_lens_is_the_orbits_camera(bench, tubes):
-    camera = bench.reference.orbit(tubes, "close", 4, (160, 90))[1]
-    lens = bench.rays.Lens.of(camera)
+    camera = orbit(tubes, "close", 4, (160, 90))[1]
+    lens = Lens.of(camera)
     np.testing.assert_allclose(lens.matrix, camera.model_view_projection, rtol=1e-12)
     pixels = np.array([0, 159, 7250, 160 * 90 - 1])
     directions, forwards = lens.rays(pixels)
@@ -113,7 +117,7 @@ def test_a_lens_is_the_orbits_camera(bench, tubes):
 def test_the_nearest_of_all_is_found(bench, tubes):
     from pvfiblets.splines.reference import nearest_hits
 
-    lens = bench.rays.Lens.of(bench.reference.orbit(tubes, "close", 4, (160, 90))[0])
+    lens = Lens.of(orbit(tubes, "close", 4, (160, 90))[0])
     pixels = np.arange(0, 160 * 90, 37)
     directions, forwards = lens.rays(pixels)
     found, _, segment = bench.pictures.nearest(tubes, lens, pixels, lens.far / forwards)
@@ -128,7 +132,7 @@ def test_the_nearest_of_all_is_found(bench, tubes):
 
 
 def test_tubes_are_widened_to_a_pixel(bench, tubes):
-    lens = bench.rays.Lens.of(bench.reference.orbit(tubes, "far", 4, (160, 90))[0])
+    lens = Lens.of(orbit(tubes, "far", 4, (160, 90))[0])
     hair = dataclasses.replace(tubes, radius=0.0 * tubes.radius, radius_slopes=0.0 * tubes.radius)
     ends = bench.pictures.widened(hair, np.arange(hair.n_segments), lens)[:, [0, 1], [0, 2]]
     # The width in pixels of what is seen at an end: its diameter over what a pixel takes there.
@@ -154,7 +158,7 @@ def test_what_float32_holds_up_to(bench):
 def test_swept_angles_are_those_asked_for(bench):
     rng = np.random.default_rng(0)
     for degrees in (90.0, 10.0, 0.1, 0.0):
-        rays = bench.sweeps.lengthwise(degrees, 50, rng)
+        rays = lengthwise(degrees, 50, rng)
         axis = rays.controls[:, 2, :3] - rays.controls[:, 0, :3]
         across = np.linalg.norm(np.cross(axis, rays.directions), axis=1)
         along = np.einsum("ni,ni->n", axis, rays.directions)

@@ -18,6 +18,7 @@ import pytest
 from pvfiblets.engine import View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
 from pvfiblets.raycast import RaycastVolume, reference
+from pvfiblets.report import volume_pictures, volume_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = (48, 48)
@@ -31,7 +32,7 @@ def bench(monkeypatch):
     names = ("scene", "memory", "ways", "measure", "effects", "told", "errors", "errors_told")
     modules = {name: importlib.import_module(f"volume_{name}") for name in names}
     yield SimpleNamespace(**modules, command=importlib.import_module("volume"))
-    for name in (*(f"volume_{name}" for name in names), "volume", "orbit", "tube_reference", "tessellated"):
+    for name in (*(f"volume_{name}" for name in names), "volume", "orbit"):
         sys.modules.pop(name, None)
 
 
@@ -91,7 +92,7 @@ def test_what_takes_too_long_is_left_out_and_said(bench, tmp_path):
 @pytest.mark.parametrize("mode", MODES)
 def test_the_plotter_shows_the_engines_picture(bench, mode):
     volume = ball()
-    look, camera = bench.scene.look_of(volume, mode), bench.scene.circle(volume, 1, SIZE)[0]
+    look, camera = volume_scene.look_of(volume, mode), volume_scene.circle(volume, 1, SIZE)[0]
     pictures = []
     for kind in (bench.ways.Engine, bench.ways.Plotter):
         way = kind("", volume, look, 0.5, SIZE)
@@ -131,15 +132,15 @@ def test_one_command_measures_errors(tmp_path):
 @pytest.mark.parametrize("mode", MODES)
 def test_the_engine_comes_near_what_is_right(gl, bench, mode):
     volume = ball()
-    look, cameras = bench.scene.look_of(volume, mode), bench.scene.circle(volume, 2, SIZE)
-    of = bench.scene.truth(volume, look, cameras, 400)
+    look, cameras = volume_scene.look_of(volume, mode), volume_scene.circle(volume, 2, SIZE)
+    of = volume_scene.truth(volume, look, cameras, 400)
     renderer = RaycastRenderer(gl, volume)
 
     def error(step):
         style = RaycastStyle(casting=look.casting(step=step))
         views = [View(camera.size, camera.model_view_projection) for camera in cameras]
         shown = [
-            bench.ways.colours_of(renderer.render(view, style), look, camera)
+            volume_pictures.colours_of(renderer.render(view, style), look, camera)
             for view, camera in zip(views, cameras, strict=True)
         ]
         return of.error(shown)
@@ -152,8 +153,8 @@ def test_the_engine_comes_near_what_is_right(gl, bench, mode):
 @pytest.mark.parametrize("mode", MODES)
 def test_vtk_comes_near_what_is_right(bench, mode):
     volume = ball()
-    look, cameras = bench.scene.look_of(volume, mode), bench.scene.circle(volume, 1, SIZE)
-    of = bench.scene.truth(volume, look, cameras, 400)
+    look, cameras = volume_scene.look_of(volume, mode), volume_scene.circle(volume, 1, SIZE)
+    of = volume_scene.truth(volume, look, cameras, 400)
     way = bench.ways.VTK("vtk-gpu", volume, look, 6.0, SIZE)
     coarse = way.error(of)
     way.step(0.03)
@@ -166,9 +167,9 @@ def test_vtk_comes_near_what_is_right(bench, mode):
 
 def test_a_ball_is_a_disc_as_bright_as_it_faces_the_lamp(bench):
     volume = ball(48)
-    look, camera = bench.scene.look_of(volume, "isosurface"), bench.scene.circle(volume, 1, SIZE)[0]
+    look, camera = volume_scene.look_of(volume, "isosurface"), volume_scene.circle(volume, 1, SIZE)[0]
     through = reference.rays(camera.model_view_projection, SIZE, volume)
-    axis, eye = bench.scene.right(volume, look, through, camera)[..., 0]
+    axis, eye = volume_scene.right(volume, look, through, camera)[..., 0]
     radius, distance = 1.0 - look.value, np.linalg.norm(camera.eye)
     # From the eye: cos of the angle at the sphere, by the sine rule.
     sine = np.linalg.norm(np.cross(through.directions, camera.backwards), axis=-1) * distance / radius
@@ -182,7 +183,7 @@ def test_a_ball_is_a_disc_as_bright_as_it_faces_the_lamp(bench):
 
 def test_normals_are_turned_towards_the_eye(bench):
     away = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, -3.0], [np.nan] * 3])
-    shine = bench.scene.lit(away, np.array([[0.0, 0.0, 1.0]] * 3), np.array([0.0, 0.0, -1.0]))
+    shine = volume_scene.lit(away, np.array([[0.0, 0.0, 1.0]] * 3), np.array([0.0, 0.0, -1.0]))
     np.testing.assert_allclose(shine[:, 0], [1.0, math.sqrt(0.5), 0.0])
 
 
@@ -190,26 +191,26 @@ def test_directions_are_those_that_were_packed(bench):
     from pvfiblets.codec.reference import pack_direction
 
     ways = np.concatenate([np.random.default_rng(0).normal(size=(256, 3)), np.eye(3), -np.eye(3)])
-    found = bench.ways.directions_of(np.array([pack_direction(way) for way in ways], np.uint32))
+    found = volume_pictures.directions_of(np.array([pack_direction(way) for way in ways], np.uint32))
     np.testing.assert_allclose(found, ways / np.linalg.norm(ways, axis=1, keepdims=True), atol=1e-4)
 
 
 def test_depths_say_how_far_along_a_ray(bench):
     volume = ball()
-    camera = bench.scene.circle(volume, 1, SIZE)[0]
+    camera = volume_scene.circle(volume, 1, SIZE)[0]
     through = reference.rays(camera.model_view_projection, SIZE, volume)
     middle = 0.3 * through.near + 0.7 * through.far
     there = ~np.isnan(middle)
     keys = np.full(there.shape, 0xFFFFFFFF, np.uint32)
     keys[there] = 0xFFFFFFFF - np.round((1.0 - through.depth(middle)[there]) * 2.0**32).astype(np.uint32)
-    found = bench.errors.along_of(keys, through)
+    found = volume_pictures.along_of(keys, through)
     np.testing.assert_array_equal(np.isnan(found), ~there)
     np.testing.assert_allclose(found[there], middle[there], atol=1e-7)
 
 
 def test_what_is_missed_counts_as_a_voxel(bench):
     volume = ball()
-    camera = bench.scene.circle(volume, 1, SIZE)[0]
+    camera = volume_scene.circle(volume, 1, SIZE)[0]
     through = reference.rays(camera.model_view_projection, SIZE, volume)
     rows, columns = np.nonzero(~np.isnan(through.near))
     pixels = np.stack([rows, columns], axis=1)[:4]
@@ -222,7 +223,7 @@ def test_what_is_missed_counts_as_a_voxel(bench):
     keys = 0xFFFFFFFF - np.round((1.0 - rays.depth(shown)) * 2.0**32)
     depths[pixels[there, 0], pixels[there, 1]] = keys[there].astype(np.uint32)
     truth = SimpleNamespace(pixels=[pixels])
-    told = bench.errors.places(bench.errors.Right(truth, [rays], [wanted]), [depths], spacing)
+    told = volume_pictures.places(volume_pictures.Right(truth, [rays], [wanted]), [depths], spacing)
     assert told["position"] == pytest.approx((0.25 + 1.0 + 1.0) / 3.0, abs=1e-6)
     assert told["median"] == pytest.approx(0.25, abs=1e-6)
     assert (told["missed"], told["false"]) == (pytest.approx(2.0 / 3.0), 0.0)
@@ -233,14 +234,14 @@ def test_what_is_missed_counts_as_a_voxel(bench):
 
 def test_every_frame_that_is_timed_is_drawn_anew(gl, bench):
     volume = ball()
-    look = bench.scene.look_of(volume, "mip")
+    look = volume_scene.look_of(volume, "mip")
     renderer = RaycastRenderer(gl, volume)
     style, drawn = RaycastStyle(casting=look.casting()), []
 
     def draw(camera):
         drawn.append(renderer.render(View(camera.size, camera.model_view_projection), style).generation)
 
-    circle = bench.scene.circle(volume, 4, SIZE)
+    circle = volume_scene.circle(volume, 4, SIZE)
     told = [bench.measure.timed(draw, cameras, 60.0) for cameras in (circle, bench.measure.nudged(circle[0], 5))]
     assert [one["frames"] for one in told] == [4, 5]
     assert np.all(np.diff(drawn) == 1)
@@ -259,7 +260,7 @@ def test_few_frames_are_drawn_where_they_take_long(bench, monkeypatch, seconds, 
     def draw(_):
         now[0] += 2.0
 
-    told = bench.measure.timed(draw, bench.scene.circle(ball(), 9, SIZE), seconds)
+    told = bench.measure.timed(draw, volume_scene.circle(ball(), 9, SIZE), seconds)
     assert told["frames"] == frames
     assert (told["ms"], told["cpu_ms"]) == (2000.0, 1000.0)
 
@@ -380,7 +381,7 @@ def test_cameras_see_what_is_in_the_box_from_all_around(bench):
     inside = np.random.default_rng(0).normal(size=(500, 3))
     inside *= 1.1 / np.linalg.norm(inside, axis=1, keepdims=True)
     extents, turns = [], []
-    for camera in bench.scene.circle(volume, 12, (60, 40)):
+    for camera in volume_scene.circle(volume, 12, (60, 40)):
         clip = np.column_stack([inside, np.ones(500)]) @ camera.model_view_projection.T
         place = np.abs(clip[:, :3] / clip[:, 3:])
         assert (clip[:, 3] > 0.0).all()

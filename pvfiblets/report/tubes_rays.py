@@ -12,10 +12,29 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from tube_reference import VERTICAL_ANGLE, Camera, orbit
+import numpy.typing as npt
 
 from pvfiblets.splines import curves
 from pvfiblets.splines.reference import Hits, hits, surface_distance
+
+from .cameras import Lens, orbit, unit
+
+__all__ = [
+    "CLASSES",
+    "GOAL",
+    "Rays",
+    "aimed",
+    "clearance",
+    "halves",
+    "of_class",
+    "of_set",
+    "radius_at",
+    "share",
+    "summary",
+]
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 GOAL = 1e-4  # of the radius
 
@@ -42,9 +61,9 @@ class Rays:
         (n, 3); directions are unit vectors.
     """
 
-    controls: np.ndarray
-    origins: np.ndarray
-    directions: np.ndarray
+    controls: Array
+    origins: Array
+    directions: Array
 
     @cached_property
     def truth(self) -> Hits:
@@ -52,11 +71,11 @@ class Rays:
         return hits(self.controls, self.origins, self.directions)
 
     @cached_property
-    def clearance(self) -> np.ndarray:
+    def clearance(self) -> Array:
         """(n,) mm from each ray to its tube; negative: how much thinner the tube would have to be to be missed."""
         return clearance(self.controls, self.origins, self.directions)
 
-    def errors(self, l: np.ndarray, t: np.ndarray, kind: np.ndarray) -> dict[str, float]:  # noqa: E741
+    def errors(self, l: Array, t: Array, kind: npt.NDArray[np.int64]) -> dict[str, float]:  # noqa: E741
         """Return :func:`summary` of an answer: place along the ray, on the half, and 0 for a miss."""
         met, should = kind > 0, self.truth.kind > 0
         radius = radius_at(self.controls, np.where(should, self.truth.t, t))
@@ -66,7 +85,7 @@ class Rays:
         return summary(error / radius, missed=should & ~met, false=met & ~should)
 
 
-def summary(error: np.ndarray, missed: np.ndarray, false: np.ndarray) -> dict[str, float]:
+def summary(error: Array, missed: Mask, false: Mask) -> dict[str, float]:
     """Return what is told of errors over the radius, of rays some of which miss or meet what they should not."""
     flipped = missed | false
     middle, high, higher = np.quantile(error, (0.5, 0.99, 0.999)) if len(error) else (0.0, 0.0, 0.0)
@@ -77,18 +96,18 @@ def summary(error: np.ndarray, missed: np.ndarray, false: np.ndarray) -> dict[st
     }  # fmt: skip
 
 
-def share(mask: np.ndarray) -> float:
+def share(mask: Mask) -> float:
     """Return how many of a mask are true, of 1."""
     return float(mask.mean()) if len(mask) else 0.0
 
 
-def radius_at(controls: np.ndarray, t: np.ndarray) -> np.ndarray:
+def radius_at(controls: Array, t: Array) -> Array:
     """Return (n,) mm above 0: radii of halves at their t."""
     at = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
     return np.maximum(curves.evaluate(controls, at)[..., 3], 1e-9 * controls[..., 3].max(axis=-1) + 1e-300)
 
 
-def clearance(controls: np.ndarray, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
+def clearance(controls: Array, origins: Array, directions: Array) -> Array:
     """Return (n,) the least distance from the ray's line to the axis at t, less the radius there."""
     flat = controls.copy()
     flat[..., :3] -= origins[:, None]
@@ -96,11 +115,7 @@ def clearance(controls: np.ndarray, origins: np.ndarray, directions: np.ndarray)
     return surface_distance(flat, np.zeros_like(origins))
 
 
-def unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-
-
-def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: Any) -> np.ndarray:
+def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: Any) -> Array:
     """Return (count, 3, 4) halves of a length and radius: bent by a share of the length, radii by a share of theirs."""
     made = np.zeros((count, 3, 4))
     run = length * unit(rng.normal(size=(count, 3)))
@@ -110,7 +125,7 @@ def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: 
     return made
 
 
-def aimed(controls: np.ndarray, rng: Any, directions: np.ndarray | None = None, eye: np.ndarray | None = None) -> Rays:
+def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array | None = None) -> Rays:
     """Return rays that pass some sphere of each half within 1.15 radii of its middle: from anywhere, or from an eye."""
     count = len(controls)
     sphere = curves.evaluate(controls, rng.uniform(0.0, 1.0, count))
@@ -144,82 +159,6 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
         shown = (w > lens.near + 2.0 * reach) & (np.abs(y) < lens.slant) & (np.abs(x) < lens.slant * size[0] / size[1])
         some = curves.controls(tubes, chosen[shown][: count // 2])
         parts.append(aimed(some[np.arange(len(some)), rng.integers(0, 2, len(some))], rng, eye=lens.eye))
-    return Rays(*(np.concatenate([getattr(part, key) for part in parts]) for key in
-                  ("controls", "origins", "directions")))
-
-
-@dataclass(frozen=True, eq=False)
-class Lens:
-    """A camera of any angle, and its pixels' rays in float64.
-
-    Attributes
-    ----------
-    size : tuple of int
-    eye : numpy.ndarray
-        (3,) mm.
-    backwards : numpy.ndarray
-        (3,) unit vector from what is looked at to the eye; not upright.
-    slant : float
-        Tangent of half the angle from top to bottom.
-    near, far : float
-        mm from the eye's plane.
-    """
-
-    size: tuple[int, int]
-    eye: np.ndarray
-    backwards: np.ndarray
-    slant: float
-    near: float
-    far: float
-
-    @classmethod
-    def of(cls, camera: Camera) -> Lens:
-        """Return the lens of an orbit's camera."""
-        slant = float(np.tan(np.radians(VERTICAL_ANGLE / 2)))
-        return cls(camera.size, camera.eye, camera.backwards, slant, camera.near, camera.far)
-
-    @property
-    def axes(self) -> np.ndarray:
-        """(3, 3): rows to the right, up, backwards."""
-        right = unit(np.cross([0.0, 0.0, 1.0], self.backwards))
-        return np.array([right, np.cross(self.backwards, right), self.backwards])
-
-    @property
-    def pixel(self) -> float:
-        """What a pixel takes at 1 mm from the eye, mm."""
-        return 2.0 * self.slant / self.size[1]
-
-    @property
-    def matrix(self) -> np.ndarray:
-        """(4, 4) data coordinates to OpenGL clip coordinates."""
-        to_camera = np.eye(4)
-        to_camera[:3, :3] = self.axes
-        to_camera[:3, 3] = -self.axes @ self.eye
-        projection = np.zeros((4, 4))
-        projection[0, 0], projection[1, 1] = self.size[1] / self.size[0] / self.slant, 1.0 / self.slant
-        depth = self.far - self.near
-        projection[2, 2:] = -(self.far + self.near) / depth, -2.0 * self.far * self.near / depth
-        projection[3, 2] = -1.0
-        return projection @ to_camera
-
-    def seen(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, 3): tangents to the right and up, and distance in front of the eye."""
-        local = (points - self.eye) @ self.axes.T
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.column_stack([local[:, :2] / -local[:, 2:], -local[:, 2]])
-
-    def rays(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return unit directions (n, 3) of pixels, numbered row by row from below, and mm forwards by mm of ray."""
-        width, height = self.size
-        x, y = pixels % width + 0.5, pixels // width + 0.5
-        local = np.stack([self.pixel * (x - width / 2), self.pixel * (y - height / 2), -np.ones(len(pixels))], axis=1)
-        forwards = 1.0 / np.linalg.norm(local, axis=1)
-        return unit(local @ self.axes), forwards
-
-    def depth(self, w: np.ndarray) -> np.ndarray:
-        """Return window depth, 0 to 1, of what lies w in front of the eye."""
-        return self.far / (self.far - self.near) * (1.0 - self.near / w)
-
-    def distance(self, farness: np.ndarray) -> np.ndarray:
-        """Return the mm in front of the eye of 1 less a window depth."""
-        return self.far * self.near / (farness * (self.far - self.near) + self.near)
+    return Rays(
+        *(np.concatenate([getattr(part, key) for part in parts]) for key in ("controls", "origins", "directions"))
+    )

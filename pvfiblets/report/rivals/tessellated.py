@@ -8,21 +8,22 @@ sphere such a tube has open ends, and where the radius changes fast it bulges le
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-__all__ = ["TessellatedTubes", "carried_normals"]
+__all__ = ["TessellatedTubes", "across", "carried_normals"]
+
+Array = npt.NDArray[np.float64]
 
 LEAST_SIDES, MOST_SIDES, ADDITIONAL = 6, 30, 5  # the paper's
 TOLERANCE = 0.125  # pixels: below it a level is fine enough
-FOLDER = Path(__file__).parent / "shaders"
 STAGES = {
-    "vertex_shader": "tessellated.vert",
-    "tess_control_shader": "tessellated.tesc",
-    "tess_evaluation_shader": "tessellated.tese",
-    "fragment_shader": "tessellated.frag",
+    "vertex_shader": "rivals/tessellated.vert",
+    "tess_control_shader": "rivals/tessellated.tesc",
+    "tess_evaluation_shader": "rivals/tessellated.tese",
+    "fragment_shader": "rivals/tessellated.frag",
 }
 
 
@@ -42,6 +43,8 @@ class TessellatedTubes:
         Leave out back faces: faster, but one looks through the tubes' open ends.
     tolerance : float, optional
         Pixels that a polygon may stray from its curve as long as the levels go that far.
+    sides : tuple of int, optional
+        The least and the most corners around a tube.
 
     Attributes
     ----------
@@ -60,6 +63,7 @@ class TessellatedTubes:
         discard: bool = False,
         cull: bool = False,
         tolerance: float = TOLERANCE,
+        sides: tuple[int, int] = (LEAST_SIDES, MOST_SIDES),
     ) -> None:
         self._ctx, self._size, self._cull = ctx, tuple(size), cull
         self._scaled = bool(tubes.scaled)
@@ -73,7 +77,7 @@ class TessellatedTubes:
         indices = np.ascontiguousarray(tubes.segments, np.uint32)
         self.nbytes = nodes.nbytes + indices.nbytes
         self.triangles = 0
-        self._program = _program(ctx, discard=discard, tolerance=tolerance)
+        self._program = _program(ctx, discard=discard, tolerance=tolerance, sides=sides)
         self._nodes, self._indices = ctx.buffer(nodes.tobytes()), ctx.buffer(indices.tobytes())
         layout = (self._nodes, "4f 4f 3f", "node_place", "node_slope", "node_across")
         self._array = ctx.vertex_array(self._program, [layout], index_buffer=self._indices, index_element_size=4)
@@ -127,11 +131,15 @@ class TessellatedTubes:
         else:
             self._array.render(moderngl.PATCHES)
 
-    def covered(self) -> np.ndarray:
-        """Return where the last picture shows a tube: (height, width) bool, the bottom row first."""
+    def depth(self) -> Array:
+        """Return the last picture's window depth: (height, width), the bottom row first, 1 where there is nothing."""
         width, height = self._size
         depth = np.frombuffer(self._target.read(attachment=-1, components=1, dtype="f4"), np.float32)
-        return depth.reshape(height, width) < 1.0
+        return depth.reshape(height, width).astype(np.float64)
+
+    def covered(self) -> npt.NDArray[np.bool_]:
+        """Return where the last picture shows a tube: (height, width) bool, the bottom row first."""
+        return self.depth() < 1.0
 
     def release(self) -> None:
         """Give everything back."""
@@ -139,23 +147,20 @@ class TessellatedTubes:
             thing.release()
 
 
-def _program(ctx: Any, *, discard: bool, tolerance: float) -> Any:
+def _program(ctx: Any, *, discard: bool, tolerance: float, sides: tuple[int, int]) -> Any:
     from pvfiblets.engine.shaders import assemble
 
     constants = {
         "tolerance": float(tolerance),
-        "least_sides": float(LEAST_SIDES),
-        "most_sides": float(MOST_SIDES),
+        "least_sides": float(sides[0]),
+        "most_sides": float(sides[1]),
         "most_steps": float(1 + ADDITIONAL),
         "discard": int(discard),
     }
-    sources = {
-        stage: assemble(name, constants=constants, source=(FOLDER / name).read_text()) for stage, name in STAGES.items()
-    }
-    return ctx.program(**sources)
+    return ctx.program(**{stage: assemble(name, constants=constants) for stage, name in STAGES.items()})
 
 
-def carried_normals(tangents: np.ndarray, segments: np.ndarray) -> np.ndarray:
+def carried_normals(tangents: Array, segments: npt.NDArray[np.int64]) -> Array:
     """Return a unit vector across each node's tangent that turns as little as can be from node to node.
 
     Each tube starts with any, which is projected from node to node onto the plane across the next tangent.
@@ -194,8 +199,9 @@ def carried_normals(tangents: np.ndarray, segments: np.ndarray) -> np.ndarray:
     return normals
 
 
-def across(unit: np.ndarray) -> np.ndarray:
+def across(unit: Array) -> Array:
     """Return a unit vector across each of some, (n, 3); any one of those that are zero."""
     axis = np.where(np.abs(unit[:, :1]) < math.sqrt(1.0 / 3.0) + 1e-3, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
-    found = axis - unit * np.einsum("ij,ij->i", axis, unit)[:, None]
-    return found / np.linalg.norm(found, axis=1, keepdims=True)
+    found: Array = axis - unit * np.einsum("ij,ij->i", axis, unit)[:, None]
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    return found
