@@ -5,19 +5,22 @@ An actor is told of the settings that differ and of nothing else; nothing is com
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer
+from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source
 from pvfiblets.web.layers import RADIUS_SCALE, looks
 from pvfiblets.web.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
     from pvfiblets.web.shapes import Load
+
+    Colours = Callable[[Source], Any]
+    """From where a volume comes from to the volume that colours lines."""
 
 __all__ = [
     "MOST_PLANES",
@@ -40,7 +43,7 @@ _STYLE = {"selection_color": "color", "selection_dim": "dim", "selection_as_tube
           "selection_radius": "radius"}  # fmt: skip
 
 
-def add_actor(plotter: Any, layer: Layer, loaded: Loaded) -> Any:
+def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours) -> Any:
     """Add what a layer draws, with its settings; filters, cuts and selection are not applied yet."""
     common = {"name": layer.id, "show_scalar_bar": False, "reset_camera": False, "render": False}
     wanted = looks(layer.kind, layer.settings)
@@ -50,7 +53,7 @@ def add_actor(plotter: Any, layer: Layer, loaded: Loaded) -> Any:
         add = {"tubes": plotter.add_spline_tubes, "volume": plotter.add_raycast_volume}.get(layer.kind)
         actor = (add or plotter.add_fiblets)(loaded.data, **common)
         try:
-            _set(actor, wanted, loaded.data)
+            _set(actor, wanted, loaded.data, colours)
         except Exception:
             remove_actor(plotter, actor)
             raise
@@ -77,7 +80,7 @@ def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
         renderer.Modified()
 
 
-def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) -> Any:
+def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded, colours: Colours) -> Any:
     """Bring an actor's looks in step with its layer; return the actor, which of meshes is another one.
 
     Raises
@@ -88,13 +91,13 @@ def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) ->
     before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
     if before != after:
         if new.kind == "mesh":
-            actor = add_actor(plotter, new, loaded)  # of the same name: it takes the other's place
+            actor = add_actor(plotter, new, loaded, colours)  # of the same name: it takes the other's place
         else:
             try:
                 differing = {name: value for name, value in after.items() if before.get(name, _set) != value}
-                _set(actor, differing, loaded.data)
+                _set(actor, differing, loaded.data, colours)
             except Exception:
-                _set(actor, before, loaded.data)
+                _set(actor, before, loaded.data, colours)
                 raise
     style = _selection_style(new.settings)
     if new.kind in LINES and style != _selection_style(old.settings):
@@ -104,7 +107,7 @@ def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded) ->
     return actor
 
 
-def _set(actor: Any, wanted: Mapping[str, Any], data: Any) -> None:
+def _set(actor: Any, wanted: Mapping[str, Any], data: Any, colours: Colours) -> None:
     """Set attributes in their order; colours by way of what every scale and range allow."""
     if "scalars" in wanted:
         if getattr(actor, "log_scale", False):
@@ -119,7 +122,7 @@ def _set(actor: Any, wanted: Mapping[str, Any], data: Any) -> None:
             if scaled is not actor.tubes:
                 actor.tubes = scaled
             continue
-        setattr(actor, name, value)
+        setattr(actor, name, colours(value) if isinstance(value, Source) else value)
 
 
 def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:

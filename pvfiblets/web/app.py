@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,15 @@ from pvfiblets.web import describe, layout
 from pvfiblets.web.camera import CameraActions
 from pvfiblets.web.confined import Confined
 from pvfiblets.web.cuts import CutActions
+from pvfiblets.web.document import volume_in
+from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.filtering import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.picks import SelectionActions
 from pvfiblets.web.scene import Scene
+from pvfiblets.web.sliding import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
 from pvfiblets.web.wire import EXPECTED, Doors, sentence
@@ -74,6 +78,9 @@ class Explorer(TrameApp):
         self.filtering = FilterActions(self, self._charts)
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
+        self.exports = ExportActions(self)
+        self.sliders = SlideActions(self)
+        self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
         self.server.enable_module({"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/pvfiblets.js"]})
         self._register_keys()
         self.ui = layout.build(self)
@@ -105,6 +112,8 @@ class Explorer(TrameApp):
             "save_session": self.files.save_session,
             "load_session": self.files.load_session,
             "picture": self.camera.picture,
+            "slide": self.sliders.slide,
+            "release": self.sliders.release,
         }
         for name, function in named.items():
             self.server.controller.trigger(name)(function)
@@ -112,10 +121,11 @@ class Explorer(TrameApp):
     def add_routes(self, router: Any) -> None:
         """Add what comes and goes by plain HTTP."""
         router.add_post("/upload", self.files.receive)
-        router.add_get("/download/{number}", self.selecting.send)
+        router.add_get("/download/{number}", self.exports.send)
 
     def close(self) -> None:
         """Let go of everything."""
+        self.exports.close()
         self.scene.close()
         self.plotter.close()
 
@@ -137,6 +147,9 @@ class Explorer(TrameApp):
     def refresh(self) -> None:
         """Show the scene as it is now, and draw it."""
         scene, page = self.scene, self.page
+        if self.sliders.moving:
+            self.stream.request()
+            return
         with self.state:
             ids = [layer.id for layer in scene.layers]
             if page.chosen not in ids:
@@ -203,6 +216,12 @@ class Explorer(TrameApp):
 
     def set_property(self, layer_id: str, name: str, value: Any) -> None:
         """Set a property as a control gave it."""
+        if isinstance(value, dict):  # of a volume, if of anything
+            known = [choice for choice, _ in self.scene.volume_choices(self.scene.layer(layer_id))]
+            volume = volume_in(value) if value in known else None
+            if volume is not None and ("colours", volume) not in self.scene.store.loaded:
+                self.later(self.files.colour_by(layer_id, name, value, volume))
+                return
         try:
             self.scene.set(layer_id, name, value)
         except Exception:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from pvfiblets.web.charts import histogram_chart, short, steps
+from pvfiblets.web.document import volume_in
 
 MOST_CHARTS = 64
 TITLES = {
@@ -87,13 +88,7 @@ class Charts:
     def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
         """Return the chart of a layer's values, and between which they lie."""
         found = self._scene.layer(layer_id)
-        key = found.source, found.kind, name
-        if key not in self._kept:
-            if len(self._kept) >= MOST_CHARTS:
-                self._kept.pop(next(iter(self._kept)))
-            counted = self._scene.histogram(layer_id, name)
-            self._kept[key] = histogram_chart(counted["counts"]), [counted["edges"][0], counted["edges"][-1]]
-        return self._kept[key]
+        return self._chart((found.source, found.kind, name), lambda: self._scene.histogram(layer_id, name))
 
     def of_range(self, layer_id: str) -> str:
         """Return the chart of what colours a layer; nothing where colours stand for no numbers."""
@@ -102,9 +97,19 @@ class Charts:
         found = self._scene.layer(layer_id)
         names = [entry["name"] for entry in self._scene.arrays(layer_id)]
         name = found.settings.get("scalars")
+        if (volume := volume_in(name)) is not None:
+            return self._chart((volume, "colours", ""), lambda: self._scene.histogram(layer_id))[0]
         if found.kind == "volume":
             name = names[0]
         return self.of(layer_id, name)[0] if name in names else ""
+
+    def _chart(self, key: tuple[Any, str, str], count: Callable[[], dict[str, Any]]) -> tuple[str, list[float]]:
+        if key not in self._kept:
+            if len(self._kept) >= MOST_CHARTS:
+                self._kept.pop(next(iter(self._kept)))
+            counted = count()
+            self._kept[key] = histogram_chart(counted["counts"]), [counted["edges"][0], counted["edges"][-1]]
+        return self._kept[key]
 
 
 def typed(text: str, name: str, *, optional: bool) -> float | None:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["KINDS", "LINES", "Clip", "Filters", "Ids", "Layer", "Source", "State"]
+__all__ = ["KINDS", "LINES", "Clip", "Filters", "Ids", "Layer", "Source", "State", "as_volume_choice", "volume_in"]
 
 KINDS = ("tractogram", "tubes", "volume", "mesh", "selection")
 """What a layer may be."""
@@ -103,6 +103,21 @@ class Source:
     demo: str | None = None
     size: int = 0
     ids: Ids | None = None
+
+
+def as_volume_choice(source: Source) -> dict[str, Any]:
+    """Return the setting that colours lines by a volume: ``{"volume": {"path": ...}}``, or of a demo its size."""
+    if source.path is not None:
+        return {"volume": {"path": source.path}}
+    return {"volume": {"demo": source.demo, "size": source.size}}
+
+
+def volume_in(setting: Any) -> Source | None:
+    """Return the volume that a setting of :func:`as_volume_choice` names; ``None`` for any other."""
+    if not isinstance(setting, Mapping) or not isinstance(setting.get("volume"), Mapping):
+        return None
+    named = setting["volume"]
+    return Source(named.get("path"), named.get("demo"), named.get("size", 0))
 
 
 @dataclass(frozen=True)
@@ -231,8 +246,10 @@ class State:
         return _named(self.clips, clip_id, "cut")
 
     def sources(self) -> set[tuple[str, Source]]:
-        """Kind and source of all layers."""
-        return {(layer.kind, layer.source) for layer in self.layers}
+        """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
+        volumes = (volume_in(layer.settings.get("scalars")) for layer in self.layers)
+        coloured = {("colours", source) for source in volumes if source is not None}
+        return coloured | {(layer.kind, layer.source) for layer in self.layers}
 
 
 def _named(things: Iterable[Any], wanted: str, what: str) -> Any:

@@ -50,8 +50,6 @@ class FilterActions(Actions):
         arrays = scene.arrays(layer.id)
         titles = {entry["name"]: entry["title"] for entry in arrays}
         actor = scene.actor(layer.id)
-        total = actor.fiblets.n_streamlines
-        left = int(np.count_nonzero(actor.shown)) if layer.filters.active else total
         filters = layer.filters
         amount = (filters.subset or {}).get("amount", 1.0)
         try:
@@ -62,7 +60,7 @@ class FilterActions(Actions):
         page.filters = {
             "layer": layer.id,
             "active": filters.active,
-            "counted": f"{left:,} of {total:,} streamlines",
+            "counted": self.counted(),
             "criteria": [self._criterion(layer, name, titles.get(name, name)) for name in filters.criteria],
             "more": [
                 {"title": entry["title"], "value": entry["name"]}
@@ -82,6 +80,14 @@ class FilterActions(Actions):
                 for row in regions
             ],
         }  # fmt: skip
+
+    def counted(self) -> str:
+        """Say how many streamlines of the chosen layer filters leave."""
+        layer = self._layer
+        actor = self._app.scene.actor(layer.id)
+        total = actor.fiblets.n_streamlines
+        left = int(np.count_nonzero(actor.shown)) if layer.filters.active else total
+        return f"{left:,} of {total:,} streamlines"
 
     def _criterion(self, layer: Any, name: str, title: str) -> dict[str, Any]:
         chart, limits = self._charts.of(layer.id, name)

@@ -42,6 +42,11 @@ class History:
         Seconds within which changes of one and the same thing, such as a slider makes, are one step.
     clock : callable, optional
         Returns the time in seconds; for tests.
+
+    Attributes
+    ----------
+    held : bool
+        A slider is held: what it changes is one step, however long that takes.
     """
 
     def __init__(
@@ -53,6 +58,7 @@ class History:
         self._limit = limit
         self._together = together
         self._clock = clock
+        self.held = False
         self._done: list[_Step] = []
         self._undone: list[_Step] = []
         self._present = scene.state
@@ -110,7 +116,8 @@ class History:
         now, after = self._clock(), self._scene.state
         last = self._done[-1] if self._done and not self._undone else None
         before = self._present
-        if last is not None and change.key is not None and last.key == change.key and now - last.at < self._together:
+        same = last is not None and change.key is not None and last.key == change.key
+        if last is not None and same and (self.held or now - last.at < self._together):
             before = last.before
             self._done.pop()
         self._undone.clear()

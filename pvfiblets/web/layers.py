@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pvfiblets.plotting.scalars import ORIENTATION
-from pvfiblets.web.document import KINDS, LINES, Layer
-from pvfiblets.web.properties import TYPES, Property
+from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
+from pvfiblets.web.properties import TYPES, Choices, Property
 from pvfiblets.web.tables import MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.values import shown
 
@@ -65,7 +65,7 @@ def defaults(kind: str) -> dict[str, Any]:
     return {prop.name: prop.default for prop in TABLES[kind] if not prop.read_only}
 
 
-def check(kind: str, name: Any, value: Any, data: Any) -> Any:
+def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) -> Any:
     """Return a value for a setting in its plain form.
 
     Parameters
@@ -78,6 +78,8 @@ def check(kind: str, name: Any, value: Any, data: Any) -> Any:
         What somebody sent.
     data : object
         What the layer draws: choices and limits may depend on it.
+    volumes : sequence of (value, label)
+        Volumes that lines may be coloured by.
 
     Raises
     ------
@@ -88,7 +90,7 @@ def check(kind: str, name: Any, value: Any, data: Any) -> Any:
     if prop is None:
         known = ", ".join(prop.name for prop in TABLES[kind] if not prop.read_only)
         raise ValueError(f"a layer of kind {kind!r} has no property {shown(name)}; it has {known}")
-    return prop.check(value, data)
+    return prop.check(value, data, volumes)
 
 
 def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any) -> dict[str, Any]:
@@ -100,15 +102,17 @@ def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any) -> di
     return found
 
 
-def describe(kind: str, actor: Any, data: Any, settings: Mapping[str, Any]) -> list[dict[str, Any]]:
+def describe(
+    kind: str, actor: Any, data: Any, settings: Mapping[str, Any], volumes: Choices = ()
+) -> list[dict[str, Any]]:
     """Return the properties of a layer with their present values; see :meth:`Property.describe`."""
-    return [prop.describe(actor, data, settings) for prop in TABLES[kind]]
+    return [prop.describe(actor, data, settings, volumes) for prop in TABLES[kind]]
 
 
 def looks(kind: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the settings mean for an actor: its attributes, in the order in which they are to be set.
 
-    Of a mesh, these are arguments of ``plotter.add_mesh``.
+    Of a mesh, these are arguments of ``plotter.add_mesh``. Scalars that are a :class:`.Source` stand for that volume.
     """
     return {"tractogram": _lines, "selection": _lines, "tubes": _tubes, "volume": _volume, "mesh": _mesh}[kind](
         settings
@@ -122,7 +126,8 @@ def _coloured(s: Mapping[str, Any]) -> dict[str, Any]:
     if s["scalars"] == ORIENTATION:
         return {"scalars": ORIENTATION}
     clim = None if s["clim"] is None else tuple(s["clim"])
-    return {"scalars": s["scalars"], "cmap": s["cmap"], "clim": clim, "log_scale": s["log_scale"]}
+    scalars = volume_in(s["scalars"]) or s["scalars"]
+    return {"scalars": scalars, "cmap": s["cmap"], "clim": clim, "log_scale": s["log_scale"]}
 
 
 def _lines(s: Mapping[str, Any]) -> dict[str, Any]:

@@ -199,6 +199,8 @@ class Files:
             import nibabel
 
             return Loaded(kind, source, name, nibabel.load(place))
+        if kind == "colours":
+            return Loaded(kind, source, name, _colours(place))
         mesh = _mesh(place)
         watch("reading", 1.0)
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
@@ -276,6 +278,22 @@ def _mesh(place: Path) -> Any:
     return data
 
 
+def _colours(place: Path) -> Any:
+    """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
+    import pyvista as pv
+
+    from pvfiblets.engine.volumes import VolumeSource
+    from pvfiblets.plotting.volumes import as_volume
+    from pvfiblets.raycast import as_raycast_volume
+
+    if (found := as_volume(place)) is not None:
+        return found
+    if place.name.lower().endswith(_EITHER):
+        return as_volume(pv.read(place))
+    volume = as_raycast_volume(place)
+    return VolumeSource(volume.values, volume.affine, name=place.name.partition(".")[0])
+
+
 def _volume_facts(volume: Any) -> dict[str, Any]:
     return {
         "voxels": list(volume.shape),
@@ -304,4 +322,10 @@ def _demo(source: Source, kind: str | None) -> Loaded:
 
         volume = brain_like(source.size)
         return Loaded("volume", source, "demo head", volume, _volume_facts(volume))
+    if source.demo == "head" and kind == "colours":
+        from pvfiblets.engine.volumes import VolumeSource
+        from pvfiblets.synthetic.vessels import brain_like
+
+        volume = brain_like(source.size)
+        return Loaded(kind, source, "demo head", VolumeSource(volume.values, volume.affine, name="demo head"))
     raise ValueError(f"there is no demonstration {source.demo!r} for a layer of kind {kind!r}; there are tracts, head")

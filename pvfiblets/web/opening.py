@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.formats.registry import suffixes
 from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
@@ -15,6 +17,12 @@ from pvfiblets.web.confined import ConfinedError
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.wire import EXPECTED, sentence
+
+if TYPE_CHECKING:
+    from pvfiblets.web.document import Source
+    from pvfiblets.web.loading import Cancel, Progress
+
+    Work = Callable[[Progress, Cancel], Any]
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
 LATEST = 0.2  # seconds between two reports of progress
@@ -25,8 +33,8 @@ class FileActions(Actions):
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
-        self._stop = False
-        self._opening = asyncio.Lock()
+        self._stop = threading.Event()
+        self._working = asyncio.Lock()
         self._for = ""  # what the file that is chosen next is for: a layer, or 'clip'
 
     # Opening
@@ -54,15 +62,48 @@ class FileActions(Actions):
         self._app.refresh()
 
     async def open(self, path: str, kind: str | None = None) -> None:
-        """Open a file beside everything else: what takes long runs in a thread, and the page goes on."""
+        """Open a file beside everything else."""
+        app = self._app
+        name = Path(path).name
+        try:
+            loaded = await self.beside(
+                name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel), "opening"
+            )
+            layer = app.scene.add(loaded)
+        except Cancelled:
+            app.say(f"{name} was not opened: cancelled.")
+            return
+        except EXPECTED as error:
+            raise ValueError(f"{name} was not opened: {sentence(error)}") from error
+        app.page.chosen = layer.id
+        app.refresh()
+
+    async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
+        """Do what takes long in a thread of its own, with progress; the page goes on. One thing at a time.
+
+        Parameters
+        ----------
+        name : str
+            Of what it is about, for people.
+        work : callable
+            Takes what :meth:`.Scene.load` takes as ``progress`` and ``cancel``; it must not touch the scene.
+        what : str
+            What is done, until `work` says it.
+        cancellable : bool
+            Whether `work` asks if it is to stop.
+
+        Returns
+        -------
+        object
+            What `work` returned.
+        """
         app = self._app
         loop = asyncio.get_running_loop()
-        name = Path(path).name
         reported = 0.0
 
         def show(what: str, share: float) -> None:
             with app.state:
-                app.page.job = {"text": f"{name}: {what}", "share": 100.0 * share, "cancellable": True}
+                app.page.job = {"text": f"{name}: {what}", "share": 100.0 * share, "cancellable": cancellable}
 
         def progress(what: str, share: float) -> None:  # in the thread
             nonlocal reported
@@ -70,27 +111,19 @@ class FileActions(Actions):
                 reported = now
                 loop.call_soon_threadsafe(show, what, share)
 
-        async with self._opening:
-            self._stop = False
-            show("opening", 0.0)
+        async with self._working:
+            stop = self._stop = threading.Event()
+            show(what, 0.0 if cancellable else -1.0)
             try:
-                loaded = await asyncio.to_thread(app.scene.load, path, kind, progress, lambda: self._stop)
-                layer = app.scene.add(loaded)
-            except Cancelled:
-                app.say(f"{name} was not opened: cancelled.")
-                return
-            except EXPECTED as error:
-                raise ValueError(f"{name} was not opened: {sentence(error)}") from error
+                return await asyncio.to_thread(work, progress, stop.is_set)
             finally:
                 await asyncio.sleep(0)  # let the last report of the thread come first
                 with app.state:
                     app.page.job = {}
-        app.page.chosen = layer.id
-        app.refresh()
 
     def cancel(self) -> None:
-        """Stop opening."""
-        self._stop = True
+        """Stop what is being opened."""
+        self._stop.set()
 
     # The file browser
 
@@ -168,14 +201,39 @@ class FileActions(Actions):
 
     def load_session(self, text: str) -> None:
         """Become what a session file says; where it is malformed, all stays as it is."""
-        from pvfiblets.web import session
-
         try:
             data = json.loads(text)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise ValueError(f"this is no session file: {error}") from error
-        session.from_dict(self._app.scene, data)
-        self._app.refresh()
+        self._app.later(self._become(data))
+
+    async def _become(self, data: Any) -> None:
+        from pvfiblets.web import session
+
+        app = self._app
+        scene = app.scene
+        try:
+            prepared = await self.beside(
+                "session", lambda progress, cancel: session.prepare(scene, data, None, progress, cancel), "reading"
+            )
+        except Cancelled:
+            app.say("The session was not loaded: cancelled.")
+            return
+        session.apply(scene, prepared)
+        app.refresh()
+
+    async def colour_by(self, layer_id: str, name: str, value: Any, source: Source) -> None:
+        """Set a property to a volume, which is read beside everything else."""
+        app = self._app
+        load = app.scene.files.load
+        loaded = await self.beside(
+            Path(source.path or "demo head").name,
+            lambda progress, cancel: load(source, "colours", progress, cancel),
+            "reading",
+            cancellable=False,
+        )
+        app.scene.store.put(loaded)
+        app.scene.set(layer_id, name, value)
 
     def show_script(self) -> None:
         """Show the Python that makes the same picture."""

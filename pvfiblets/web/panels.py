@@ -68,7 +68,9 @@ def layers(app: Any) -> None:
 
 def properties(app: Any) -> None:
     """Build the panel of properties: one control for each type, repeated over what the server describes."""
-    html.Div("{{ chosen_name || 'Properties' }}", classes="pv-head text-truncate", style="flex: none")
+    html.Div(
+        "{{ chosen_name || 'Properties' }}", classes="pv-name text-truncate", title=("chosen_name",), style="flex: none"
+    )
     with html.Div(classes="pv-scroll pb-4", style="flex: 1 1 auto", id="properties"):
         html.Div(
             "Choose a layer to see what can be set of it.", v_if="layers.length && !chosen", classes="pv-small pa-3"
@@ -76,7 +78,6 @@ def properties(app: Any) -> None:
         with html.Div(v_for="group in groups", key="chosen + group.title"):
             html.Div("{{ group.title }}", classes="pv-head")
             with html.Div(v_for="p in group.properties", key="p.name", data_property=("p.name",)):
-                html.Div(v_if="p.name === 'clim' && range_chart", v_html=("range_chart",), classes="pv-chart px-3 mx-2")
                 with html.Div(classes="pv-row", v_if="p.matters"):
                     html.Label("{{ p.label }}", title=("p.help",))
                     with html.Div(classes="pv-pair"):
@@ -99,7 +100,9 @@ def _controls(app: Any) -> None:
         "thumb_size": 14,
         "track_size": 3,
         "aria_label": ("p.label",),
+        "data_live": ("JSON.stringify(['property', chosen, p.name])",),
     }
+    held = "held.at === 'property ' + chosen + ' ' + p.name"
     html.Span("{{ p.shown }}", v_if="p.read_only", classes="pv-value")
     v3.VSelect(
         v_else_if="p.type === 'choice'",
@@ -127,6 +130,7 @@ def _controls(app: Any) -> None:
             change=change("$event.target.value"),
             aria_label=("p.label",),
         )
+        html.Span("auto", v_if="p.optional && p.value === null", classes="pv-small")
     with v3.Template(v_else_if="p.type === 'number'"):
         v3.VSlider(
             v_if="p.limits && !p.wide",
@@ -135,7 +139,7 @@ def _controls(app: Any) -> None:
         html.Input(
             classes="pv-num",
             inputmode="decimal",
-            value=("p.shown",),
+            value=(f"{held} ? held.shown[0] : p.shown",),
             placeholder=("p.optional ? 'auto' : ''",),
             change=(app.set_number, "[chosen, p.name, $event.target.value]"),
             style=("p.wide || !p.limits ? 'flex: 1; width: auto; min-width: 0' : 'width: 62px'",),
@@ -143,6 +147,7 @@ def _controls(app: Any) -> None:
         )
     with v3.Template(v_else_if="p.type === 'range'"):
         with html.Div(style="flex: 1; min-width: 0"):
+            html.Div(v_if="p.name === 'clim' && range_chart", v_html=("range_chart",), classes="pv-chart")
             v3.VRangeSlider(
                 v_if="p.limits",
                 **slider,
@@ -152,7 +157,7 @@ def _controls(app: Any) -> None:
                     html.Input(
                         classes="pv-num",
                         inputmode="decimal",
-                        value=(f"p.ends[{end}]",),
+                        value=(f"({held} ? held.shown : p.ends)[{end}]",),
                         change=(app.set_end, f"[chosen, p.name, {end}, $event.target.value]"),
                         aria_label=(f"p.label + ({end} ? ', high end' : ', low end')",),
                         style="width: 74px",

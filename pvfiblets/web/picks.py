@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import secrets
-from collections import OrderedDict
-from pathlib import Path
 from typing import Any
 
 from pvfiblets.web.actions import Actions
@@ -13,8 +9,6 @@ from pvfiblets.web.charts import profile_chart, short
 from pvfiblets.web.wire import number
 
 ROWS = 200
-DOWNLOADS = 16  # files that can be fetched; older ones are forgotten
-EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
 
 
 class SelectionActions(Actions):
@@ -22,8 +16,6 @@ class SelectionActions(Actions):
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
-        self._files: OrderedDict[str, Path] = OrderedDict()
-        self._latest: str = ""
         self._profile: str | None = None
         self._measuring: list[Any] = []
         self._shown: Any = None
@@ -88,7 +80,6 @@ class SelectionActions(Actions):
         count = scene.count()
         if not count:
             page.selection = {"count": 0}
-            self._latest = ""
             return
         table = scene.table(limit=ROWS)
         rows = table["rows"]
@@ -109,13 +100,11 @@ class SelectionActions(Actions):
             "columns": columns,
             "rows": cells,
             "more": f"and {table['total'] - len(rows):,} more" if table["total"] > len(rows) else "",
-            "url": f"/download/{self._latest}" if self._latest else "",
-            "file": self._files[self._latest].name if self._latest else "",
             **self._plot(),
         }
 
     def _owner(self) -> Any:
-        """The layer whose selection is exported and profiled: the chosen one, or the first that has one."""
+        """The layer whose selection is profiled: the chosen one, or the first that has one."""
         scene = self._app.scene
         having = [layer for layer in scene.layers if layer.selected is not None]
         if not having:
@@ -125,8 +114,9 @@ class SelectionActions(Actions):
     def _plot(self) -> dict[str, Any]:
         scene = self._app.scene
         layer = self._owner()
-        fiblets = scene.actor(layer.id).fiblets
-        names = ["curvature", *fiblets.per_point]
+        actor = scene.actor(layer.id)
+        volume = actor.active_scalars.volume if actor.active_scalars is not None else None
+        names = ["curvature", *actor.fiblets.per_point, *([] if volume is None else [volume.name])]
         name = self._profile if self._profile in names else None
         found = scene.profile(layer.id, name)
         mean, spread = ([float("nan") if part is None else part for part in found[key]] for key in ("mean", "std"))
@@ -148,35 +138,3 @@ class SelectionActions(Actions):
         """Add a layer of what is selected."""
         self._app.page.chosen = self._app.scene.keep_selection(self._owner().id).id
         self._app.refresh()
-
-    # Export
-
-    def export(self, suffix: str) -> None:
-        """Write the selected streamlines to a file in the root, and offer it."""
-        if suffix not in EXPORTS:
-            raise ValueError(f"{suffix!r} is none of {', '.join(EXPORTS)}")
-        layer = self._owner()
-        stem = re.sub(r"[^\w-]+", "_", layer.name.partition(".")[0]).strip("_") or "streamlines"
-        path = next(
-            name
-            for k in range(1, 10_000)
-            if not (self._app.confined.root / (name := f"{stem}_selected{'' if k == 1 else f'_{k}'}{suffix}")).exists()
-        )
-        done = self._app.scene.export(layer.id, path)
-        self._latest = secrets.token_urlsafe(12)
-        self._files[self._latest] = self._app.confined.existing(done["path"])
-        while len(self._files) > DOWNLOADS:
-            self._files.popitem(last=False)
-        lost = f"; {suffix} cannot hold: {', '.join(map(str, done['lost']))}" if done["lost"] else ""
-        size = f"{done['bytes'] / 1024:,.0f} kB"
-        self._app.say(f"{done['streamlines']:,} streamlines saved as {done['path']} ({size}){lost}", "success")
-        self._app.refresh()
-
-    async def send(self, request: Any) -> Any:
-        """Answer a browser that fetches an exported file."""
-        from aiohttp import web
-
-        path = self._files.get(request.match_info["number"])
-        if path is None or not path.is_file():
-            raise web.HTTPNotFound
-        return web.FileResponse(path, headers={"Content-Disposition": f'attachment; filename="{path.name}"'})

@@ -50,6 +50,8 @@ class Property:
         Settings that go back to their defaults when this one changes.
     matters : function of the settings, optional
         Whether it changes anything as the others are.
+    volumes : bool
+        Whether the scene's volumes are choices, too.
     """
 
     name: str
@@ -67,17 +69,18 @@ class Property:
     read_only: bool = False
     resets: tuple[str, ...] = ()
     matters: Callable[[Mapping[str, Any]], bool] | None = None
+    volumes: bool = False
 
-    def choices_for(self, data: Any) -> Choices:
-        """Return values and labels that can be chosen for some data."""
+    def choices_for(self, data: Any, volumes: Choices = ()) -> Choices:
+        """Return values and labels that can be chosen for some data, in a scene with some volumes."""
         found = self.choices(data) if callable(self.choices) else self.choices
-        return found or ()
+        return [*(found or ()), *(volumes if self.volumes else ())]
 
     def limits_for(self, data: Any) -> Limits | None:
         """Return least and greatest value for some data."""
         return self.limits(data) if callable(self.limits) else self.limits
 
-    def check(self, value: Any, data: Any) -> Any:
+    def check(self, value: Any, data: Any, volumes: Choices = ()) -> Any:
         """Return a value in its plain form.
 
         Raises
@@ -88,7 +91,7 @@ class Property:
         if self.read_only:
             raise ValueError(f"{self.name} can only be read; it was to become {shown(value)}")
         if self.type == "choice":
-            known = [choice for choice, _ in self.choices_for(data)]
+            known = [choice for choice, _ in self.choices_for(data, volumes)]
             # By type, too: True is no choice where 1 is one.
             if not any(value == choice and type(value) is type(choice) for choice in known):
                 listed = ", ".join(map(repr, known[:40])) + (", …" if len(known) > 40 else "")
@@ -114,7 +117,7 @@ class Property:
             return whole(value, self.name, int(low), int(high))
         return number(value, self.name, low, high)
 
-    def describe(self, actor: Any, data: Any, settings: Mapping[str, Any]) -> dict[str, Any]:
+    def describe(self, actor: Any, data: Any, settings: Mapping[str, Any], volumes: Choices = ()) -> dict[str, Any]:
         """Return all that a panel needs, in JSON's types.
 
         Returns
@@ -141,7 +144,7 @@ class Property:
             "default": self.default,
             "value": effective if self.read_only else value,
             "effective": effective,
-            "choices": [{"value": choice, "title": title} for choice, title in self.choices_for(data)],
+            "choices": [{"value": choice, "title": title} for choice, title in self.choices_for(data, volumes)],
             "limits": None if span is None else [float(end) for end in span],
             "matters": True if self.matters is None else bool(self.matters(settings)),
         }

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web import layers
-from pvfiblets.web.document import LINES, Layer, State
+from pvfiblets.web.document import LINES, Layer, State, volume_in
 from pvfiblets.web.values import plain, shown, whole
 
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
+    from pvfiblets.web.store import Store
 
 __all__ = ["Questions"]
 
@@ -34,11 +35,15 @@ class Questions:
         actor: Callable[[str], Any]
         _histograms: dict[tuple[Any, ...], dict[str, Any]]
         data: Callable[..., Loaded]
+        volume_choices: Callable[[Layer], list[tuple[Any, str]]]
+        store: Store
 
     def properties(self, layer_id: str) -> list[dict[str, Any]]:
         """Return all that can be set of a layer, and its present values; see :meth:`.Property.describe`."""
         layer = self.layer(layer_id)
-        return plain(layers.describe(layer.kind, self.actor(layer_id), self.data(layer).data, layer.settings))
+        data = self.data(layer).data
+        volumes = self.volume_choices(layer)
+        return plain(layers.describe(layer.kind, self.actor(layer_id), data, layer.settings, volumes))
 
     def arrays(self, layer_id: str) -> list[dict[str, str]]:
         """Return the values that a layer can be filtered by and that have histograms: ``name``, ``title``."""
@@ -65,7 +70,7 @@ class Questions:
         ----------
         layer_id : str
         array : str, optional
-            Of :meth:`arrays`; what colours the layer by default, or else the first.
+            Of :meth:`arrays`; what colours the layer by default, be it a volume, or else the first.
         bins : int, default: 64
 
         Returns
@@ -82,29 +87,26 @@ class Questions:
         layer = self.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)
         known = [entry["name"] for entry in self.arrays(layer_id)]
+        colours = layer.settings.get("scalars")
+        if array is None and (volume := volume_in(colours)) is not None:
+            return self._kept(("colours", volume, count), lambda: _counted(self.store.colours(volume), count))
         if array is None:
-            colours = layer.settings.get("scalars")
             array = colours if colours in known else (known or [""])[0]
         if array not in known:
             raise ValueError(f"there are no values {shown(array)} in {layer.name!r}; there are {', '.join(known)}")
-        key = layer.kind, layer.source, array, count
+        name: str = array
+        data = self.data(layer).data
+        return self._kept(
+            (layer.kind, layer.source, name, count), lambda: _count(name, *_values(layer, data, name), count)
+        )
+
+    def _kept(self, key: tuple[Any, ...], make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+        """Return a histogram that was made before, or make it."""
         if key not in self._histograms:
             if len(self._histograms) >= _KEPT:
                 self._histograms.pop(next(iter(self._histograms)))
-            self._histograms[key] = self._count(layer, array, count)
+            self._histograms[key] = make()
         return self._histograms[key]
-
-    def _count(self, layer: Layer, array: str, count: int) -> dict[str, Any]:
-        values, share = _values(layer, self.data(layer).data, array)
-        fine = values[np.isfinite(values)]
-        counts, edges = np.histogram(fine, bins=count) if len(fine) else (np.zeros(count), np.linspace(0, 1, count + 1))
-        return {
-            "name": array,
-            "edges": plain(edges),
-            "counts": [int(number) for number in counts],
-            "missing": int(len(values) - len(fine)),
-            "share": share,
-        }
 
     def info(self, layer_id: str) -> dict[str, Any]:
         """Return the facts of a layer, in JSON's types.
@@ -168,6 +170,24 @@ class Questions:
                 entry["directions"] = {"red": "left–right", "green": "back–front", "blue": "down–up"}
             found.append(entry)
         return plain(found)
+
+
+def _counted(volume: Any, count: int) -> dict[str, Any]:
+    """Return the histogram of a volume that colours lines, or of an even share of it."""
+    every = max(volume.values.size // MOST_POINTS, 1)
+    return _count(volume.name, np.asarray(volume.values.reshape(-1)[::every], np.float64), 1.0 / every, count)
+
+
+def _count(name: str, values: np.ndarray, share: float, count: int) -> dict[str, Any]:
+    fine = values[np.isfinite(values)]
+    counts, edges = np.histogram(fine, bins=count) if len(fine) else (np.zeros(count), np.linspace(0, 1, count + 1))
+    return {
+        "name": name,
+        "edges": plain(edges),
+        "counts": [int(number) for number in counts],
+        "missing": int(len(values) - len(fine)),
+        "share": share,
+    }
 
 
 def _values(layer: Layer, data: Any, name: str) -> tuple[np.ndarray, float]:

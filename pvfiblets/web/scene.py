@@ -15,11 +15,12 @@ from pvfiblets.web import layers
 from pvfiblets.web.actors import add_actor, check_planes, cut, filter_as, look_as, put_in_order, remove_actor, select_as
 from pvfiblets.web.bars import Bars
 from pvfiblets.web.cameras import Cameras
-from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State
+from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State, as_volume_choice, volume_in
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.questions import Questions
 from pvfiblets.web.selecting import Selecting
 from pvfiblets.web.showing import Showing
+from pvfiblets.web.store import Store
 from pvfiblets.web.values import colour, text
 
 __all__ = ["Change", "Scene"]
@@ -72,8 +73,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         self.files = Files(root, allowed)
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}
-        self._data: dict[tuple[str, Source], Loaded] = {}
-        self._shapes: dict[tuple[str, str], Any] = {}
+        self.store = Store(self.files)
         self._bars = Bars(plotter)
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
@@ -161,12 +161,12 @@ class Scene(Showing, Selecting, Questions, Cameras):
         """Bring one actor in step with its layer."""
         drawn = self._drawn.get(layer.id)
         if drawn is None:
-            actor = add_actor(self.plotter, layer, self.data(layer))
+            actor = add_actor(self.plotter, layer, self.data(layer), self.store.colours)
             drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), ())
         elif drawn.layer is layer and drawn.clips is clips:
             return
         else:
-            actor = look_as(self.plotter, drawn.actor, drawn.layer, layer, self.data(layer))
+            actor = look_as(self.plotter, drawn.actor, drawn.layer, layer, self.data(layer), self.store.colours)
             before = () if actor is not drawn.actor else drawn.clips
             drawn = _Drawn(actor, replace(layer, filters=drawn.layer.filters, selected=drawn.layer.selected), before)
         self._drawn[layer.id] = drawn
@@ -191,39 +191,23 @@ class Scene(Showing, Selecting, Questions, Cameras):
 
     def data(self, layer: Layer, progress: Progress | None = None, cancel: Cancel | None = None) -> Loaded:
         """Return what a layer draws; it is read if it must be."""
-        kind = "tractogram" if layer.kind in LINES else layer.kind
-        key = kind, layer.source
-        if key not in self._data:
-            whole = replace(layer.source, ids=None)
-            if (kind, whole) not in self._data:
-                self._data[kind, whole] = self.files.load(whole, kind, progress, cancel)
-            loaded = self._data[kind, whole]
-            if layer.source.ids is not None:
-                ids, total = layer.source.ids, loaded.data.n_streamlines
-                if ids.highest >= total:
-                    raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
-                part = loaded.data.extract(ids.array())
-                loaded = replace(loaded, source=layer.source, data=part)
-            self._data[key] = loaded
-        return self._data[key]
+        return self.store.data(layer, progress, cancel)
 
     def forget_unused(self, states: Iterable[State] = ()) -> None:
         """Let go of data that neither the document nor any of some other states needs."""
-        needed = set()
-        for state in (self._state, *states):
-            for kind, source in state.sources():
-                family = "tractogram" if kind in LINES else kind
-                needed |= {(family, source), (family, replace(source, ids=None))}
-        self._data = {key: loaded for key, loaded in self._data.items() if key in needed}
+        self.store.keep([self._state, *states])
 
     def shape_data(self, kind: str, path: str) -> Any:
         """Return what a region is made of: the region of a mesh, or an image of labels."""
-        if (kind, path) not in self._shapes:
-            from pvfiblets.plotting.cutting import as_region
+        return self.store.shape(kind, path)
 
-            data = self.files.load(Source(path), kind).data
-            self._shapes[kind, path] = as_region(data) if kind == "mesh" else data
-        return self._shapes[kind, path]
+    def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
+        """Return what colours a layer by a volume, and how that is called: the scene's volumes, and its present one."""
+        named = {other.source: other.name for other in self.layers if other.kind == "volume"}
+        present = volume_in(layer.settings.get("scalars"))
+        if present is not None and present not in named:
+            named[present] = f"demo {present.demo}" if present.path is None else Path(present.path).name
+        return [(as_volume_choice(source), f"volume {name}") for source, name in named.items()]
 
     # Layers -------------------------------------------------------------------------------------
 
@@ -250,7 +234,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""
-        self._data[loaded.kind, loaded.source] = loaded
+        self.store.put(loaded)
         self._histograms = {key: found for key, found in self._histograms.items() if key[1] != loaded.source}
         layer = Layer(
             self._fresh_id(),
@@ -321,7 +305,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
             If there is no such property, or it cannot be that; nothing has changed.
         """
         layer = self.layer(layer_id)
-        checked = layers.check(layer.kind, name, value, self.data(layer).data)
+        checked = layers.check(layer.kind, name, value, self.data(layer).data, self.volume_choices(layer))
         settings = layers.changed(layer.kind, layer.settings, name, checked)
         self._change(replace(layer, settings=settings), f"{name} of {layer.name}", ("set", layer_id, name))
 
@@ -353,8 +337,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         """Take all layers away and remove what was made of files; twice is harmless."""
         self._listeners.clear()
         self.become(State(background=self._state.background))
-        self._data.clear()
-        self._shapes.clear()
+        self.store.clear()
         self.files.close()
 
     # Inside -------------------------------------------------------------------------------------

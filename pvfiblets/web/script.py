@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.plotting.volumes import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.bars import LABELLED_RATIO, bar_arguments, bars_of, has_labels
 from pvfiblets.web.document import LINES, Clip, Layer, Source
@@ -139,6 +140,8 @@ class _Writer:
     def _layer(self, layer: Layer) -> None:
         name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
         unsaid = _UNSAID[layer.kind]
+        if isinstance(looks.get("scalars"), Source):
+            looks["scalars"] = self._colours(looks["scalars"])
         scale = looks.pop(layers.RADIUS_SCALE, 1.0)
         said = {key: value for key, value in looks.items() if key not in unsaid or unsaid[key] != value}
         arguments = {
@@ -181,6 +184,21 @@ class _Writer:
         if layer.kind in LINES and loaded.kept:
             return f"{path}, per_point={list(loaded.kept)}"
         return path
+
+    def _colours(self, source: Source) -> _Python:
+        """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
+        if source.demo is not None:
+            self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
+            self._lines += [f"volume = brain_like({source.size})"]
+            return _Python("(volume.values, volume.affine)")
+        path = str(source.path)
+        if path.lower().endswith((".vtk", ".vtp")):
+            return _Python(f"pv.read({self._file(path)})")
+        if path.lower().endswith(SAMPLED):
+            return _Python(self._file(path))
+        self._imports.add("from pvfiblets.raycast import as_raycast_volume")
+        self._lines += [f"volume = as_raycast_volume({self._file(path)})"]
+        return _Python("(volume.values, volume.affine)")
 
     def _whole(self, source: Source, kept: tuple[str, ...]) -> str:
         """Return the name of the fiblets that a selection is a part of; they are made where they are not yet."""
@@ -321,7 +339,7 @@ class _Writer:
         if stem[0].isdigit() or keyword.iskeyword(stem):
             stem = f"layer_{stem}"
         reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
-        reserved |= {"scaled", "dataclasses", "bar"}
+        reserved |= {"scaled", "dataclasses", "bar", "volume", "as_raycast_volume"}
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
         found, count = stem, 2
@@ -344,8 +362,16 @@ class _Writer:
             self._lines += [f"{function}(", *(f"    {argument}," for argument in arguments), ")"]
 
 
+class _Python(str):
+    """A value that is Python already."""
+
+    __slots__ = ()
+
+
 def _code(value: Any) -> str:
     """Return Python of a value."""
+    if isinstance(value, _Python):
+        return value
     if isinstance(value, float) and value in (float("inf"), float("-inf")):
         return f"float('{value}')"
     return repr(value)

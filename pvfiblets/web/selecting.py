@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.web.document import LINES, Ids, Layer, State
+from pvfiblets.web.sampling import sampled
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Files
 
-__all__ = ["EXPORTS", "MODES", "Selecting"]
+__all__ = ["EXPORTS", "MODES", "Selecting", "write"]
 
 MODES = ("replace", "add", "remove", "toggle")
 EXPORTS = (".trk", ".tck", ".trx", ".vtp", ".vtk", ".fiblets")
@@ -170,7 +172,8 @@ class Selecting:
         ----------
         layer_id : str
         scalars : str, optional
-            Values per point; what colours the layer by default, or else its curvature.
+            Values per point, or the name of the volume that colours the layer; what colours it by default, or else
+            its curvature.
         n : int, default: 100
             Places along each streamline.
 
@@ -183,11 +186,14 @@ class Selecting:
         if layer.selected is None:
             raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
         actor = self.actor(layer_id)
+        active = actor.active_scalars
+        count = whole(n, "n", 2, 1000)
+        if active is not None and active.volume is not None and scalars in (None, active.name):
+            return _volume_profile(actor, layer.selected.array(), active.volume, count)
         if scalars is None:
-            active = actor.active_scalars
             scalars = active.name if active is not None and active.kind == "point_value" else "curvature"
         try:
-            found = actor.selection_profile(scalars, whole(n, "n", 2, 1000))
+            found = actor.selection_profile(scalars, count)
         except KeyError as error:
             raise ValueError(str(error.args[0])) from error
         return {
@@ -231,21 +237,28 @@ class Selecting:
         target = self.files.resolve(path, new=True)
         if target.exists() and not truth(overwrite, "overwrite"):
             raise FileExistsError(f"{path} is there already; give another name")
+        found = write(*self.chosen(layer.id, what), target)
+        return {"path": self.files.name(target), **found}
+
+    def chosen(self, layer_id: str, what: str) -> tuple[Any, np.ndarray]:
+        """Return a layer's fiblets and the numbers of streamlines; `what` as of :meth:`export`.
+
+        Raises
+        ------
+        ValueError
+            If nothing is selected.
+        """
+        layer = self._lines(layer_id)
         actor = self.actor(layer_id)
         if what == "selected":
             if layer.selected is None:
                 raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
-            ids = layer.selected.array()
-        elif what == "shown":
-            ids = np.flatnonzero(actor.shown)
-        elif what == "all":
-            ids = np.arange(actor.fiblets.n_streamlines)
-        else:
-            raise ValueError(f"what is {shown(what)}; choose one of selected, shown, all")
-        part = actor.fiblets if len(ids) == actor.fiblets.n_streamlines else actor.fiblets.extract(ids)
-        lost = part.save(target)
-        size = target.stat().st_size
-        return {"path": self.files.name(target), "streamlines": len(ids), "bytes": size, "lost": list(lost)}
+            return actor.fiblets, layer.selected.array()
+        if what == "shown":
+            return actor.fiblets, np.flatnonzero(actor.shown)
+        if what == "all":
+            return actor.fiblets, np.arange(actor.fiblets.n_streamlines)
+        raise ValueError(f"what is {shown(what)}; choose one of selected, shown, all")
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -288,6 +301,37 @@ class Selecting:
         self.become(replace(self.state, layers=layers), what)
 
 
+def write(fiblets: Any, ids: np.ndarray, target: Path) -> dict[str, Any]:
+    """Write some streamlines of a set to a file; may run in a thread of its own.
+
+    Returns
+    -------
+    dict
+        ``streamlines``, ``bytes``, and ``lost``: what the format cannot hold.
+    """
+    part = fiblets if len(ids) == fiblets.n_streamlines else fiblets.extract(ids)
+    lost = part.save(target)
+    return {"streamlines": len(ids), "bytes": target.stat().st_size, "lost": list(lost)}
+
+
+def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[str, Any]:
+    """Return the profile of a volume's values; see :meth:`Selecting.profile`."""
+    from pvfiblets.codec.query.profile import mean_profile
+
+    part = actor.fiblets.extract(ids)
+    mean, std = mean_profile(part, np.arange(len(ids)), sampled(volume, part.decompress().points), n)
+    position = np.linspace(0.0, 1.0, n)
+    return {
+        "position": plain(position), "mean": plain(mean), "std": plain(std), "name": volume.name, "count": len(ids),
+    }  # fmt: skip
+
+
+def _along(fiblets: Any, ids: np.ndarray, volume: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return a volume's values at the points of streamlines, as ``point_values`` does."""
+    lines = fiblets.decompress(ids)
+    return sampled(volume, lines.points), lines.offsets
+
+
 def _rows(layer: Layer, actor: Any, ids: np.ndarray) -> list[dict[str, Any]]:
     fiblets = actor.fiblets
     part = fiblets.extract(ids)
@@ -322,7 +366,8 @@ def _values(actor: Any, ids: np.ndarray) -> tuple[np.ndarray, str | None]:
         return nothing, None
     if scalars.kind == "streamline_scalar":
         return np.asarray(scalars.values, np.float64)[ids], scalars.title
-    found = point_values(actor.fiblets, ids, scalars.name)
+    found = _along(actor.fiblets, ids, scalars.volume) if scalars.volume is not None else None
+    found = found or point_values(actor.fiblets, ids, scalars.name)
     if found is None:
         return nothing, None
     values, offsets = found

@@ -21,7 +21,18 @@ from pvfiblets.errors import FibletsError
 from pvfiblets.web import layers
 from pvfiblets.web.actors import check_planes
 from pvfiblets.web.cameras import check_camera
-from pvfiblets.web.document import KINDS, LINES, Clip, Filters, Ids, Layer, Source, State
+from pvfiblets.web.document import (
+    KINDS,
+    LINES,
+    Clip,
+    Filters,
+    Ids,
+    Layer,
+    Source,
+    State,
+    as_volume_choice,
+    volume_in,
+)
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
 from pvfiblets.web.showing import MOST_CLIPS, check_filters
 from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
@@ -29,6 +40,7 @@ from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Cancel, Progress
     from pvfiblets.web.scene import Scene
+    from pvfiblets.web.store import Store
 
 __all__ = ["VERSION", "Prepared", "SessionError", "apply", "from_dict", "load", "prepare", "save", "to_dict"]
 
@@ -96,6 +108,7 @@ class Prepared:
 
     state: State
     camera: dict[str, Any] | None
+    store: Store  # with all that the document names
 
 
 def from_dict(scene: Scene, data: Any, folder: Path | None = None) -> None:
@@ -134,8 +147,13 @@ def prepare(
 
 def apply(scene: Scene, prepared: Prepared) -> None:
     """Show a session that was prepared for this scene."""
-    with _as_session_error():
-        scene.become(prepared.state, "open a session")
+    scene.store.take(prepared.store)
+    try:
+        with _as_session_error():
+            scene.become(prepared.state, "open a session")
+    except SessionError:
+        scene.forget_unused()
+        raise
     if prepared.camera is not None:
         scene.set_camera(prepared.camera)
 
@@ -177,17 +195,21 @@ def load(scene: Scene, path: str) -> None:
 def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
     source = layer.source
     found: dict[str, Any] = {"id": layer.id, "kind": layer.kind, "name": layer.name, "visible": layer.visible}
-    found["source"] = (
-        {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
-    )
+    found["source"] = _place_of(source, path_of)
     if source.ids is not None:
         found["source"]["ids"] = source.ids.runs.ravel().tolist()
     found["settings"] = dict(layer.settings)
+    if (volume := volume_in(layer.settings.get("scalars"))) is not None:
+        found["settings"]["scalars"] = {"volume": _place_of(volume, path_of)}
     if layer.filters.active:
         found["filters"] = _filters_to_dict(layer.filters, shape_of)
     if layer.selected is not None:
         found["selected"] = layer.selected.runs.ravel().tolist()
     return found
+
+
+def _place_of(source: Source, path_of: Any) -> dict[str, Any]:
+    return {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
 
 
 def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
@@ -225,16 +247,16 @@ def _checked(
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
-    paths = _Paths(scene, folder)
-    found = [_layer_from_dict(scene, item, paths, progress, cancel) for item in data["layers"]]
-    clips = [_clip_from_dict(item, paths) for item in data.get("clips", [])]
+    reading = _Reading(scene.store.fork(), _Paths(scene, folder), progress, cancel)
+    found = [_layer_from_dict(item, reading) for item in data["layers"]]
+    clips = [_clip_from_dict(item, reading.paths) for item in data.get("clips", [])]
     ids = [layer.id for layer in found] + [clip.id for clip in clips]
     if twice := [name for name in ids if ids.count(name) > 1]:
         raise ValueError(f"the id {twice[0]!r} stands twice")
     state = State(tuple(found), tuple(clips), colour(data.get("background", "#000000"), "background"))
-    _check_cuts(scene, state)
+    _check_cuts(reading.store, state)
     camera = data.get("camera")
-    return Prepared(state, None if camera is None else check_camera(camera))
+    return Prepared(state, None if camera is None else check_camera(camera), reading.store)
 
 
 class _Paths:
@@ -263,9 +285,29 @@ class _Paths:
         return {"how": condition["how"], "region": self.shape(condition["region"])}
 
 
-def _layer_from_dict(
-    scene: Scene, value: Any, paths: _Paths, progress: Progress | None, cancel: Cancel | None
-) -> Layer:
+@dataclass(frozen=True)
+class _Reading:
+    """What a session is read with; its store is another than the scene's, which is in use meanwhile."""
+
+    store: Store
+    paths: _Paths
+    progress: Progress | None
+    cancel: Cancel | None
+
+    def volume(self, setting: Any) -> list[tuple[Any, str]]:
+        """Return the one volume that a setting names, as a choice; none if it names none."""
+        if not isinstance(setting, Mapping):
+            return []
+        mapping(setting, "scalars", ("volume",))
+        source = _source_from_dict(setting["volume"], self.paths)
+        if source.ids is not None:
+            raise ValueError("a volume that colours lines has ids; volumes have no streamlines")
+        self.store.colours(source, self.progress, self.cancel)
+        return [(as_volume_choice(source), "volume")]
+
+
+def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
+    store, paths = reading.store, reading.paths
     mapping(value, "layer", ("id", "kind", "name", "source"), ("visible", "settings", "filters", "selected"))
     kind = value["kind"]
     if kind not in KINDS:
@@ -275,10 +317,11 @@ def _layer_from_dict(
         raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
     visible = truth(value.get("visible", True), "visible")
     layer = Layer(_id(value["id"]), kind, text(value["name"], "name"), source, visible)
-    data = scene.data(layer, progress, cancel).data
+    data = store.data(layer, reading.progress, reading.cancel).data
     settings = layers.defaults(kind)
     for name, setting in mapping(value.get("settings", {}), "settings", (), tuple(settings)).items():
-        settings[name] = layers.check(kind, name, setting, data)
+        volumes = reading.volume(setting) if name == "scalars" else []
+        settings[name] = layers.check(kind, name, volumes[0][0] if volumes else setting, data, volumes)
     layer = replace(layer, settings=settings)
     if kind not in LINES:
         if value.get("filters") is not None or value.get("selected") is not None:
@@ -288,7 +331,7 @@ def _layer_from_dict(
         filters = check_filters(value["filters"], data)
         if filters.regions is not None:
             regions = paths.condition(filters.regions)
-            make_predicate(regions, scene.shape_data)
+            make_predicate(regions, store.shape)
             filters = replace(filters, regions=regions)
         layer = replace(layer, filters=filters)
     if value.get("selected") is not None:
@@ -327,9 +370,9 @@ def _clip_from_dict(value: Any, paths: _Paths) -> Clip:
     )
 
 
-def _check_cuts(scene: Scene, state: State) -> None:
+def _check_cuts(store: Store, state: State) -> None:
     for clip in state.clips:
-        make_region(clip.shape, scene.shape_data)
+        make_region(clip.shape, store.shape)
         for layer_id in clip.layers or ():
             state.layer(layer_id)
     for layer in state.layers:

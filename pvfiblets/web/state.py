@@ -27,11 +27,14 @@ class Page:
     toast_kind: str = "error"
     uploading: str = ""
     uploaded: float = 0.0  # per cent; below zero: nobody knows
+    export_what: str = "selected"
+    export_to: str = "folder"
 
     layers: list[Record] = field(default_factory=list)
     chosen: str = ""
     chosen_name: str = ""
     chosen_kind: str = ""
+    held: Record = field(default_factory=dict)  # the slider that is dragged, and its number
     groups: list[Record] = field(default_factory=list)  # of properties, as the panel draws them
     range_chart: str = ""  # SVG
     undo_label: str = ""
@@ -48,6 +51,7 @@ class Page:
     info: list[Record] = field(default_factory=list)
     frame: str = ""
 
+    download: Record = field(default_factory=dict)  # the latest export
     job: Record = field(default_factory=dict)
     folder: str = ""
     entries: list[Record] = field(default_factory=list)
@@ -68,6 +72,8 @@ WRITABLE: dict[str, type] = {
     "toast_kind": str,
     "uploading": str,
     "uploaded": float,
+    "export_what": str,
+    "export_to": str,
 }
 """Fields that browsers may write, and their types."""
 

@@ -78,11 +78,11 @@ def _by_numbers(settings: Any) -> bool:
     return settings["scalars"] not in (None, "orientation")
 
 
-def _colours(scalars: Any, default: Any, *, span: Any = None) -> tuple[Property, ...]:
+def _colours(scalars: Any, default: Any, *, span: Any = None, volumes: bool = False) -> tuple[Property, ...]:
     """Properties of what is coloured by numbers or has one colour."""
     return (
         Property("scalars", "choice", "Colour by", "What the colours stand for.", default=default, choices=scalars,
-                 resets=("clim", "log_scale")),
+                 resets=("clim", "log_scale"), volumes=volumes),
         Property("color", "colour", "Colour", "Of all, where nothing else colours it.", default="#ffffff",
                  matters=lambda s: s["scalars"] is None),
         Property("cmap", "choice", "Map", "Colours from the low end of the range to the high one.",
@@ -108,7 +108,7 @@ def _surface_style(settings: Any) -> bool:
 
 
 TRACTOGRAM: tuple[Property, ...] = (
-    *_colours(_line_scalars, "orientation", span=_clim_span),
+    *_colours(_line_scalars, "orientation", span=_clim_span, volumes=True),
     Property("nan_color", "colour", "Without a value", "Colour of what has no value.", optional=True,
              read=lambda actor: actor.nan_color.hex_rgb, matters=_by_numbers),
     _OPACITY,

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from pvfiblets.web.elements import html, v3
+from pvfiblets.web.exporting import EXPORTS
 
 TABS = (("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("info", "Info"))
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
-EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
+WHAT = (("selected", "selected ones"), ("shown", "all that filters leave"), ("all", "all of the layer"))
+WHERE = (("folder", "the served folder"), ("computer", "this computer"))
 
 
 def build(app: Any) -> None:
@@ -28,8 +30,9 @@ def build(app: Any) -> None:
                 _info()
 
 
-def _slider_rows(change: Any, owner: str, rows: str) -> None:
+def _slider_rows(change: Any, kind: str, owner: str, rows: str) -> None:
     """Build sliders with their numbers for a list of described values."""
+    shown = f"(held.at === '{kind} ' + {owner} + ' ' + c.name ? held.shown : c.shown)"
     with html.Div(v_for=f"c in {rows}", key="c.name", classes="pv-row", data_control=("c.name",)):
         html.Label("{{ c.label }}", title=("c.help || ''",))
         with html.Div(style="min-width: 0"):
@@ -37,12 +40,18 @@ def _slider_rows(change: Any, owner: str, rows: str) -> None:
                 "min": ("c.limits[0]",), "max": ("c.limits[1]",), "step": ("c.step",), "density": "compact",
                 "hide_details": True, "color": "primary", "thumb_size": 14, "track_size": 3,
                 "model_value": ("c.value",), "end": (change, f"[{owner}, c.name, $event]"), "aria_label": ("c.label",),
+                "data_live": (f"JSON.stringify(['{kind}', {owner}, c.name])",),
             }  # fmt: skip
-            v3.VRangeSlider(v_if="c.type === 'range'", **common)
-            v3.VSlider(v_else=True, **common)
-            with html.Div(classes="pv-pair pv-small", style="justify-content: space-between"):
-                html.Span("{{ c.shown[0] }}")
-                html.Span("{{ c.shown[1] }}", v_if="c.shown.length > 1")
+            with html.Div(v_if="c.type === 'range'"):
+                v3.VRangeSlider(**common)
+                with html.Div(classes="pv-pair pv-small px-1", style="justify-content: space-between"):
+                    html.Span(f"{{{{ {shown}[0] }}}}")
+                    html.Span(f"{{{{ {shown}[1] }}}}")
+            with html.Div(v_else=True, classes="pv-pair"):
+                v3.VSlider(**common, style="min-width: 0")
+                html.Span(
+                    f"{{{{ {shown}[0] }}}}", classes="pv-small", style="flex: none; width: 68px; text-align: right"
+                )
 
 
 def _clip(app: Any) -> None:
@@ -86,7 +95,7 @@ def _clip(app: Any) -> None:
                 )  # fmt: skip
             v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none",
                     click=(app.cuts.set_axis, "[clip.id, 'view']"))  # fmt: skip
-        _slider_rows(app.cuts.set_value, "clip.id", "clip.controls")
+        _slider_rows(app.cuts.set_value, "clip", "clip.id", "clip.controls")
         v3.VDivider(classes="mt-2")
 
 
@@ -96,7 +105,9 @@ def _filter(app: Any) -> None:
     )
     with html.Div(v_if="filters.layer"):
         with html.Div(classes="pv-pair px-3 pt-2"):
-            html.Span("{{ filters.counted }}", classes="pv-value", style="flex: 1", data_value="counted")
+            html.Span(
+                "{{ held.counted || filters.counted }}", classes="pv-value", style="flex: 1", data_value="counted"
+            )
             v3.VBtn("Show all", size="x-small", variant="tonal", classes="text-none", click=app.filtering.clear,
                     disabled=("!filters.active",))  # fmt: skip
         html.Div("Criteria", classes="pv-head")
@@ -108,16 +119,18 @@ def _filter(app: Any) -> None:
                     click=(app.filtering.remove, "[c.name]"),
                 ):  # fmt: skip
                     v3.VIcon("mdi-close", size=16)
-            html.Div(v_html=("c.chart",), classes="pv-chart mx-5")
+            html.Div(v_html=("c.chart",), classes="pv-chart mx-4")
             v3.VRangeSlider(
                 model_value=("c.value",), min=("c.limits[0]",), max=("c.limits[1]",), step=("c.step",),
                 end=(app.filtering.set_criterion, "[c.name, $event]"), density="compact", hide_details=True,
-                color="primary", thumb_size=14, track_size=3, classes="mx-2", aria_label=("c.label",),
+                color="primary", thumb_size=14, track_size=3, classes="mx-4", aria_label=("c.label",),
+                data_live=("JSON.stringify(['criterion', 'of', c.name])",),
             )  # fmt: skip
+            shown = "(held.at === 'criterion of ' + c.name ? held.shown : c.shown)"
             with html.Div(classes="pv-pair px-4 pb-2", style="justify-content: space-between"):
                 for end in (0, 1):
                     html.Input(
-                        classes="pv-num", inputmode="decimal", value=(f"c.shown[{end}]",),
+                        classes="pv-num", inputmode="decimal", value=(f"{shown}[{end}]",),
                         change=(app.filtering.set_end, f"[c.name, {end}, $event.target.value]"),
                         aria_label=(f"c.label + ({end} ? ', most' : ', least')",),
                     )  # fmt: skip
@@ -135,11 +148,11 @@ def _filter(app: Any) -> None:
             )  # fmt: skip
         html.Div("Random subset", classes="pv-head")
         with html.Div(classes="pv-row"):
-            html.Span("{{ filters.share }} %", classes="pv-value")
+            html.Span("{{ held.at === 'share of streamlines' ? held.shown[0] : filters.share }} %", classes="pv-value")
             v3.VSlider(
                 model_value=("filters.share",), min=1, max=100, step=1, density="compact", hide_details=True,
                 color="primary", thumb_size=14, track_size=3, end=(app.filtering.set_share, "[$event]"),
-                aria_label="Share of streamlines",
+                aria_label="Share of streamlines", data_live=("JSON.stringify(['share', 'of', 'streamlines'])",),
             )  # fmt: skip
         _regions(app)
 
@@ -173,7 +186,7 @@ def _regions(app: Any) -> None:
                 icon=True, size="x-small", variant="text", aria_label="Remove", click=(app.filtering.drop_region, "[i]")
             ):
                 v3.VIcon("mdi-delete-outline", size=18)
-        _slider_rows(app.filtering.set_region, "i", "r.controls")
+        _slider_rows(app.filtering.set_region, "region", "i", "r.controls")
 
 
 def _selection(app: Any) -> None:
@@ -188,15 +201,6 @@ def _selection(app: Any) -> None:
             v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=app.selecting.clear)
         with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
             v3.VBtn("As a layer", size="small", variant="tonal", classes="text-none", click=app.selecting.as_layer)
-            with v3.VBtn("Export", size="small", variant="tonal", classes="text-none", data_action="export"):
-                with v3.VMenu(activator="parent"):
-                    with v3.VList(density="compact"):
-                        for suffix in EXPORTS:
-                            v3.VListItem(title=suffix, click=(app.selecting.export, f"['{suffix}']"),
-                                         data_export=suffix)  # fmt: skip
-            v3.VBtn("Download {{ selection.file }}", v_if="selection.url", size="small", color="primary",
-                    classes="text-none", href=("selection.url",), download=("selection.file",), data_action="download",
-                    prepend_icon="mdi-download")  # fmt: skip
         with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2"):
             with html.Table(classes="pv-table", id="picked"):
                 with html.Thead():
@@ -214,6 +218,32 @@ def _selection(app: Any) -> None:
                     variant="outlined", hide_details=True, update_modelValue=(app.selecting.set_profile, "[$event]"),
                 )  # fmt: skip
             html.Div(v_html=("selection.chart",), id="profile")
+    _export(app)
+
+
+def _export(app: Any) -> None:
+    with html.Div(v_if="chosen_kind === 'tractogram' || chosen_kind === 'selection' || selection.count", id="export"):
+        html.Div("Export", classes="pv-head")
+        for label, key, items in (("Streamlines", "export_what", WHAT), ("To", "export_to", WHERE)):
+            with html.Div(classes="pv-row"):
+                html.Label(label)
+                v3.VSelect(
+                    v_model=(key,), items=(repr([{"title": title, "value": value} for value, title in items]),),
+                    density="compact", variant="outlined", hide_details=True, aria_label=label, data_select=key,
+                )  # fmt: skip
+        with html.Div(classes="pv-row"):
+            html.Label("Format")
+            with v3.VBtn("Export as…", size="small", variant="tonal", classes="text-none", data_action="export"):
+                with v3.VMenu(activator="parent"):
+                    with v3.VList(density="compact"):
+                        for suffix in EXPORTS:
+                            v3.VListItem(title=suffix, click=(app.exports.export, f"['{suffix}']"),
+                                         data_export=suffix)  # fmt: skip
+        with html.Div(v_if="download.url", classes="px-3 py-2"):
+            v3.VBtn("Download {{ download.file }}", size="small", color="primary", block=True,
+                    classes="text-none", href=("download.url",), download=("download.file",), data_action="download",
+                    prepend_icon="mdi-download")  # fmt: skip
+            html.Div("{{ download.file }} is {{ download.where }}.", classes="pv-small pt-1", data_value="exported")
 
 
 def _info() -> None:

@@ -48,6 +48,7 @@ def test_everything_that_was_done_is_undone_and_done_again(scene, history, clock
     do(lambda: scene.set_background("#203040"))
     do(lambda: scene.duplicate(layer.id))
     do(lambda: scene.keep_selection(layer.id))
+    do(lambda: scene.set(scene.layers[-1].id, "tube_radius", 1.5))
     do(lambda: scene.remove(layer.id))
     assert len(history) == len(done) - 1
     for state, picture in reversed(done[:-1]):
@@ -94,6 +95,23 @@ def test_a_slider_is_one_step(scene, history, clock):
     assert scene.layer(layer.id).settings["opacity"] == 0.7
 
 
+def test_a_slider_that_is_held_is_one_step_however_long_it_takes(scene, history, clock):
+    layer = scene.open("ball.ply")
+    history.held = True
+    for opacity in (0.9, 0.5, 0.2):
+        clock.now += 10.0
+        scene.set(layer.id, "opacity", opacity)
+    scene.set(layer.id, "specular", 0.5)  # of another slider
+    history.held = False
+    clock.now += 10.0
+    scene.set(layer.id, "specular", 0.6)
+    assert len(history) == 4
+    history.undo()
+    history.undo()
+    history.undo()
+    assert scene.layer(layer.id).settings["opacity"] == 1.0
+
+
 def test_doing_something_else_forgets_what_was_undone(scene, history, clock):
     layer = scene.open("ball.ply")
     scene.set(layer.id, "opacity", 0.5)
@@ -116,13 +134,13 @@ def test_steps_are_bounded_and_data_goes_with_them(scene, clock):
     ball = scene.open("ball.ply")
     source = "mesh", ball.source
     scene.remove(ball.id)
-    assert source in scene._data  # undo may want it
+    assert source in scene.store.loaded  # undo may want it
     layer = scene.open("lines.fiblets")
     for width in range(1, 6):
         clock.now += 10.0
         scene.set(layer.id, "line_width", width)
     assert len(history) == 3
-    assert source not in scene._data
+    assert source not in scene.store.loaded
     while history.undo():
         pass
     assert scene.layer(layer.id).settings["line_width"] == 2.0
@@ -135,7 +153,7 @@ def test_steps_are_bounded_and_data_goes_with_them(scene, clock):
 def test_undo_that_cannot_be_done_changes_nothing(scene, history, folder):
     ball = scene.open("ball.ply")
     scene.remove(ball.id)
-    scene._data.clear()  # as after a restart: the file must be read again, and is gone
+    scene.store.loaded.clear()  # as after a restart: the file must be read again, and is gone
     (folder / "ball.ply").unlink()
     with pytest.raises(FileNotFoundError):
         history.undo()

@@ -68,7 +68,29 @@ def anatomy(scene):
     scene.parallel = True
 
 
-@pytest.mark.parametrize("fill", [tracts, anatomy])
+def volumes(scene):
+    """Lines that are coloured by volumes: of labels, of numbers, of another format, and of a demo."""
+    scene.open("head.nii.gz")
+    scene.open("atlas.nii.gz")
+    image = pv.ImageData(dimensions=(8, 8, 8), spacing=(9.0, 6.0, 4.0))
+    image["height"] = image.points[:, 1].astype(np.float32)
+    image.save(scene.root / "height.vti")
+    scene.open("height.vti")
+    _, demo = scene.add_demo(4, 8)
+    names = ("head.nii.gz", "atlas.nii.gz", "height.vti")
+    wanted = [*({"volume": {"path": name}} for name in names), {"volume": {"demo": "head", "size": 8}}]
+    for layer in scene.layers:
+        scene.show(layer.id, False)
+    for group, value in enumerate(wanted):
+        lines = scene.open("lines.fiblets")
+        scene.set(lines.id, "scalars", value)
+        scene.set(lines.id, "line_width", 2.0)
+        scene.set_filter(lines.id, "weight", 15 * group, 15 * group + 14)
+    scene.remove(demo.id)
+    scene.view("coronal")
+
+
+@pytest.mark.parametrize("fill", [tracts, anatomy, volumes])
 def test_a_script_makes_the_same_picture(scene, folder, fill):
     fill(scene)
     scene.screenshot()

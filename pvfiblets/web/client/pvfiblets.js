@@ -115,6 +115,48 @@
   document.addEventListener("pointerup", (event) => finish(event, true), true);
   document.addEventListener("pointercancel", (event) => finish(event, false), true);
 
+  // Sliders ----------------------------------------------------------------------------------------
+
+  // Vuetify says where a slider is only when it is let go, so its thumbs are read. One value at a time is on its way; of
+  // those that come meanwhile only the newest is sent.
+  let slid = null;
+
+  const thumbs = (slider) => {
+    const found = [...slider.querySelectorAll("[role=slider]")].map((one) => Number(one.getAttribute("aria-valuenow")));
+    return found.length > 1 ? found : found[0];
+  };
+
+  const follow = async (one) => {
+    if (one.busy || one !== slid) return;
+    const value = thumbs(one.slider), text = JSON.stringify(value);
+    if (text === one.text) return;
+    one.text = text;
+    one.busy = true;
+    await call("slide", ...JSON.parse(one.slider.dataset.live), value);
+    one.busy = false;
+    requestAnimationFrame(() => follow(one));
+  };
+
+  const hold = (event) => {
+    const slider = event.target.closest?.("[data-live]");
+    if (slider && slid?.slider !== slider) slid = { slider, text: JSON.stringify(thumbs(slider)), busy: false };
+    if (slid) requestAnimationFrame(() => slid && follow(slid));
+  };
+
+  // The value that it is left at comes from Vuetify, after this event.
+  const letGo = () => {
+    if (!slid) return;
+    slid = null;
+    setTimeout(() => call("release"), 0);
+  };
+
+  document.addEventListener("pointerdown", hold, true);
+  window.addEventListener("pointermove", () => slid && requestAnimationFrame(() => slid && follow(slid)), true);
+  window.addEventListener("pointerup", letGo, true);
+  window.addEventListener("pointercancel", letGo, true);
+  document.addEventListener("keydown", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && hold(event), true);
+  document.addEventListener("keyup", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && letGo(), true);
+
   // Files ------------------------------------------------------------------------------------------
 
   const say = (text) => {

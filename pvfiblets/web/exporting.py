@@ -1,0 +1,135 @@
+"""Streamlines as files: into the served folder, or for the browser to fetch.
+
+What is only fetched lies in a folder of the session's own until newer exports or the session's end take it away. Names
+that browsers fetch by are random and known to this session alone; the gate's checks stand before them.
+"""
+
+from __future__ import annotations
+
+import re
+import secrets
+import tempfile
+from collections import OrderedDict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.web.actions import Actions
+from pvfiblets.web.document import LINES
+from pvfiblets.web.options import MEBIBYTE
+from pvfiblets.web.selecting import write
+
+__all__ = ["EXPORTS", "ExportActions"]
+
+EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
+PLACES = ("folder", "computer")
+KEPT = 4  # files that can be fetched; older ones are forgotten, and those of no folder removed
+LARGEST = 2048 * MEBIBYTE
+"""Bytes of a file that is for fetching only: it takes space that nobody sees."""
+BYTES_PER_POINT = 12
+"""At least, in all formats but ``.fiblets``."""
+
+
+@dataclass(frozen=True)
+class _File:
+    path: Path
+    name: str
+    temporary: bool
+
+
+class ExportActions(Actions):
+    """The exports of an application."""
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self._files: OrderedDict[str, _File] = OrderedDict()
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    def export(self, suffix: str) -> None:
+        """Write streamlines to a file, which and where the page says, and offer it."""
+        app = self._app
+        what, to = app.page.export_what, app.page.export_to
+        if suffix not in EXPORTS:
+            raise ValueError(f"{str(suffix)[:40]!r} is none of {', '.join(EXPORTS)}")
+        if to not in PLACES:
+            raise ValueError(f"{to[:40]!r} is none of {', '.join(PLACES)}")
+        layer = self._owner(what)
+        fiblets, ids = app.scene.chosen(layer.id, what)
+        points = fiblets.n_points * len(ids) // max(fiblets.n_streamlines, 1)
+        if to == "computer" and suffix != ".fiblets" and points * BYTES_PER_POINT > LARGEST:
+            raise ValueError(f"about {points:,} points are too many to fetch; save the file in the served folder")
+        stem = re.sub(r"[^\w-]+", "_", layer.name.partition(".")[0], flags=re.ASCII).strip("_") or "streamlines"
+        stem = f"{stem[:80]}_{what}" if what != "all" else stem[:80]
+        app.later(self._write(fiblets, ids, stem, suffix, temporary=to == "computer"))
+
+    async def _write(self, fiblets: Any, ids: Any, stem: str, suffix: str, *, temporary: bool) -> None:
+        app = self._app
+        target = self._temporary(suffix) if temporary else self._free(stem, suffix)
+        name = stem + suffix if temporary else target.name
+        try:
+            done = await app.files.beside(name, lambda *_: write(fiblets, ids, target), "writing", cancellable=False)
+            if temporary and done["bytes"] > LARGEST:
+                raise ValueError(f"{name} has {done['bytes']:,} bytes, too many to fetch; save it in the served folder")
+        except BaseException:
+            target.unlink(missing_ok=True)
+            raise
+        number = secrets.token_urlsafe(24)
+        self._offer(number, _File(target, name, temporary))
+        lost = f"; {suffix} cannot hold: {', '.join(map(str, done['lost']))}" if done["lost"] else ""
+        where = "ready for download" if temporary else "saved in the served folder"
+        size = f"{done['bytes'] / 1024:,.0f} kB"
+        app.page.download = {"url": f"/download/{number}", "file": name, "where": where}
+        app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}){lost}", "success")
+
+    def _owner(self, what: str) -> Any:
+        """The layer that is exported: the chosen one, or of selections the first that has one."""
+        scene, chosen = self._app.scene, self._app.page.chosen
+        if what == "selected":
+            having = [layer for layer in scene.layers if layer.selected is not None]
+            if not having:
+                raise ValueError("nothing is selected; pick streamlines first, or export those that are shown")
+            return next((layer for layer in having if layer.id == chosen), having[0])
+        if not chosen or scene.layer(chosen).kind not in LINES:
+            raise ValueError("choose a tractogram first")
+        return scene.layer(chosen)
+
+    def _free(self, stem: str, suffix: str) -> Path:
+        """Return a name in the served folder that is not taken."""
+        confined = self._app.confined
+        names = (f"{stem}{'' if k == 1 else f'_{k}'}{suffix}" for k in range(1, 10_000))
+        found: Path = confined.writable(next(name for name in names if not (confined.root / name).exists()), EXPORTS)
+        return found
+
+    def _temporary(self, suffix: str) -> Path:
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
+        return Path(self._folder.name) / f"{secrets.token_hex(8)}{suffix}"
+
+    def _offer(self, number: str, file: _File) -> None:
+        self._files[number] = file
+        while len(self._files) > KEPT:
+            _, old = self._files.popitem(last=False)
+            if old.temporary:
+                old.path.unlink(missing_ok=True)
+
+    async def send(self, request: Any) -> Any:
+        """Answer a browser that fetches a file."""
+        from aiohttp import web
+
+        file = self._files.get(request.match_info["number"])
+        if file is None or not file.path.is_file():
+            raise web.HTTPNotFound
+        return web.FileResponse(
+            file.path,
+            headers={
+                "Content-Disposition": f'attachment; filename="{file.name}"',
+                "Content-Type": "application/octet-stream",
+            },
+        )
+
+    def close(self) -> None:
+        """Remove what was only to be fetched; twice is harmless."""
+        self._files.clear()
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None

@@ -1,0 +1,101 @@
+"""What a scene's documents name, read once: tractograms, volumes, meshes, regions, by where they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from pvfiblets.web.document import LINES, Layer, Source, State, volume_in
+from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
+
+__all__ = ["Store"]
+
+
+class Store:
+    """Data of a scene.
+
+    Parameters
+    ----------
+    files : Files
+        Where it is read from.
+    """
+
+    def __init__(self, files: Files) -> None:
+        self.files = files
+        self.loaded: dict[tuple[str, Source], Loaded] = {}
+        self.shapes: dict[tuple[str, str], Any] = {}
+
+    def fork(self) -> Store:
+        """Return another that begins with the same; a thread may fill it while this one is in use."""
+        twin = Store(self.files)
+        twin.loaded, twin.shapes = self.loaded.copy(), self.shapes.copy()
+        return twin
+
+    def take(self, other: Store) -> None:
+        """Have all that another one has, too."""
+        self.loaded = {**other.loaded, **self.loaded}
+        self.shapes = {**other.shapes, **self.shapes}
+
+    def put(self, loaded: Loaded) -> None:
+        """Keep what was read; what was of that place before gives way."""
+        self.loaded.pop(("colours", loaded.source), None)  # of the file as it was
+        self.loaded[loaded.kind, loaded.source] = loaded
+
+    def data(self, layer: Layer, progress: Progress | None = None, cancel: Cancel | None = None) -> Loaded:
+        """Return what a layer draws; it is read if it must be.
+
+        Raises
+        ------
+        ValueError
+            If the layer is of streamlines that its file does not have; others as of :meth:`.Files.load`.
+        """
+        kind = _family(layer.kind)
+        key = kind, layer.source
+        if key not in self.loaded:
+            loaded = self._read(kind, replace(layer.source, ids=None), progress, cancel)
+            if layer.source.ids is not None:
+                ids, total = layer.source.ids, loaded.data.n_streamlines
+                if ids.highest >= total:
+                    raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
+                loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
+            self.loaded[key] = loaded
+        volume = volume_in(layer.settings.get("scalars"))
+        if volume is not None:
+            self.colours(volume, progress, cancel)
+        return self.loaded[key]
+
+    def colours(self, source: Source, progress: Progress | None = None, cancel: Cancel | None = None) -> Any:
+        """Return the volume, a :class:`.VolumeSource`, that colours lines where they run."""
+        return self._read("colours", source, progress, cancel).data
+
+    def shape(self, kind: str, path: str) -> Any:
+        """Return what a region is made of: the region of a mesh, or an image of labels."""
+        if (kind, path) not in self.shapes:
+            from pvfiblets.plotting.cutting import as_region
+
+            data = self.files.load(Source(path), kind).data
+            self.shapes[kind, path] = as_region(data) if kind == "mesh" else data
+        return self.shapes[kind, path]
+
+    def keep(self, states: Iterable[State]) -> None:
+        """Let go of data that none of some documents needs."""
+        needed = set()
+        for state in states:
+            for kind, source in state.sources():
+                needed |= {(_family(kind), source), (_family(kind), replace(source, ids=None))}
+        self.loaded = {key: loaded for key, loaded in self.loaded.items() if key in needed}
+
+    def clear(self) -> None:
+        """Let go of everything."""
+        self.loaded.clear()
+        self.shapes.clear()
+
+    def _read(self, kind: str, source: Source, progress: Progress | None, cancel: Cancel | None) -> Loaded:
+        if (kind, source) not in self.loaded:
+            self.loaded[kind, source] = self.files.load(source, kind, progress, cancel)
+        return self.loaded[kind, source]
+
+
+def _family(kind: str) -> str:
+    return "tractogram" if kind in LINES else kind

@@ -1,0 +1,48 @@
+"""An application without trame: what a page's actions need of one, so that they are tested without a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from types import SimpleNamespace
+
+from pvfiblets.web.confined import Confined
+from pvfiblets.web.history import History
+from pvfiblets.web.opening import FileActions
+from pvfiblets.web.options import Options
+from pvfiblets.web.state import Page
+
+
+class Desk:
+    """A scene with a page that is only a record; what is said to the user is in ``said``."""
+
+    def __init__(self, scene, folder, **options):
+        self.scene, self.plotter = scene, scene.plotter
+        self.options = Options(root=str(folder), **options)
+        self.confined = Confined(folder)
+        self.history = History(scene)
+        self.page = Page()
+        self.state = contextlib.nullcontext()
+        self.stream = SimpleNamespace(request=lambda: None, warm=lambda: None, size=scene.plotter.window_size)
+        self.said = []
+        self.refreshed = 0
+        self.files = FileActions(self)
+        self.tasks = []
+
+    def say(self, text, kind="info"):
+        self.said.append((kind, text))
+
+    def complain(self, text):
+        self.say(text, "error")
+
+    def refresh(self):
+        self.refreshed += 1
+
+    def later(self, coroutine):
+        self.tasks.append(asyncio.get_running_loop().create_task(coroutine))
+        return self.tasks[-1]
+
+    async def done(self):
+        """Wait for what runs beside; its errors are raised here."""
+        while self.tasks:
+            await self.tasks.pop(0)

@@ -1,0 +1,133 @@
+"""Exports: into the served folder, or to be fetched, and where they are is said."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from aiohttp import web
+
+import pvfiblets
+from pvfiblets.web import exporting
+from pvfiblets.web.exporting import EXPORTS, ExportActions
+from tests.web.desk import Desk
+
+
+@pytest.fixture
+def desk(scene, folder):
+    layer = scene.open("lines.fiblets")
+    scene.select(layer.id, [3, 4, 30])
+    scene.set_filter(layer.id, "length", 40.25)
+    desk = Desk(scene, folder)
+    desk.page.chosen = layer.id
+    desk.exports = ExportActions(desk)
+    yield desk
+    desk.exports.close()
+
+
+def export(desk, suffix, what="selected", to="folder"):
+    """Export, and return the file that is offered then."""
+    desk.page.export_what, desk.page.export_to = what, to
+
+    async def test():
+        desk.exports.export(suffix)
+        await desk.done()
+
+    asyncio.run(test())
+    return fetched(desk)
+
+
+def fetched(desk, url=None):
+    """Return what a browser gets: path, and the name that it is given."""
+    number = (url or desk.page.download["url"]).removeprefix("/download/")
+    answer = asyncio.run(desk.exports.send(SimpleNamespace(match_info={"number": number})))
+    return Path(answer._path), answer.headers["Content-Disposition"]
+
+
+@pytest.mark.parametrize("suffix", EXPORTS)
+def test_a_fetched_file_holds_the_streamlines_and_lies_in_no_served_folder(desk, folder, lines, suffix):
+    before = sorted(folder.iterdir())
+    path, shown = export(desk, suffix, to="computer")
+    assert sorted(folder.iterdir()) == before
+    assert shown == f'attachment; filename="lines_selected{suffix}"'
+    found = pvfiblets.FibletSet.open(path).decompress() if suffix == ".fiblets" else pvfiblets.read(path)
+    np.testing.assert_allclose(found.lengths(), lines.lengths()[[3, 4, 30]], atol=0.05)
+    kind, said = desk.said[-1]
+    assert kind == "success"
+    assert f"3 streamlines ready for download as lines_selected{suffix}" in said
+    desk.exports.close()
+    assert not path.exists()
+
+
+def test_the_served_folder_keeps_every_export_under_a_name_of_its_own(desk, folder):
+    first, _ = export(desk, ".trk")
+    second, _ = export(desk, ".trk")
+    assert (first.name, second.name) == ("lines_selected.trk", "lines_selected_2.trk")
+    assert first.parent == second.parent == folder
+    assert "saved in the served folder as lines_selected_2.trk" in desk.said[-1][1]
+    shown, _ = export(desk, ".tck", "shown")
+    assert (shown.name, len(pvfiblets.read(shown))) == ("lines_shown.tck", 29)
+    whole, _ = export(desk, ".tck", "all")
+    assert (whole.name, len(pvfiblets.read(whole))) == ("lines.tck", 60)
+    desk.exports.close()
+    assert first.exists()
+
+
+def test_old_files_cannot_be_fetched_and_take_no_space(desk):
+    offered = []
+    for _ in range(exporting.KEPT + 1):
+        path, _ = export(desk, ".tck", to="computer")
+        offered.append((path, desk.page.download["url"]))
+    assert [path.exists() for path, _ in offered] == [False] + exporting.KEPT * [True]
+    assert len({url for _, url in offered}) == exporting.KEPT + 1
+    for number in (offered[0][1], "/download/..", "/download/"):
+        with pytest.raises(web.HTTPNotFound):
+            fetched(desk, number)
+
+
+def test_what_is_too_large_to_fetch_is_not_kept(desk, monkeypatch):
+    monkeypatch.setattr(exporting, "LARGEST", 1000)
+    with pytest.raises(ValueError, match="save the file in the served folder"):
+        export(desk, ".trk", to="computer")
+    with pytest.raises(ValueError, match="too many to fetch"):
+        export(desk, ".fiblets", to="computer")
+    assert list(Path(desk.exports._folder.name).iterdir()) == []
+    assert desk.page.download == {}
+    assert export(desk, ".trk")[0].exists()
+
+
+@pytest.mark.parametrize(
+    ("suffix", "what", "to", "says"),
+    [
+        (".exe", "selected", "folder", "none of .trk"),
+        (".trk", "everything", "folder", "choose one of selected"),
+        (".trk", "selected", "../elsewhere", "none of folder"),
+    ],
+)
+def test_other_requests_are_refused(desk, folder, suffix, what, to, says):
+    before = sorted(folder.iterdir())
+    with pytest.raises(ValueError, match=says):
+        export(desk, suffix, what, to)
+    assert sorted(folder.iterdir()) == before
+
+
+def test_nothing_selected_or_no_tractogram_is_said(desk, scene):
+    scene.deselect()
+    with pytest.raises(ValueError, match="nothing is selected"):
+        export(desk, ".trk")
+    desk.page.chosen = scene.open("ball.ply").id
+    with pytest.raises(ValueError, match="choose a tractogram"):
+        export(desk, ".trk", "all")
+
+
+def test_files_are_written_beside_the_page(desk, monkeypatch):
+    threads = []
+    write = exporting.write
+    monkeypatch.setattr(exporting, "write", lambda *a: threads.append(threading.current_thread()) or write(*a))
+    export(desk, ".trx")
+    assert threads[0] is not threading.main_thread()
+    assert desk.page.job == {}
