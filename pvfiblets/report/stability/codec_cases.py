@@ -49,7 +49,8 @@ def kept(
 
 @CASES.add("turns from 1e-6 to π", "25 lines of constant step, each with one angle at every point", WITHIN)
 def _angles(_: Setting) -> Outcome:
-    return kept([lines_of(turning(angle)) for angle in ANGLES] + [lines_of(*map(turning, ANGLES))])
+    alone = kept([lines_of(turning(angle)) for angle in ANGLES], ["fast"])
+    return worst([alone, kept([lines_of(*map(turning, ANGLES))])])
 
 
 @CASES.add("alternating turns of 180°", "500 points back and forth between two places", WITHIN)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from pvfiblets.engine import FibletRenderer, Style, View
 
-__all__ = ["EVERY_POINT", "OFF_LINE", "Shown", "away", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
+__all__ = ["EVERY_POINT", "OFF_LINE", "Shown", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
 
 Array = npt.NDArray[np.float64]
 
@@ -24,6 +24,7 @@ EMPTY = 0xFFFFFFFF
 OFF_LINE = 5.0**0.5 / 2.0 + 2.0**0.5 * 23.0 / 256.0
 EVERY_POINT = Style(tolerance=0.0)
 SAMPLES = 8  # places on a line for each pixel it crosses
+REACH = 3  # pixels within which lines and pixels are looked for
 
 
 def camera(
@@ -157,33 +158,27 @@ def off_lines(shown: Shown, lines: Sequence[npt.NDArray[Any]], matrix: Array, si
     """Return the largest distance in pixels between the picture and the lines in float64, either way.
 
     Of a drawn pixel's centre from the nearest place on a line, and of a place on a line from the nearest drawn pixel's;
-    inf where there is none. A hundredth of a pixel is the error of the places' spacing.
+    inf beyond ``REACH``, or where there is none.
     """
     places = samples(lines, matrix, size)
-    row, column = np.nonzero(shown.there)
-    centres: Array = np.column_stack([column, row]).astype(np.float64) + 0.5
-    if not len(places) or not len(centres):
+    there = shown.there
+    if not len(places) or not there.any():
         return np.inf
-    # A place in the outermost half pixel may have moved out of the picture.
-    edge = np.minimum(places, np.array(size, np.float64) - places).min(axis=1) < 1.0
-    return max(away(centres, places), away(places[~edge], centres))
-
-
-def away(points: Array, others: Array) -> float:
-    """Return the largest distance of points from the nearest of others, ``(n, 2)`` each."""
-    largest = 0.0
-    long = int(np.argmax(np.ptp(others, axis=0)))  # along the window's longer side few others are as near
-    others = others[np.argsort(others[:, long])]
-    for point in points:
-        reach = 4.0
-        while True:
-            low, high = np.searchsorted(others[:, long], [point[long] - reach, point[long] + reach])
-            near = float(np.sqrt(((others[low:high] - point) ** 2).sum(axis=1).min(initial=np.inf)))
-            if near <= reach or high - low == len(others):
-                break
-            reach *= 8.0
-        largest = max(largest, near)
-    return largest
+    width, height = size
+    nearest = np.full((height + 2 * REACH, width + 2 * REACH), np.inf)  # of each pixel, the nearest place
+    drawn_near = np.pad(there, REACH)
+    found = np.full(len(places), np.inf)  # of each place, the nearest pixel drawn
+    cell = np.clip(np.floor(places).astype(np.int64), 0, np.array(size) - 1)
+    for dy in range(-REACH, REACH + 1):
+        for dx in range(-REACH, REACH + 1):
+            apart = np.hypot(cell[:, 0] + dx + 0.5 - places[:, 0], cell[:, 1] + dy + 0.5 - places[:, 1])
+            at = cell[:, 1] + dy + REACH, cell[:, 0] + dx + REACH
+            np.minimum.at(nearest, at, apart)
+            found = np.where(drawn_near[at], np.minimum(found, apart), found)
+    # A place in the outermost pixels may have moved out of the picture.
+    inner = np.minimum(places, np.array(size, np.float64) - places).min(axis=1) >= 1.0
+    pixels = nearest[REACH:-REACH, REACH:-REACH][there]
+    return float(max(pixels.max(), found[inner].max(initial=0.0)))
 
 
 def pixel_rays(matrix: Array, size: tuple[int, int]) -> tuple[Array, Array]:
