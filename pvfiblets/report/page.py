@@ -97,10 +97,10 @@ def _defaults(study: StudyResult) -> list[str]:
     pairs = [pair for pair in study.axes if not pair.series]
     heads = [f"{pair.y_label} / {pair.x_label}" for pair in pairs]
     shown = [record for record in study.records if record.group]
-    label = next(record.label for record in study.records if record.default)
+    labels = dict.fromkeys(record.label for record in study.records if record.default)
     lines = [
-        f"By default: **{label}**. At each pair of figures: its own two, and after a colon the ways that beat it "
-        "in both, in time by more than repeats differ.",
+        f"By default: {', '.join(f'**{label}**' for label in labels)}. At each pair of figures: its own two, and after "
+        "a colon the ways that beat it in both, in time by more than repeats differ.",
         "",
         "| data | " + " | ".join(heads) + " |",
         "|---|" + "---|" * len(heads),
@@ -109,6 +109,9 @@ def _defaults(study: StudyResult) -> list[str]:
         cells = []
         for pair in pairs:
             x, y = record.shown(pair.x), record.shown(pair.y)
+            if not math.isfinite(y):  # a pair that is for other data sets
+                cells.append("")
+                continue
             beaten = [
                 other.label
                 for other in shown

@@ -76,7 +76,8 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
     rows = -(-len(sets) // COLUMNS)
     here = {record.way for record in records}, {record.setting for record in records}
     handles = _legend([w for w in ways if w in here[0]], [s for s in settings if s in here[1]], colours, markers, pair)
-    below = 0.3 + 0.2 * -(-len(handles) // 4)  # inches for the legend
+    columns = min(4, max(2, 2 * min(COLUMNS, len(sets))))
+    below = 0.3 + 0.2 * -(-len(handles) // columns)  # inches for the legend
     height, width = 3.1 * rows + below + 1.0, 4.3 * min(COLUMNS, len(sets)) + 0.4
     picture = Picture(figsize=(width, height))
     panels = picture.subplots(rows, min(COLUMNS, len(sets)), sharex=True, sharey=True, squeeze=False)
@@ -109,7 +110,6 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
     for panel in panels[:, 0]:
         panel.set_ylabel(pair.y_label, fontsize=9)
     picture.suptitle(study.title, fontsize=11, y=1.0 - 0.08 / height, va="top")
-    columns = min(4, max(2, 2 * panels.shape[1]))
     picture.legend(handles=handles, loc="lower center", ncols=columns, fontsize=8, frameon=False)
     return picture
 
@@ -137,13 +137,22 @@ def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], flo
     panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if max(xs) < 300.0 * min(xs) else (1.0,)))
     panel.xaxis.set_minor_locator(NullLocator())
     panel.yaxis.set_minor_locator(NullLocator())
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: _short(x)))
     panel.set_xlim(min(xs) / 1.25, max(xs) * 1.25)
     if not pair.series and min(ys) <= 0.0:
         decades = range(math.floor(math.log10(floor * ZERO_BELOW)), math.ceil(math.log10(max(max(ys), floor))) + 1)
         every = max(1, len(decades) // 8)
         ticks = [10.0**k for k in decades[::every] if 10.0**k > 4.0 * floor]
         panel.set_yticks([floor, *ticks], ["0", *(f"$10^{{{k}}}$" for k in decades[::every] if 10.0**k > 4.0 * floor)])
+
+
+def _short(x: float) -> str:
+    """A number as a tick shows it: plain, or by its power of ten where it would be long."""
+    if 1e-4 <= x < 99999.5:
+        return f"{x:g}"
+    mantissa, _, power = f"{x:.0e}".partition("e")
+    times = "" if mantissa == "1" else rf"{mantissa} \cdot "
+    return f"${times}10^{{{int(power)}}}$"
 
 
 def _legend(

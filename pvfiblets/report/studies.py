@@ -22,6 +22,7 @@ MODULES = {
     "codec": "pvfiblets.report.codec",
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
+    "tubes": "pvfiblets.report.tubes",
     "stability": "pvfiblets.report.stability.study",
 }
 PLANNED = {

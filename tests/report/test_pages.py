@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from pvfiblets.cli import main
-from pvfiblets.report import studies
+from pvfiblets.report import plots, studies
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
@@ -95,10 +95,29 @@ def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys
         main(["report"])
 
 
-def test_studies_to_come_make_a_page(tmp_path, capsys):
-    assert main(["report", "--only", "volume", "-o", str(tmp_path)]) == 0
+def test_studies_to_come_make_a_page(tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(studies.PLANNED, "weather", "benchmarks/weather.py")
+    assert main(["report", "--only", "weather", "-o", str(tmp_path)]) == 0
     assert "not part of the report yet" in (tmp_path / "report.md").read_text()
     assert "wrote" in capsys.readouterr().err
+
+
+def test_each_default_is_told_at_its_own_figures_only():
+    axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm"), Axes("b", "costs/size", "errors/wrong", "bytes", "%")]
+    records = [
+        Record(data, "g", "", way, "", {error: Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")}, default=True)
+        for data, way, error in (("points", "ours", "max"), ("pixels", "theirs", "wrong"))
+    ]
+    text = page(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), {})
+    assert "By default: **ours**, **theirs**." in text
+    assert "| points | 0.5 / 2 |  |" in text
+    assert "| pixels |  | 0.5 / 2 |" in text
+
+
+@pytest.mark.parametrize(("number", "shown"), [(5.0, "5"), (2e4, "20000"), (1e5, "$10^{5}$"), (1e-6, "$10^{-6}$"),
+                                               (2e6, r"$2 \cdot 10^{6}$")])  # fmt: skip
+def test_ticks_are_short(number, shown):
+    assert plots._short(number) == shown
 
 
 def test_pictures_are_told_in_milliseconds_per_frame():

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 import moderngl
 import numpy as np
@@ -39,6 +40,8 @@ class SolverProbe:
         By the chain of derivatives, as the paper's bisection always is.
     hollow : bool
         Look for exits where a ray begins inside.
+    clock : callable
+        Seconds, by which drawing is timed.
 
     Attributes
     ----------
@@ -54,6 +57,7 @@ class SolverProbe:
         *,
         chain: bool = False,
         hollow: bool = False,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         check_choices(solver=solver, iterations=iterations)
         self._ctx, self._gl = ctx, OpenGL(ctx)
@@ -62,8 +66,9 @@ class SolverProbe:
         wanted = {"SPLINE_CHAIN": chain or hollow or feature is None, "SPLINE_HOLLOW": hollow}
         features = [name for name, on in wanted.items() if on] + ([feature] if feature else [])
         self._program, self._array = self._programs.screen("splines/probe.frag", features)
-        counts = np.array([iterations or SOLVERS[solver].iterations, 0, 0, 0], "<i4")
-        self._block = ctx.buffer((bytes(16) + counts.tobytes()).ljust(SPLINES_BYTES, b"\0"))
+        self._block = ctx.buffer(bytes(SPLINES_BYTES))
+        self.limit(SOLVERS[solver].iterations if iterations is None else iterations)
+        self._clock = clock
         self.seconds = 0.0
 
     def hits(
@@ -116,6 +121,11 @@ class SolverProbe:
         kind = found[:, 2].astype(np.int64)
         return np.where(kind > 0, found[:, 0] * size + along, np.nan), found[:, 1], kind
 
+    def limit(self, iterations: int) -> None:
+        """Search by so many iterations from now on; the program stays the same."""
+        check_choices(iterations=iterations)
+        self._block.write(np.array([iterations, 0, 0, 0], "<i4").tobytes(), offset=16)
+
     def _run(self, rows: Array) -> Array:
         ctx, count = self._ctx, len(rows)
         height = max(1, -(-count // _ROW))
@@ -133,10 +143,10 @@ class SolverProbe:
                 ctx.scissor = None
                 ctx.enable_only(moderngl.NOTHING)
                 ctx.finish()
-                begin = time.perf_counter()
+                begin = self._clock()
                 self._array.render(moderngl.TRIANGLES, vertices=3)
                 ctx.finish()
-                self.seconds = time.perf_counter() - begin
+                self.seconds = self._clock() - begin
             found = np.frombuffer(target.read(), "<f4").reshape(-1, 4)[:count].astype(np.float64)
         finally:
             framebuffer.release()
