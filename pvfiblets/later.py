@@ -22,7 +22,7 @@ def names_from(package: str, home: Mapping[str, str]) -> tuple[Callable[[str], A
     package : str
         Its ``__name__``.
     home : mapping of str to str
-        By name: the module below the package that it is an object of.
+        By name: the module below the package that it is an object of; with a dot before it, one beside the package.
 
     Returns
     -------

@@ -16,12 +16,17 @@ Positions are mm. See :mod:`pvfiblets.codec.query.shapes` for how a region is ke
 
 from __future__ import annotations
 
-from .codec.query.classify import classify
-from .codec.query.labels import Labels
-from .codec.query.measures import Distance
-from .codec.query.predicates import Predicate, ends_in, passes, stays_in
-from .codec.query.shapes import Box, Plane, Region, Shape, Slab, Sphere
-from .codec.query.surfaces import Surface
+from typing import TYPE_CHECKING
+
+from .later import names_from
+
+if TYPE_CHECKING:
+    from .codec.query.classify import classify
+    from .codec.query.labels import Labels
+    from .codec.query.measures import Distance
+    from .codec.query.predicates import Predicate, ends_in, passes, stays_in
+    from .codec.query.shapes import Box, Plane, Region, Shape, Slab, Sphere
+    from .codec.query.surfaces import Surface
 
 __all__ = [
     "Box",
@@ -39,3 +44,22 @@ __all__ = [
     "passes",
     "stays_in",
 ]
+
+_HOME = {
+    "Box": ".codec.query.shapes",
+    "Distance": ".codec.query.measures",
+    "Labels": ".codec.query.labels",
+    "Plane": ".codec.query.shapes",
+    "Predicate": ".codec.query.predicates",
+    "Region": ".codec.query.shapes",
+    "Shape": ".codec.query.shapes",
+    "Slab": ".codec.query.shapes",
+    "Sphere": ".codec.query.shapes",
+    "Surface": ".codec.query.surfaces",
+    "classify": ".codec.query.classify",
+    "ends_in": ".codec.query.predicates",
+    "passes": ".codec.query.predicates",
+    "stays_in": ".codec.query.predicates",
+}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)

@@ -291,7 +291,8 @@ class Cutter:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        return sum(thing.nbytes for thing in (self._stack, self._surfaces, self._squares) if thing is not None)
+        block = 0 if self._block is None else self._block.size
+        return block + sum(thing.nbytes for thing in (self._stack, self._surfaces, self._squares) if thing is not None)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""

@@ -42,6 +42,11 @@ class _Bits:
         self._source = selected
         return self.texture
 
+    def explain(self) -> dict[str, list[dict[str, Any]]]:
+        """Return ``passes``, of which there are none, and ``buffers``, name and bytes."""
+        size = 0 if self.texture is None else 4 * self.texture.width * self.texture.height
+        return {"passes": [], "buffers": [{"name": "fibletChosenMap", "bytes": size}]}
+
     def release(self) -> None:
         """Give the texture back; twice is harmless."""
         if self.texture is not None:

@@ -56,6 +56,12 @@ class _Held:
             self._empty[name].filter = moderngl.NEAREST, moderngl.NEAREST
         return self._empty[name]
 
+    def explain(self) -> dict[str, list[dict[str, Any]]]:
+        """Return ``passes``, of which there are none of its own, and ``buffers``, name and bytes."""
+        sizes = {name: components * int(dtype[1]) for name, (components, dtype) in _EMPTY.items()}
+        buffers = [{"name": f"{name} (no layer)", "bytes": sizes[name]} for name in self._empty]
+        return {"passes": [], "buffers": buffers}
+
     def _drop_layers(self) -> None:
         if self._engine is not None:
             self._engine.drop_layers()

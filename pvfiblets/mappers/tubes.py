@@ -44,12 +44,22 @@ class _Blank:
     """
 
     def __init__(self, ctx: Any) -> None:
-        self.texture = ctx.texture((1, 1), 1, np.zeros(1, np.float16).tobytes(), dtype="f2", alignment=1)
-        self.texture.filter = ctx.NEAREST, ctx.NEAREST
+        self._ctx = ctx
+        self._texture: Any = None
+
+    @property
+    def texture(self) -> Any:
+        """The texel, made when it is first needed."""
+        if self._texture is None:
+            self._texture = self._ctx.texture((1, 1), 1, np.zeros(1, np.float16).tobytes(), dtype="f2", alignment=1)
+            self._texture.filter = self._ctx.NEAREST, self._ctx.NEAREST
+        return self._texture
 
     def release(self) -> None:
         """Give it back; twice is harmless."""
-        self.texture.release()
+        if self._texture is not None:
+            self._texture.release()
+            self._texture = None
 
 
 @dataclass(frozen=True)

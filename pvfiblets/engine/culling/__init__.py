@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..errors import EngineError
-from .coverage import CoverageBuffer
 from .occlusion import Occlusion
-from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
     import moderngl
@@ -32,7 +30,11 @@ def make_occlusion(
     if culling in (None, "none"):
         return None
     if culling in ("two-phase", "auto"):
+        from .pyramid import DepthPyramid
+
         return DepthPyramid(ctx, gl, programs)
     if culling == "coverage":
+        from .coverage import CoverageBuffer
+
         return CoverageBuffer(ctx, gl, programs, fiblets)
     raise EngineError(f"culling is {culling!r}; choose 'two-phase', 'coverage' or None")

@@ -36,7 +36,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
@@ -100,8 +100,6 @@ class ComputePipeline:
     ----------
     planned : bool
         Whether the marks are those of the last picture.
-    buffers : dict of str to moderngl.Buffer
-        ``marks``: see ``shaders/compute/marks.glsl``; ``nearest``, with atomics of 64 bits: a word for each pixel.
     """
 
     name = "compute"
@@ -122,8 +120,17 @@ class ComputePipeline:
         self._list_base = self._words * MARK_WORDS
         self._argument_base = self._list_base + self._words * CLASSES
         size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
-        self.buffers: dict[str, moderngl.Buffer] = {}
-        self.buffers["marks"] = storage_buffer(ctx, np.zeros(size, np.uint32), "marks")
+        self._own: dict[str, moderngl.Buffer] = {}
+        self._own["marks"] = storage_buffer(ctx, np.zeros(size, np.uint32), "marks")
+
+    @property
+    def buffers(self) -> dict[str, Any]:
+        """``marks`` (``shaders/compute/marks.glsl``); ``nearest``, with atomics of 64 bits: a word for each pixel.
+
+        And what the pipeline that draws tubes has, if it does.
+        """
+        others = {} if self._raster is None else self._raster.buffers
+        return {**self._own, **{f"{name} of tubes": held for name, held in others.items()}}
 
     def draw(self, job: Job) -> None:
         """Draw all chunks; the uniform blocks are bound already.
@@ -137,6 +144,7 @@ class ComputePipeline:
             self._draw_by_raster(job)
             self.planned = False
             return
+        self._drop_raster()
         self.planned = True
         if self._software:
             self._shares = _shares(1.0 if job.tubes else job.line_width, job.segment)
@@ -144,7 +152,7 @@ class ComputePipeline:
         images = (target.depth, target.owner, target.ids, target.position, target.across)
         for index, texture in enumerate(image for image in images if image is not None):
             texture.bind_to_image(index, read=True, write=True)
-        self.buffers["marks"].bind_to_storage_buffer(5)
+        self._own["marks"].bind_to_storage_buffer(5)
         passes = job.passes
         if self._int64:
             self._bind_nearest(8 * target.size[0] * target.size[1])
@@ -195,12 +203,12 @@ class ComputePipeline:
         self._raster.draw(job)
 
     def _bind_nearest(self, size: int) -> None:
-        held = self.buffers.get("nearest")
+        held = self._own.get("nearest")
         if held is None or held.size != size:
             if held is not None:
-                self.buffers.pop("nearest").release()
+                self._own.pop("nearest").release()
             try:
-                held = self.buffers["nearest"] = self._ctx.buffer(reserve=size)
+                held = self._own["nearest"] = self._ctx.buffer(reserve=size)
             except moderngl.Error as error:
                 raise EngineError(f"no GPU memory for {size} bytes of depths and owners") from error
         held.bind_to_storage_buffer(NEAREST_BINDING)
@@ -277,7 +285,7 @@ class ComputePipeline:
             job.kept.bind(program, index)
             if job.peel is not None:
                 job.peel.bind(program)
-            program.run_indirect(self.buffers["marks"], 4 * at + ARGUMENT_BYTES * part)
+            program.run_indirect(self._own["marks"], 4 * at + ARGUMENT_BYTES * part)
 
     def _test(self, stage: str, job: Job) -> None:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
@@ -310,9 +318,12 @@ class ComputePipeline:
 
     def release(self) -> None:
         """Give the pipeline's own buffers back; twice is harmless."""
-        for buffer in self.buffers.values():
+        for buffer in self._own.values():
             buffer.release()
-        self.buffers.clear()
+        self._own.clear()
+        self._drop_raster()
+
+    def _drop_raster(self) -> None:
         if self._raster is not None:
             self._raster.release()
             self._raster = None
