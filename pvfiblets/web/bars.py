@@ -13,6 +13,8 @@ MOST_BARS = 6
 LABELLED_RATIO = 0.35
 """How much of its width a bar takes beside names."""
 _WIDTH, _FIRST, _STEP, _NAMES = 0.06, 0.88, 0.14, 0.12
+_LOW, _HEIGHT = 0.07, 0.3
+"""Below the middle of the height, where the letters at the sides stand, titles over the bars included."""
 
 
 class Bars:
@@ -70,9 +72,9 @@ def bar_arguments(place: int, actor: Any, background: str) -> dict[str, Any]:
         "color": contrast(background),
         "vertical": True,
         "width": _WIDTH,
-        "height": 0.5,
+        "height": _HEIGHT,
         "position_x": round(_FIRST - _STEP * place, 4),
-        "position_y": 0.25,
+        "position_y": _LOW,
     }
     if has_labels(actor):
         return {**found, "position_x": round(_FIRST - _STEP * place - _NAMES, 4), "n_labels": 0}

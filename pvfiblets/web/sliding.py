@@ -16,7 +16,7 @@ from pvfiblets.web.charts import short
 __all__ = ["SlideActions"]
 
 FILTERS = ("region", "criterion", "share")
-SETTLED = 0.4  # seconds without another value after which the page is brought in step
+SETTLED = 3.0  # seconds without a word from the slider after which the page is brought in step
 
 
 class SlideActions(Actions):

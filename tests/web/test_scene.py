@@ -275,6 +275,23 @@ def test_bars_are_of_visible_layers_and_say_their_values(scene):
     assert list(scene.plotter.scalar_bars.keys()) == []
 
 
+@pytest.mark.parametrize("size", [(320, 240), (640, 690), (1600, 400)])
+def test_bars_leave_the_places_of_letters_free(scene, size):
+    """Letters stand at the middles of the edges, 16 pixels high, the left one behind the tools."""
+    width, height = scene.plotter.window_size = size
+    for values in ("length", "fa", "group", "weight"):
+        layer = scene.open("lines.fiblets")
+        scene.set(layer.id, "scalars", values)
+        scene.set(layer.id, "opacity", 0.0)
+    scene.screenshot()
+    bars = drawn(scene.screenshot())
+    assert bars.sum() > 500
+    middle = slice(height // 2 - 12, height // 2 + 12)
+    assert not bars[middle].any()
+    assert not bars[:28, width // 2 - 20 : width // 2 + 20].any()
+    assert bars[:, width // 2 :].sum() > 0.5 * bars.sum()
+
+
 @pytest.mark.parametrize(
     ("view", "edges"),
     [("axial", "LRAP"), ("coronal", "RLSI"), ("sagittal", "APSI"), ("right", "PASI"), ("posterior", "LRSI")],

@@ -6,10 +6,11 @@ import asyncio
 
 import pytest
 
+from pvfiblets.web import sliding
 from pvfiblets.web.cuts import CutActions
 from pvfiblets.web.describe import Charts
 from pvfiblets.web.filtering import FilterActions
-from pvfiblets.web.sliding import SETTLED, SlideActions
+from pvfiblets.web.sliding import SlideActions
 from tests.web.desk import Desk
 
 
@@ -32,7 +33,7 @@ def drag(desk, *moves, release=True):
         if release:
             desk.sliders.release()
         else:
-            await asyncio.sleep(2.0 * SETTLED)
+            await asyncio.sleep(2.0 * sliding.SETTLED)
 
     before = desk.refreshed
     asyncio.run(test())
@@ -52,7 +53,8 @@ def test_every_value_acts_and_the_page_is_brought_in_step_once(desk, scene):
     assert scene.actor(layer.id).opacity == 1.0
 
 
-def test_a_slider_that_rests_without_being_let_go_is_shown_as_it_is(desk, scene):
+def test_a_slider_that_rests_without_being_let_go_is_shown_as_it_is(desk, scene, monkeypatch):
+    monkeypatch.setattr(sliding, "SETTLED", 0.05)
     assert drag(desk, ("property", scene.layers[0].id, "line_width", 3.0), release=False) == 1
 
 
