@@ -23,6 +23,7 @@ MODULES = {
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
     "tubes": "pvfiblets.report.tubes",
+    "features": "pvfiblets.report.features",
     "stability": "pvfiblets.report.stability.study",
 }
 PLANNED = {
