@@ -55,6 +55,11 @@ class _Blank:
             self._texture.filter = self._ctx.NEAREST, self._ctx.NEAREST
         return self._texture
 
+    def explain(self) -> dict[str, list[dict[str, Any]]]:
+        """Return ``passes``, of which there are none, and ``buffers``, name and bytes."""
+        held = [] if self._texture is None else [{"name": "fibletAcrossMap (blank)", "bytes": 2}]
+        return {"passes": [], "buffers": held}
+
     def release(self) -> None:
         """Give it back; twice is harmless."""
         if self._texture is not None:

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from .build import as_spline_tubes
-from .tubes import NodeValues, SplineTubes
+from typing import TYPE_CHECKING
+
+from ..later import names_from
+
+if TYPE_CHECKING:
+    from .build import as_spline_tubes
+    from .tubes import NodeValues, SplineTubes
 
 __all__ = ["NodeValues", "SplineTubes", "as_spline_tubes"]
+
+_HOME = {"NodeValues": "tubes", "SplineTubes": "tubes", "as_spline_tubes": "build"}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)
