@@ -34,7 +34,7 @@ __all__ = [
 
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
 MOST_PIXELS = 1 << 24  # of one rendering; larger ones are drawn in tiles
-WIDTH_CUE = 0.4  # the plotter's own
+WIDTH_CUE = 0.5  # the plotter's own
 WRONG = 0.25  # of black and white: pixels that are off by more are told as a share
 
 Singles = npt.NDArray[np.float32]

@@ -4,9 +4,8 @@ To add one, such as ``culling``: write ``pvfiblets/report/culling.py`` with an o
 :class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.culling"`` into ``MODULES``. Nothing else
 knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a quick run's time, asks
 ``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
-study: where no OpenGL context can be made). ``benchmarks/tube_errors.py``, ``halo_errors.py``, ``volume_errors.py``
-and ``culling.py`` measure tubes, halos, volumes and culling so far, each in a form of its own; names are kept for them
-in ``PLANNED``.
+study: where no OpenGL context can be made). Names of studies that are not there yet, and what measures the same so
+far, are kept in ``PLANNED``.
 """
 
 from __future__ import annotations
@@ -23,14 +22,13 @@ MODULES = {
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
     "tubes": "pvfiblets.report.tubes",
+    "halos": "pvfiblets.report.halos",
     "features": "pvfiblets.report.features",
     "stability": "pvfiblets.report.stability.study",
 }
 PLANNED = {
-    "culling": "benchmarks/culling.py",
     "tubes": "benchmarks/tube_errors.py",
     "volume": "benchmarks/volume_errors.py",
-    "halos": "benchmarks/halo_errors.py",
 }
 
 

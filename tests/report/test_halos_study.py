@@ -1,0 +1,175 @@
+"""The study of halos on very little data, and what it measures by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pvfiblets import formats
+from pvfiblets.codec.compress import compress
+from pvfiblets.engine import standalone
+from pvfiblets.engine.errors import EngineError
+from pvfiblets.halos.reference import picture as reference
+from pvfiblets.report import data, halos
+from pvfiblets.report.halos_drawing import FibletHalos, Strips
+from pvfiblets.report.halos_exact import crossings, gaps, pixel_errors
+from pvfiblets.report.halos_pictures import helices, look_of, orbit
+from pvfiblets.report.record import LeftOut
+from pvfiblets.report.study import Budget, Options, Unavailable
+
+
+def little(**rest):
+    return Options(quick=True, repeats=1, points=1500, log=lambda line: None, machine="m", **rest)
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr(halos, "QUICK_SIZE", (120, 90))
+    monkeypatch.setattr(halos, "QUICK_EXACT_SIZE", (60, 40))
+    monkeypatch.setattr(halos, "QUICK_HELICES", 2)
+    monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
+
+
+def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
+    formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 1500, 3))
+    left = []
+    records = list(halos.STUDY.run(little(files=(tmp_path,)), left))
+    assert not left
+    assert {record.data for record in records} == {"2 helices", "crossings", "brain, 0.5 mm", "some.tck"}
+    for record in records:
+        assert record.errors
+        assert all(math.isfinite(figure.value) for figure in record.errors.values())
+        assert record.times["draw"].item == "frame"
+        assert record.value("times/draw") > 0.0
+    for scene in ("brain, 0.5 mm", "some.tck"):
+        found = {record.label: record for record in records if record.data == scene}
+        assert set(found) == {f"{way.name} ({way.setting})" for way in halos.ways(True, True)} | {
+            "black or white (64 samples)", "smooth edges (64 samples)",
+        }  # fmt: skip
+        assert [record.label for record in found.values() if record.default] == ["smooth edges (1 sample)"]
+        mean = {label: record.errors["mean"].value for label, record in found.items()}
+        # The picture that all are held against is off by nothing, and more samples are nearer to it.
+        assert {figure.value for figure in found["black or white (64 samples)"].errors.values()} == {0.0}
+        assert mean["black or white (1 sample)"] > 2.0 * mean["black or white (4 samples)"] > 0.0
+        assert mean["smooth edges (1 sample)"] < mean["black or white (1 sample)"]
+        assert 0.0 < mean["smooth edges (64 samples)"] < mean["smooth edges (4 samples)"]
+        assert found["smooth, not culled (1 sample)"].errors == found["smooth edges (1 sample)"].errors
+        assert mean["halos of fiblets (1 sample)"] < 3.0 * mean["black or white (1 sample)"]
+
+
+def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing(gl, small):
+    found = {r.label: r for r in halos.STUDY.run(little(), []) if r.group == "helices"}
+    right = found["float64 reference, smooth edges (1 sample)"]
+    assert {figure.value for figure in right.errors.values()} == {0.0}
+    assert not right.ours
+    shown = found["smooth edges (1 sample)"]
+    assert shown.default
+    assert shown.errors["kind"].value < 0.1  # percent; a pixel at an edge may fall to either side
+    assert shown.errors["mean"].value < 0.1
+    assert shown.errors["depth"].value < 1e-4
+    assert right.times["draw"].median > shown.times["draw"].median
+
+
+def test_what_time_did_not_suffice_for_is_named(gl, small):
+    left = []
+    assert list(halos.STUDY.run(little(budget=Budget(0.0)), left)) == []
+    late = [item.what for item in left if item.reason == "the time given was used up"]
+    assert late[0] == "2 helices: everything"
+    assert late[1].startswith("crossings: smooth edges (1 sample), ")
+    assert late[2] == "brain, 0.5 mm: everything"
+
+
+def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
+    for name in ("a", "b"):
+        formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 300, 0))
+    left = []
+    assert [s.name for s in halos.scenes(little(files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
+    assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]
+
+
+def test_without_opengl_it_is_unavailable(small, monkeypatch):
+    def none():
+        raise EngineError("no OpenGL 3.2 or later could be started")
+
+    monkeypatch.setattr(standalone, "bare_context", none)
+    with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
+        list(halos.STUDY.run(little(), []))
+
+
+# ----------------------------------------------------------------------------------------------------- what it measures
+
+
+def test_gaps_of_a_perfect_picture_are_the_formula():
+    """Drawn here without the engine: along a line behind, black but for a gap on either side of a line in front."""
+    made = crossings()
+    width, height = made.size
+    half_line = 4.0
+    fine = (np.arange(width * 50) + 0.5) / 50
+    shown = np.zeros((height, width), np.float32)
+    for row, right in zip(made.rows, made.right, strict=True):
+        away = np.abs(fine[:, None] - made.columns).min(axis=1)
+        black = (away < half_line) | (away > half_line + right)
+        shown[int(row) - 4 : int(row) + 4] = black.reshape(width, 50).mean(axis=1)
+    found = gaps(shown, made)
+    assert found["gap max"].value < 0.03  # samples are a fiftieth of a pixel apart
+    assert found["gap"].value <= found["gap max"].value
+    assert {figure.unit for figure in found.values()} == {"px"}
+    # All black has no gaps: it is off by the mean of all widths.
+    nothing = gaps(np.ones((height, width), np.float32), made)
+    assert nothing["gap"].value == pytest.approx(made.right.mean())
+    assert nothing["gap max"].value == pytest.approx(made.right.max())
+
+
+def test_gaps_near_the_formula_with_the_number_of_samples(gl):
+    made = crossings()
+    assert made.right[0] == 0.0
+    assert made.right[-1] == 12.0  # half of the strip's 32 pixels less the line's 8
+    found = []
+    for times in (1, 2, 4):
+        strips = Strips(gl, made.lines, times)
+        found.append(gaps(strips.read(strips.render(made, made.look)), made)["gap max"].value)
+        strips.release()
+    assert found[0] < 1.0
+    assert found[1] < 0.6 * found[0]
+    assert found[2] < 0.6 * found[1]
+
+
+def test_pixel_errors_tell_what_differs(gl):
+    drawn = helices(3)
+    look = replace(look_of(drawn), smooth=False)
+    camera = orbit(drawn, 1, 1, (80, 60))[0][1]
+    strips = Strips(gl, drawn)
+    buffer = strips.render(camera, look)
+    dark = strips.read(buffer)
+    right = reference(drawn, look, camera.model_view_projection, camera.size)
+    kept = pixel_errors(buffer, dark, right, camera)
+    changed = right.kind.copy()
+    changed[0, :8] = (changed[0, :8] + 1) % 3
+    wrong = pixel_errors(buffer, dark, replace(right, kind=changed), camera)
+    assert wrong["kind"].value == pytest.approx(kept["kind"].value + 100.0 * 8 / 4800, abs=1e-6)
+    # Depth is told in mm along the view axis: one mm farther away is one mm of error.
+    near, far = camera.near, camera.far
+    distance = far * near / (far - right.depth * (far - near))
+    farther = (far - far * near / (distance + 1e-3)) / (far - near)
+    moved = pixel_errors(buffer, dark, replace(right, depth=farther), camera)
+    assert moved["depth"].value == pytest.approx(1e-3, rel=0.02)
+    darker = pixel_errors(buffer, dark + np.float32(0.25), right, camera)
+    assert darker["mean"].value == pytest.approx(kept["mean"].value + 25.0, abs=0.1)
+    strips.release()
+
+
+def test_halos_of_fiblets_are_those_of_the_same_lines(gl):
+    scene = next(halos.scenes(little(), []))
+    fiblets = compress(scene.tractogram.streamlines)
+    shown = []
+    for drawing in (FibletHalos(gl, fiblets, 2), Strips(gl, scene.drawn, 2)):
+        camera = scene.path[1]
+        shown.append(drawing.read(drawing.render(camera, replace(scene.look, smooth=False))))
+        assert 0 < drawing.nbytes < 200 * fiblets.n_points
+        drawing.release()
+    assert shown[1].mean() > 0.01
+    assert np.abs(shown[0] - shown[1]).mean() < 0.35 * shown[1].mean()
+    assert shown[0].mean() == pytest.approx(shown[1].mean(), rel=0.15)
