@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = [
     "MOST_PLANES",
     "add_actor",
-    "check_planes",
     "cut",
     "filter_as",
     "look_as",
     "put_in_order",
     "remove_actor",
     "select_as",
+    "split_cuts",
 ]
 
 MOST_PLANES = 6
@@ -168,41 +168,69 @@ def select_as(actor: Any, selected: Ids | None) -> None:
 # Cuts -----------------------------------------------------------------------------------------------
 
 
-def check_planes(layer: Layer, clips: Sequence[Clip]) -> list[tuple[list[float], list[float]]]:
-    """Return normals and origins of the planes that cut tubes or a mesh.
+Planes = list[tuple[list[float], list[float]]]
+
+
+def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]:
+    """Say how tubes or a mesh are cut by clips that are all for it.
+
+    Returns
+    -------
+    planes : list of (list of 3 floats, list of 3 floats)
+        Normals and origins of planes, which VTK cuts by.
+    others : list of Clip
+        Of meshes: those whose shapes the triangles are cut by.
 
     Raises
     ------
     ValueError
-        If something else than planes would cut them, or too many planes.
+        If something else than planes would cut tubes, or too many planes.
     """
-    found: list[tuple[list[float], list[float]]] = []
+    planes: Planes = []
+    others: list[Clip] = []
     for clip in clips:
-        planes = planes_of(clip.shape, clip.inside)
-        if planes is None:
+        found = planes_of(clip.shape, clip.inside)
+        if layer.kind == "mesh" and (found is None or len(planes) + len(found) > MOST_PLANES):
+            others.append(clip)
+        elif found is None:
             raise ValueError(
                 f"{clip.name!r} cannot cut {layer.name!r}: {layer.kind} are cut by planes, and by the inside of slabs "
                 "and boxes; choose other layers for it"
             )
-        found += planes
-    if len(found) > MOST_PLANES:
-        raise ValueError(f"{len(found)} planes would cut {layer.name!r}; VTK allows {MOST_PLANES}: a box is six")
-    return found
+        else:
+            planes += found
+    if len(planes) > MOST_PLANES:
+        raise ValueError(f"{len(planes)} planes would cut {layer.name!r}; VTK allows {MOST_PLANES}: a box is six")
+    return planes, others
 
 
-def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load) -> None:
-    """Cut an actor by those of the clips that are for its layer, and by nothing else."""
+def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load, whole: Any = None) -> None:
+    """Cut an actor by those of the clips that are for its layer, and by nothing else.
+
+    Parameters
+    ----------
+    actor : pyvista.Actor
+    layer : Layer
+    clips : sequence of Clip
+        All of the scene.
+    load : callable
+        Gives meshes and labels that regions are made of.
+    whole : pyvista.PolyData, optional
+        Of a mesh, what the actor draws where nothing is cut.
+    """
     mine = [clip for clip in clips if clip.cuts(layer)]
     if layer.kind not in (*LINES, "volume"):
         from vtkmodules.vtkCommonDataModel import vtkPlane
 
-        planes = check_planes(layer, mine)
+        planes, others = split_cuts(layer, mine)
         actor.mapper.RemoveAllClippingPlanes()
         for normal, origin in planes:
             plane = vtkPlane()
             plane.SetNormal(normal)
             plane.SetOrigin(origin)
             actor.mapper.AddClippingPlane(plane)
+        if others or (whole is not None and actor.mapper.dataset is not whole):
+            actor.mapper.dataset = _cut_mesh(whole, others, load)
         return
     regions = {clip.id: make_region(clip.shape, load) for clip in mine}
     for name in list(actor.clips):
@@ -212,6 +240,18 @@ def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load) -> None:
         region = regions[clip.id] if clip.inside else ~regions[clip.id]
         if clip.id not in actor.clips or actor.clips[clip.id] != region:
             actor.clip(region, name=clip.id)
+
+
+def _cut_mesh(whole: Any, clips: Sequence[Clip], load: Load) -> Any:
+    """Return what clips leave of a mesh: the mesh itself where there are none."""
+    from pvfiblets.plotting.surfaces import cut_surface
+
+    for clip in clips:
+        region = make_region(clip.shape, load)
+        whole = cut_surface(whole, region if clip.inside else ~region)
+        if not whole.n_cells:
+            break
+    return whole
 
 
 def shown_streamlines(actor: Any) -> np.ndarray:

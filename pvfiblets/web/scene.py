@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.web import layers
-from pvfiblets.web.actors import add_actor, check_planes, cut, filter_as, look_as, put_in_order, remove_actor, select_as
+from pvfiblets.web.actors import add_actor, cut, filter_as, look_as, put_in_order, remove_actor, select_as, split_cuts
 from pvfiblets.web.bars import Bars
 from pvfiblets.web.cameras import Cameras
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State, as_volume_choice, volume_in
@@ -51,6 +51,7 @@ class _Drawn:
     actor: Any
     layer: Layer
     clips: tuple[Clip, ...]
+    whole: Any = None  # of a mesh: what the actor draws where nothing is cut
 
 
 class Scene(Showing, Selecting, Questions, Cameras):
@@ -144,7 +145,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         for layer in state.layers:  # before anything changes
             self.data(layer)
             if layer.kind not in (*LINES, "volume"):
-                check_planes(layer, [clip for clip in state.clips if clip.cuts(layer)])
+                split_cuts(layer, [clip for clip in state.clips if clip.cuts(layer)])
         for layer_id, drawn in list(self._drawn.items()):
             new = wanted.get(layer_id)
             if new is None or (new.kind, new.source) != (drawn.layer.kind, drawn.layer.source):
@@ -162,21 +163,23 @@ class Scene(Showing, Selecting, Questions, Cameras):
         drawn = self._drawn.get(layer.id)
         if drawn is None:
             actor = add_actor(self.plotter, layer, self.data(layer), self.store.colours)
-            drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), ())
+            drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), (), _whole(layer, actor))
         elif drawn.layer is layer and drawn.clips is clips:
             return
         else:
             actor = look_as(self.plotter, drawn.actor, drawn.layer, layer, self.data(layer), self.store.colours)
-            before = () if actor is not drawn.actor else drawn.clips
-            drawn = _Drawn(actor, replace(layer, filters=drawn.layer.filters, selected=drawn.layer.selected), before)
+            same = actor is drawn.actor
+            before, whole = (drawn.clips, drawn.whole) if same else ((), _whole(layer, actor))
+            past = replace(layer, filters=drawn.layer.filters, selected=drawn.layer.selected)
+            drawn = _Drawn(actor, past, before, whole)
         self._drawn[layer.id] = drawn
         if layer.kind in LINES:
             self._filter(drawn, layer)
             if drawn.layer.selected != layer.selected:
                 select_as(actor, layer.selected)
         if drawn.clips != clips:
-            cut(actor, layer, clips, self.shape_data)
-        self._drawn[layer.id] = _Drawn(actor, layer, clips)
+            cut(actor, layer, clips, self.shape_data, drawn.whole)
+        self._drawn[layer.id] = _Drawn(actor, layer, clips, drawn.whole)
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
         try:
@@ -375,3 +378,8 @@ class Scene(Showing, Selecting, Questions, Cameras):
         if name not in taken:
             return name
         return next(found for i in range(2, len(taken) + 3) if (found := f"{name} {i}") not in taken)
+
+
+def _whole(layer: Layer, actor: Any) -> Any:
+    """Return what the actor of a mesh was made to draw: smooth shading makes other points than the file's."""
+    return actor.mapper.dataset if layer.kind == "mesh" else None

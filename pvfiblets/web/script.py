@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.volumes import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
+from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.bars import LABELLED_RATIO, bar_arguments, bars_of, has_labels
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
@@ -250,18 +251,8 @@ class _Writer:
     def _clip(self, clip: Clip) -> None:
         cut = [layer for layer in self._scene.state.layers if clip.cuts(layer)]
         for layer in cut:
-            if layer.kind in (*LINES, "volume"):
-                continue
-            planes = planes_of(clip.shape, clip.inside) or []
-            self._imports.add("from vtkmodules.vtkCommonDataModel import vtkPlane")
-            for normal, origin in planes:
-                self._lines += [
-                    "plane = vtkPlane()",
-                    f"plane.SetNormal({normal})",
-                    f"plane.SetOrigin({origin})",
-                    f"{self._names[layer.id]}.mapper.AddClippingPlane(plane)",
-                    "",
-                ]
+            if layer.kind not in (*LINES, "volume"):
+                self._cut_surface(layer, clip)
         names = [self._names[layer.id] for layer in cut if layer.kind in (*LINES, "volume")]
         if not names:
             return
@@ -280,6 +271,22 @@ class _Writer:
             f"    actor.clip(region{inside})",
             "",
         ]
+
+    def _cut_surface(self, layer: Layer, clip: Clip) -> None:
+        """Cut tubes or a mesh by one clip, as the scene does."""
+        name = self._names[layer.id]
+        _, others = split_cuts(layer, [other for other in self._scene.state.clips if other.cuts(layer)])
+        if clip in others:
+            self._needs(clip.shape)
+            self._imports.add("from pvfiblets.plotting.surfaces import cut_surface")
+            side = "" if clip.inside else "~"
+            region = f"{side}{shape_code(clip.shape, self._file)}"
+            self._lines += [f"{name}.mapper.dataset = cut_surface({name}.mapper.dataset, {region})", ""]
+            return
+        self._imports.add("from vtkmodules.vtkCommonDataModel import vtkPlane")
+        for normal, origin in planes_of(clip.shape, clip.inside) or []:
+            self._lines += ["plane = vtkPlane()", f"plane.SetNormal({normal})", f"plane.SetOrigin({origin})"]
+            self._lines += [f"{name}.mapper.AddClippingPlane(plane)", ""]
 
     def _needs(self, shape: Mapping[str, Any]) -> None:
         """Import what the Python of a shape uses."""
@@ -339,7 +346,7 @@ class _Writer:
         if stem[0].isdigit() or keyword.iskeyword(stem):
             stem = f"layer_{stem}"
         reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
-        reserved |= {"scaled", "dataclasses", "bar", "volume", "as_raycast_volume"}
+        reserved |= {"scaled", "dataclasses", "bar", "volume", "as_raycast_volume", "cut_surface"}
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
         found, count = stem, 2

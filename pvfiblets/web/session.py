@@ -19,7 +19,7 @@ import numpy as np
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.web import layers
-from pvfiblets.web.actors import check_planes
+from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.cameras import check_camera
 from pvfiblets.web.document import (
     KINDS,
@@ -377,7 +377,7 @@ def _check_cuts(store: Store, state: State) -> None:
             state.layer(layer_id)
     for layer in state.layers:
         if layer.kind not in (*LINES, "volume"):
-            check_planes(layer, [clip for clip in state.clips if clip.cuts(layer)])
+            split_cuts(layer, [clip for clip in state.clips if clip.cuts(layer)])
 
 
 def _id(value: Any) -> str:

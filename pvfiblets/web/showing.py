@@ -56,8 +56,8 @@ class Showing:
             Which side stays: of a plane, that which the normal points to.
         name : str, optional
         layers : sequence of str, optional
-            Ids of those that are cut. By default all that are lines, be they added later. Tubes and meshes are cut by
-            planes, and by the inside of slabs and boxes.
+            Ids of those that are cut. By default all that are lines, be they added later. Tubes are cut by planes, and
+            by the inside of slabs and boxes.
         **shape
             Of :mod:`pvfiblets.web.shapes`, such as ``normal`` and ``origin``. What is not given is the middle of what
             is shown.

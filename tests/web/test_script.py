@@ -33,6 +33,8 @@ def tracts(scene):
     scene.set(mesh.id, "show_edges", True)
     scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 3], layers=[lines.id, mesh.id])
     scene.add_clip("sphere", inside=False, center=[10, 0, 0], radius=6)
+    scene.add_clip("sphere", inside=False, center=[20, 18, 18], radius=5, layers=[mesh.id])
+    scene.add_clip("box", bounds=[0, 24, 0, 40, 0, 40], layers=[mesh.id])
     scene.show(scene.duplicate(lines.id).id, False)
     scene.view("coronal")
 

@@ -119,9 +119,46 @@ def test_cuts_are_for_the_layers_that_they_name(flat):
     assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
     flat.set(ball.id, "opacity", 0.99)  # of meshes another actor, cut all the same
     assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
-    with pytest.raises(ValueError, match="planes"):
-        flat.set_clip(clip.id, kind="sphere")
-    with pytest.raises(ValueError, match="VTK allows 6"):
-        flat.add_clip("box", layers=[ball.id])
     flat.remove(ball.id)
     assert flat.state.clips[0].layers == ()
+    tubes = flat.open("vessel.vtp")
+    with pytest.raises(ValueError, match="tubes are cut by planes"):
+        flat.set_clip(clip.id, kind="sphere", layers=[tubes.id])
+    flat.set_clip(clip.id, layers=[tubes.id])
+    with pytest.raises(ValueError, match="VTK allows 6"):
+        flat.add_clip("box", layers=[tubes.id])
+
+
+def test_meshes_are_cut_by_balls_boxes_and_meshes_from_either_side(flat):
+    """A ball of 8 mm, 16 pixels, around (20, 18, 10), seen from above."""
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("sphere", center=[20, 18, 18], radius=4, layers=[ball.id])
+    inner = drawn(flat.screenshot())
+    # Both balls meet where z - 10 = (64 + 64 - 16) / 16 = 7: a ring of sqrt(64 - 49) mm.
+    assert inner.sum() == pytest.approx(np.pi * 15.0 * 4.0, rel=0.05)
+    flat.set_clip(clip.id, inside=False)
+    outer = flat.actor(ball.id).mapper.dataset
+    assert outer.area == pytest.approx(flat.data(ball).data.area - 2 * np.pi * 8.0 * 1.0, rel=0.01)
+    flat.set(ball.id, "color", "#00ff00")  # another actor, cut all the same
+    assert flat.actor(ball.id).mapper.dataset.area == pytest.approx(outer.area)
+    flat.set_clip(clip.id, kind="box", bounds=[0, 20, 0, 100, 0, 100], inside=True)
+    flat.add_clip("slab", inside=False, normal=[0, 1, 0], origin=[20, 18, 10], thickness=4.0, layers=[ball.id])
+    left = drawn(flat.screenshot())
+    assert left.sum() == pytest.approx(0.5 * whole.sum() - 4.0 * 2.0 * 8.0 * 2.0, rel=0.1)
+    flat.remove_clip(flat.state.clips[-1].id)
+    flat.set_clip(clip.id, kind="mesh", path="ball.ply", inside=False)
+    flat.screenshot()
+    flat.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+
+
+def test_a_mesh_of_which_nothing_is_left_comes_back(flat):
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("sphere", center=[500, 0, 0], radius=4, layers=[ball.id])
+    assert not drawn(flat.screenshot()).any()
+    flat.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
