@@ -166,10 +166,10 @@ class CullingStudy:
         "*fewer streamlines*: one of two or four, with the default's culling.",
         "Names of data say where the eye is and how far it turns between frames: *far*, from where the whole set fits "
         "the picture; *close*, a third of that; *inside*, near the middle. Every frame is one step from the one "
-        "before. Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the "
-        "processor time of all its threads; on a graphics card they are elapsed. *memory*: all buffers and "
-        "textures on the GPU, those of the picture included; *drawn*: fiblets that neither the view volume nor culling "
-        "leaves out, of all.",
+        "before. Files are seen from far, by 1.14° a frame. Pictures are of the engine without VTK, each waited for. "
+        "Where OpenGL is software, times are the processor time of all its threads; on a graphics card they are "
+        "elapsed. *memory*: all buffers and textures on the GPU, those of the picture included; *drawn*: fiblets that "
+        "neither the view volume nor culling leaves out, of all.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -225,7 +225,7 @@ def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
             left_out.append(LeftOut(data.name, str(error)))
             continue
         path = views(fiblets.bounds, "far", SLOW, frames + 1, size)
-        yield Scene(f"{data.name}, far, {SLOW:g}° a frame", data.group, fiblets, path)
+        yield Scene(data.name, data.group, fiblets, path)
 
 
 def made_up(options: Options) -> FibletSet:
