@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pvfiblets.web.fingers import Fingers
 from pvfiblets.web.wire import MOST_PIXELS
 
 logger = logging.getLogger("pvfiblets.web")
@@ -89,6 +90,7 @@ class PictureStream:
         self._moving_at = 1.0
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
         self._pressed: set[str] = set()
+        self._fingers = Fingers(plotter)
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="pictures")
         self._task: asyncio.Task[None] | None = None
         self._grab = vtkWindowToImageFilter()
@@ -129,9 +131,11 @@ class PictureStream:
             self._pressed.discard(kind.replace("Release", "Press"))
         if kind in ("StartInteractionEvent", "EndInteractionEvent", "InteractionEvent"):
             return
-        from vtkmodules.vtkWebCore import vtkRemoteInteractionAdapter
+        scaled = self._scaled(event)
+        if not self._fingers.take(scaled):
+            from vtkmodules.vtkWebCore import vtkRemoteInteractionAdapter
 
-        vtkRemoteInteractionAdapter.ProcessEvent(self._plotter.iren.interactor, json.dumps(self._scaled(event)))
+            vtkRemoteInteractionAdapter.ProcessEvent(self._plotter.iren.interactor, json.dumps(scaled))
         self._moved = time.monotonic()
         self.request()
 
