@@ -9,6 +9,9 @@ import numpy as np
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.controls import AXES, axis_of, controls, moved
 
+EVERY = "*"
+"""Among the layers of a cut: all that are lines."""
+
 
 class CutActions(Actions):
     """The cuts of an application's scene."""
@@ -16,6 +19,8 @@ class CutActions(Actions):
     def refresh(self) -> None:
         """Show the cuts there are."""
         bounds = self._app.plotter.bounds
+        items = [{"title": "all tractograms", "value": EVERY}]
+        items += [{"title": layer.name, "value": layer.id} for layer in self._app.scene.layers]
         self._app.page.clips = [
             {
                 "id": clip.id,
@@ -27,16 +32,19 @@ class CutActions(Actions):
                 "axes": clip.shape["kind"] in ("plane", "slab"),
                 "axis": axis_of(clip.shape["normal"]) if "normal" in clip.shape else "",
                 "controls": controls(clip.shape, bounds),
+                "items": items,
+                "layers": [EVERY] if clip.layers is None else list(clip.layers),
             }
             for clip in self._app.scene.state.clips
         ]
 
     def add(self, kind: str, path: str | None = None) -> None:
-        """Add a cut in the middle of what is shown, or by the mesh in a file."""
+        """Add a cut in the middle of what is shown, or by the mesh in a file, which is read beside everything else."""
+        scene, files = self._app.scene, self._app.files
         if path is None:
-            self._app.scene.add_clip(kind)
+            scene.add_clip(kind)
         else:
-            self._app.scene.add_clip(kind, path=path)
+            self._app.later(files.with_shape("mesh", path, lambda: scene.add_clip(kind, path=path)))
 
     def enable(self, clip_id: str, enabled: bool) -> None:
         """Switch a cut on or off."""
@@ -49,6 +57,20 @@ class CutActions(Actions):
     def remove(self, clip_id: str) -> None:
         """Take a cut away."""
         self._app.scene.remove_clip(clip_id)
+
+    def set_layers(self, clip_id: str, chosen: Any) -> None:
+        """Choose what a cut goes through: ids of layers, or `EVERY` for all tractograms, later ones too."""
+        scene = self._app.scene
+        clip = scene.state.clip(clip_id)
+        if not isinstance(chosen, list):
+            raise ValueError("expected a list of layers")
+        if EVERY in chosen and clip.layers is not None:
+            scene.set_clip(clip_id, layers=None)
+            return
+        ids = [layer.id for layer in scene.layers if layer.id in chosen or (EVERY in chosen and clip.cuts(layer))]
+        if EVERY in chosen and len(chosen) == 1:
+            return
+        scene.set_clip(clip_id, layers=ids)
 
     def set_axis(self, clip_id: str, axis: str) -> None:
         """Turn a plane or a slab across an axis, or to face the camera."""

@@ -65,6 +65,7 @@ def control(item: Mapping[str, Any]) -> dict[str, Any]:
         shown["ends"] = [short(end) for end in ends] if ends is not None else ["", ""]
     elif kind == "numbers":
         shown["shown"] = "" if value is None else ", ".join(map(short, value))
+        shown["one"] = effective[0] if effective is not None and len(effective) == 1 else None
     elif kind == "colour":
         shown["shown"] = effective or "#808080"
     else:

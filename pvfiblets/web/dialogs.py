@@ -33,7 +33,7 @@ POINTER = (
 def build(app: Any) -> None:
     """Build all of them."""
     _files(app)
-    _sessions()
+    _sessions(app)
     _script()
     _help()
     _rename(app)
@@ -74,7 +74,7 @@ def _files(app: Any) -> None:
                 v3.VIcon("mdi-arrow-up")
             html.Span("/{{ folder }}", classes="pv-value", style="flex: 1")
             with html.Label(v_if="upload_limit > 0", classes="v-btn v-btn--density-default v-btn--size-small "
-                            "v-btn--variant-tonal px-3", style="cursor: pointer"):  # fmt: skip
+                            "v-btn--variant-tonal px-3 text-none", style="cursor: pointer"):  # fmt: skip
                 html.Span("Upload…")
                 html.Input(type="file", hidden=True, data_upload=True, data_limit=("upload_limit",))
         with v3.VCardText(classes="pa-0", style="max-height: 60vh"):
@@ -92,7 +92,7 @@ def _files(app: Any) -> None:
             html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
 
 
-def _sessions() -> None:
+def _sessions(app: Any) -> None:
     with _dialog("session", "Session", 460):
         with v3.VCardText():
             html.Div("A session file keeps layers, camera, cuts, filters and selections; the data stays where it is.",
@@ -102,10 +102,17 @@ def _sessions() -> None:
                     "Save", color="primary", classes="text-none", data_action="save-session",
                     click="utils.download('session.json', trigger('save_session'), 'application/json')",
                 )  # fmt: skip
-                with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4",
-                                style="cursor: pointer"):  # fmt: skip
+                with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4 "
+                                "text-none", style="cursor: pointer"):  # fmt: skip
                     html.Span("Load…")
                     html.Input(type="file", accept=".json,application/json", hidden=True, data_session=True)
+            html.Div("Or in the served folder, beside the data; it is opened there like any other file.",
+                     classes="pv-small mt-4 mb-1")  # fmt: skip
+            with html.Form(
+                classes="pv-pair", v_on_submit_prevent=(app.files.store_session, "[$event.target[0].value]")
+            ):
+                html.Input(classes="pv-num", value="session.json", style="flex: 1; width: auto", aria_label="File name")
+                v3.VBtn("Save there", type="submit", variant="tonal", classes="text-none", data_action="store-session")
 
 
 def _script() -> None:
@@ -160,5 +167,7 @@ def _progress(app: Any) -> None:
         style="position: fixed; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400",
     ):  # fmt: skip
         with html.Div(classes="pa-3"):
-            html.Div("Uploading {{ uploading }}", classes="pv-small mb-2 text-truncate")
+            with html.Div(classes="pv-pair mb-2"):
+                html.Span("Uploading {{ uploading }}", style="flex: 1; font-size: 13px", classes="text-truncate")
+                v3.VBtn("Cancel", size="x-small", variant="tonal", classes="text-none", data_action="cancel-upload")
             v3.VProgressLinear(model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary")

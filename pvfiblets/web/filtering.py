@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.plotting.volumes import SUFFIXES as LABELS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short, steps
 from pvfiblets.web.controls import controls, moved
@@ -76,6 +77,8 @@ class FilterActions(Actions):
                 {
                     "not": row["not"], "how": row["how"], "kind": row["region"]["kind"],
                     "controls": controls(row["region"], bounds),
+                    "file": row["region"].get("path", "").rpartition("/")[2],
+                    "labels": ", ".join(map(str, row["region"].get("labels") or ())),
                 }
                 for row in regions
             ],
@@ -148,6 +151,30 @@ class FilterActions(Actions):
         region = self._app.scene.usual_shape(kind)
         self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}))
 
+    def add_file(self, path: str) -> None:
+        """Add the region of a closed mesh, or of the labels of a volume, which is read beside everything else."""
+        layer = self._layer
+        kind = "labels" if path.lower().endswith(LABELS) else "mesh"
+        region = {"kind": kind, "path": path} | ({"labels": None} if kind == "labels" else {})
+
+        def add() -> None:
+            self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}), layer)
+
+        self._app.later(self._app.files.with_shape(kind, path, add))
+
+    def set_labels(self, row: int, text: str) -> None:
+        """Choose the labels of a region by their numbers, between commas; none chosen are all but 0."""
+        parts = [part for part in str(text).replace(";", ",").replace(" ", ",").split(",") if part]
+        labels = [typed(part, "labels", optional=False) for part in parts] or None
+
+        def change(rows: list[dict[str, Any]]) -> None:
+            found = rows[_index(rows, row)]
+            if found["region"]["kind"] != "labels":
+                raise ValueError(f"a region of the kind {found['region']['kind']} has no labels")
+            found["region"] = {**found["region"], "labels": labels}
+
+        self._edit(change)
+
     def drop_region(self, row: int) -> None:
         """Take a region away."""
         self._edit(lambda rows: rows.pop(_index(rows, row)))
@@ -175,8 +202,8 @@ class FilterActions(Actions):
         _, rows = _flat(layer.filters.regions)
         self._app.scene.set_regions(layer.id, _condition("or" if word == "or" else "and", rows))
 
-    def _edit(self, change: Any) -> None:
-        layer = self._layer
+    def _edit(self, change: Any, layer: Any = None) -> None:
+        layer = self._layer if layer is None else self._app.scene.layer(layer.id)
         join, rows = _flat(layer.filters.regions)
         change(rows)
         self._app.scene.set_regions(layer.id, _condition(join, rows))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.formats.registry import suffixes
+from pvfiblets.plotting.volumes import SUFFIXES as LABELS
 from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError
@@ -25,6 +26,13 @@ if TYPE_CHECKING:
     Work = Callable[[Progress, Cancel], Any]
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
+SESSION = ".json"
+PURPOSES = {
+    "": (*suffixes(), *VOLUMES, *MESHES, SESSION),
+    "clip": MESHES,
+    "region": (*MESHES, *LABELS),
+}
+"""What a file may be chosen for, and the suffixes that are shown then."""
 LATEST = 0.2  # seconds between two reports of progress
 
 
@@ -35,7 +43,7 @@ class FileActions(Actions):
         super().__init__(app)
         self._stop = threading.Event()
         self._working = asyncio.Lock()
-        self._for = ""  # what the file that is chosen next is for: a layer, or 'clip'
+        self._for = ""  # what the file that is chosen next is for, of PURPOSES
 
     # Opening
 
@@ -130,8 +138,8 @@ class FileActions(Actions):
     def browse(self, folder: str = "", purpose: str = "") -> None:
         """Show a folder of the root."""
         app = self._app
-        self._for = purpose if purpose == "clip" else ("" if app.page.dialog != "open" else self._for)
-        known = MESHES if self._for == "clip" else (*suffixes(), *VOLUMES, *MESHES)
+        self._for = purpose if purpose in PURPOSES else ("" if app.page.dialog != "open" else self._for)
+        known = PURPOSES[self._for]
         entries = app.confined.listing(folder)
         app.page.folder = app.confined.relative(app.confined.resolve(folder)).removeprefix(".")
         app.page.entries = [
@@ -150,9 +158,13 @@ class FileActions(Actions):
             return
         app.confined.existing(path)
         app.page.dialog = ""
-        if self._for == "clip":
-            self._for = ""
+        purpose, self._for = self._for, ""
+        if purpose == "clip":
             app.cuts.add("mesh", path)
+        elif purpose == "region":
+            app.filtering.add_file(path)
+        elif path.lower().endswith(SESSION):
+            self.load_session(self._text(path), app.confined.resolve(path).parent)
         else:
             app.later(self.open(path))
 
@@ -199,28 +211,63 @@ class FileActions(Actions):
 
         return json.dumps(session.to_dict(self._app.scene), indent=1)
 
-    def load_session(self, text: str) -> None:
-        """Become what a session file says; where it is malformed, all stays as it is."""
+    def store_session(self, name: str) -> None:
+        """Write the session to a file of the served folder."""
+        from pvfiblets.web import session
+
+        app = self._app
+        name = str(name).strip().removesuffix(SESSION) + SESSION
+        app.confined.writable(name, (SESSION,))
+        session.save(app.scene, name)
+        app.page.dialog = ""
+        app.say(f"The session is saved in the served folder as {name}.", "success")
+
+    def _text(self, path: str) -> str:
+        """Return the text of a session file in the served folder."""
+        from pvfiblets.web.session import LARGEST
+
+        place = self._app.confined.existing(path)
+        if place.stat().st_size > LARGEST:
+            raise ValueError(f"{path} has {place.stat().st_size:,} bytes; sessions have {LARGEST:,} at most")
+        return str(place.read_text(encoding="utf-8"))
+
+    def load_session(self, text: str, folder: Path | None = None) -> None:
+        """Become what a session file says; where it is malformed, all stays as it is.
+
+        Parameters
+        ----------
+        text : str
+            What the file holds.
+        folder : Path, optional
+            Where it lies in the served folder: its paths are looked for there first.
+        """
         try:
             data = json.loads(text)
         except (ValueError, RecursionError) as error:
             raise ValueError(f"this is no session file: {error}") from error
-        self._app.later(self._become(data))
+        self._app.later(self._become(data, folder))
 
-    async def _become(self, data: Any) -> None:
+    async def _become(self, data: Any, folder: Path | None) -> None:
         from pvfiblets.web import session
 
         app = self._app
         scene = app.scene
         try:
             prepared = await self.beside(
-                "session", lambda progress, cancel: session.prepare(scene, data, None, progress, cancel), "reading"
+                "session", lambda progress, cancel: session.prepare(scene, data, folder, progress, cancel), "reading"
             )
         except Cancelled:
             app.say("The session was not loaded: cancelled.")
             return
         session.apply(scene, prepared)
         app.refresh()
+
+    async def with_shape(self, kind: str, path: str, then: Callable[[], Any]) -> None:
+        """Read what a region is made of, a mesh or labels, beside everything else; then do what needs it."""
+        store = self._app.scene.store.fork()
+        await self.beside(Path(path).name, lambda *_: store.shape(kind, path), "reading", cancellable=False)
+        self._app.scene.store.take(store)
+        then()
 
     async def colour_by(self, layer_id: str, name: str, value: Any, source: Source) -> None:
         """Set a property to a volume, which is read beside everything else."""

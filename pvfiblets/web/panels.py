@@ -162,11 +162,17 @@ def _controls(app: Any) -> None:
                         aria_label=(f"p.label + ({end} ? ', high end' : ', low end')",),
                         style="width: 74px",
                     )
+    v3.VSlider(
+        v_if="p.type === 'numbers' && p.limits && p.one !== null",
+        **{**slider, "model_value": ("p.one",)},
+    )
     html.Input(
-        v_else=True,
+        v_if="p.type === 'numbers' || p.type === 'text'",
         classes="pv-num",
-        style="flex: 1; width: auto; min-width: 0",
-        value=("p.shown",),
+        style=(
+            "p.type === 'numbers' && p.limits && p.one !== null ? 'width: 62px' : 'flex: 1; width: auto; min-width: 0'",
+        ),
+        value=(f"{held} ? held.shown[0] : p.shown",),
         placeholder=("p.optional ? 'auto' : ''",),
         change=(app.set_text, "[chosen, p.name, $event.target.value]"),
         aria_label=("p.label",),

@@ -66,7 +66,8 @@ def _clip(app: Any) -> None:
             click=(app.files.browse, "['', 'clip']"), data_cut="mesh",
         )  # fmt: skip
     html.Div(
-        "Cuts go through all layers. Add a plane, a box or another shape; what is on its other side is hidden.",
+        "Add a plane, a box or another shape; what is on its other side is hidden. A cut goes through all tractograms "
+        "until other layers are chosen for it.",
         v_if="!clips.length", classes="pv-small px-3",
     )  # fmt: skip
     with html.Div(v_for="clip in clips", key="clip.id", data_clip=("clip.id",)):
@@ -96,6 +97,13 @@ def _clip(app: Any) -> None:
             v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none",
                     click=(app.cuts.set_axis, "[clip.id, 'view']"))  # fmt: skip
         _slider_rows(app.cuts.set_value, "clip", "clip.id", "clip.controls")
+        with html.Div(classes="pv-row"):
+            html.Label("Cuts")
+            v3.VSelect(
+                items=("clip.items",), model_value=("clip.layers",), multiple=True, placeholder="nothing",
+                density="compact", variant="outlined", hide_details=True, aria_label="Layers that are cut",
+                update_modelValue=(app.cuts.set_layers, "[clip.id, $event]"), data_select="clip-layers",
+            )  # fmt: skip
         v3.VDivider(classes="mt-2")
 
 
@@ -164,6 +172,9 @@ def _regions(app: Any) -> None:
                 click=(app.filtering.add_region, "['sphere']"), data_region="sphere")  # fmt: skip
         v3.VBtn("Box", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
                 click=(app.filtering.add_region, "['box']"), data_region="box")  # fmt: skip
+        v3.VBtn("File", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
+                title="A closed mesh, or a volume of labels", click=(app.files.browse, "['', 'region']"),
+                data_region="file")  # fmt: skip
         v3.VSpacer()
         with v3.VBtnToggle(
             v_if="filters.regions.length > 1", model_value=("filters.join",), mandatory=True, density="compact",
@@ -181,11 +192,19 @@ def _regions(app: Any) -> None:
                 items=("filters.hows",), model_value=("r.how",), density="compact", variant="outlined",
                 hide_details=True, update_modelValue=(app.filtering.set_how, "[i, $event]"),
             )  # fmt: skip
-            html.Span("{{ r.kind }}", classes="pv-value")
+            html.Span("{{ r.file || r.kind }}", classes="pv-value text-truncate", title=("r.file || r.kind",),
+                      style="max-width: 90px")  # fmt: skip
             with v3.VBtn(
                 icon=True, size="x-small", variant="text", aria_label="Remove", click=(app.filtering.drop_region, "[i]")
             ):
                 v3.VIcon("mdi-delete-outline", size=18)
+        with html.Div(v_if="r.kind === 'labels'", classes="pv-row"):
+            html.Label("Labels")
+            html.Input(
+                classes="pv-num", style="width: auto", value=("r.labels",), placeholder="all but 0",
+                change=(app.filtering.set_labels, "[i, $event.target.value]"), aria_label="Labels, between commas",
+                title="Numbers of the labels, between commas",
+            )  # fmt: skip
         _slider_rows(app.filtering.set_region, "region", "i", "r.controls")
 
 

@@ -7,6 +7,9 @@ import contextlib
 from types import SimpleNamespace
 
 from pvfiblets.web.confined import Confined
+from pvfiblets.web.cuts import CutActions
+from pvfiblets.web.describe import Charts
+from pvfiblets.web.filtering import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
@@ -27,6 +30,8 @@ class Desk:
         self.said = []
         self.refreshed = 0
         self.files = FileActions(self)
+        self.cuts = CutActions(self)
+        self.filtering = FilterActions(self, Charts(scene))
         self.tasks = []
 
     def say(self, text, kind="info"):

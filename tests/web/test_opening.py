@@ -139,3 +139,101 @@ def test_a_volume_that_colours_lines_is_read_beside_the_page(desk, scene, thread
     asyncio.run(test())
     assert threads == [False]
     assert scene.layer(layer.id).settings["scalars"] == value
+
+
+def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, folder):
+    home = folder / "study"
+    home.mkdir()
+    (folder / "ball.ply").rename(home / "ball.ply")
+    scene.open("study/ball.ply")
+    scene.open("lines.fiblets")
+
+    async def test():
+        desk.files.store_session("study/mine")
+        with pytest.raises(ValueError, match="exists already"):
+            desk.files.store_session("study/mine.json")
+        for outside in ("../mine", "/tmp/mine", "nowhere/mine"):
+            with pytest.raises(ValueError, match="folder"):
+                desk.files.store_session(outside)
+        for layer in scene.layers:
+            scene.remove(layer.id)
+        desk.files.browse("study")
+        assert [entry["name"] for entry in desk.page.entries] == ["ball.ply", "mine.json"]
+        desk.files.take("study/mine.json", False)
+        await desk.done()
+
+    asyncio.run(test())
+    assert desk.said[0] == ("success", "The session is saved in the served folder as study/mine.json.")
+    assert [layer.path for layer in scene.layers] == ["study/ball.ply", "lines.fiblets"]
+    (folder / "long.json").write_bytes(b" " * (session.LARGEST + 1))
+    with pytest.raises(ValueError, match="sessions have"):
+        desk.files.take("long.json", False)
+
+
+def test_what_a_file_is_chosen_for_says_which_are_shown(desk):
+    def names(purpose):
+        desk.page.dialog = ""
+        desk.files.browse("", purpose)
+        return {entry["name"] for entry in desk.page.entries}
+
+    assert names("clip") == {"ball.ply", "open.ply", "vessel.vtp"}
+    assert names("region") == names("clip") | {"head.nii.gz", "atlas.nii.gz"}
+    assert {"lines.trk", "lines.fiblets", "head.nii.gz", "ball.ply"} <= names("")
+    assert names("something else") == names("")
+
+
+def test_meshes_and_labels_are_regions_and_cuts_read_beside_the_page(desk, scene, threads):
+    layer = scene.open("lines.fiblets")
+    desk.page.chosen, desk.page.chosen_kind = layer.id, layer.kind
+    threads.clear()
+
+    async def choose(purpose, name):
+        desk.files.browse("", purpose)
+        desk.files.take(name, False)
+        await desk.done()
+
+    asyncio.run(choose("region", "ball.ply"))
+    asyncio.run(choose("region", "atlas.nii.gz"))
+    asyncio.run(choose("clip", "ball.ply"))
+    assert threads == [False, False]  # the mesh is there already
+    ball, labels = scene.layer(layer.id).filters.regions["of"]
+    assert ball["region"] == {"kind": "mesh", "path": "ball.ply"}
+    assert labels["region"] == {"kind": "labels", "path": "atlas.nii.gz", "labels": None}
+    assert scene.state.clips[0].shape == {"kind": "mesh", "path": "ball.ply"}
+    desk.filtering.drop_region(0)
+    everywhere = int(scene.actor(layer.id).shown.sum())
+    desk.filtering.set_labels(0, "5; 7")
+    assert scene.layer(layer.id).filters.regions["of"][0]["region"]["labels"] == [5, 7]
+    assert 0 < scene.actor(layer.id).shown.sum() < everywhere
+    desk.filtering.set_labels(0, " ")
+    assert scene.actor(layer.id).shown.sum() == everywhere
+    with pytest.raises(ValueError, match="not a number"):
+        desk.filtering.set_labels(0, "five")
+    for bad, says in (("head.nii.gz", "fractions"), ("open.ply", "open")):
+        with pytest.raises(ValueError, match=says):
+            asyncio.run(choose("region", bad))
+    assert len(scene.layer(layer.id).filters.regions["of"]) == 1
+
+
+def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
+    lines, ball = scene.open("lines.fiblets"), scene.open("ball.ply")
+    clip = scene.add_clip("plane")
+    desk.cuts.refresh()
+    (shown,) = desk.page.clips
+    assert shown["layers"] == ["*"]
+    assert [item["title"] for item in shown["items"]] == ["all tractograms", "lines.fiblets", "ball.ply"]
+
+    def cut():
+        return scene.state.clip(clip.id).layers
+
+    desk.cuts.set_layers(clip.id, ["*", ball.id])  # one more than all tractograms
+    assert cut() == (lines.id, ball.id)
+    desk.cuts.set_layers(clip.id, [ball.id])
+    assert cut() == (ball.id,)
+    desk.cuts.set_layers(clip.id, [])
+    assert cut() == ()
+    desk.cuts.set_layers(clip.id, ["*"])
+    assert cut() is None
+    for wrong in ("layer1", None, 3):
+        with pytest.raises(ValueError, match="list of layers"):
+            desk.cuts.set_layers(clip.id, wrong)

@@ -7,9 +7,6 @@ import asyncio
 import pytest
 
 from pvfiblets.web import sliding
-from pvfiblets.web.cuts import CutActions
-from pvfiblets.web.describe import Charts
-from pvfiblets.web.filtering import FilterActions
 from pvfiblets.web.sliding import SlideActions
 from tests.web.desk import Desk
 
@@ -19,8 +16,6 @@ def desk(scene, folder):
     layer = scene.open("lines.fiblets")
     desk = Desk(scene, folder)
     desk.page.chosen, desk.page.chosen_kind = layer.id, layer.kind
-    desk.cuts = CutActions(desk)
-    desk.filtering = FilterActions(desk, Charts(scene))
     desk.sliders = SlideActions(desk)
     scene.watch(lambda _: desk.sliders.moving or desk.refresh())
     return desk

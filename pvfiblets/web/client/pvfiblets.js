@@ -16,6 +16,20 @@
     if (!state()) return setTimeout(begin, 50);
     if (window.innerWidth < 900) set("left_open", false);
     if (window.innerWidth < 1100) set("right_open", false);
+    recall();
+  };
+
+  // Light or dark is kept by the browser; a view that others see, too, is left as it is.
+  const KEY = "pvfiblets-dark";
+  const recall = () => {
+    const page = document.querySelector(".v-application");
+    if (!page) return setTimeout(recall, 50);
+    try {
+      const kept = localStorage.getItem(KEY);
+      if (kept !== null && !get("shared")) set("dark", kept === "true");
+      const keep = () => localStorage.setItem(KEY, String(page.classList.contains("v-theme--dark")));
+      new MutationObserver(keep).observe(page, { attributeFilter: ["class"] });
+    } catch { /* a browser that keeps nothing */ }
   };
   begin();
 
@@ -159,21 +173,30 @@
 
   // Files ------------------------------------------------------------------------------------------
 
-  const say = (text) => {
+  const say = (text, kind = "error") => {
     set("toast", text);
-    set("toast_kind", "error");
+    set("toast_kind", kind);
     set("toast_open", true);
   };
+
+  let uploading = null;
+
+  document.addEventListener("click", (event) => {
+    if (event.target.closest?.("[data-action=cancel-upload]")) uploading?.abort();
+  }, true);
 
   const upload = (file, limit) => {
     if (file.size > limit) return say(`${file.name} has ${(file.size / 2 ** 20).toFixed(0)} MB; ` +
       `${(limit / 2 ** 20).toFixed(0)} MB is the most that this server takes.`);
     const request = new XMLHttpRequest();
+    uploading = request;
     const show = (share) => { set("uploading", file.name); set("uploaded", share); };
     request.upload.onprogress = (event) => show(event.lengthComputable ? (100 * event.loaded) / event.total : -1);
+    request.onabort = () => say(`${file.name} was not uploaded: cancelled.`, "info");
     request.onloadend = () => {
+      uploading = null;
       set("uploading", "");
-      if (request.status !== 200) say(`${file.name} was not uploaded (${request.status || "connection lost"}).`);
+      if (request.readyState !== 0 && request.status !== 200) say(`${file.name} was not uploaded (${request.status || "connection lost"}).`);
     };
     request.open("POST", `/upload?name=${encodeURIComponent(file.name)}`);
     request.setRequestHeader("Content-Type", "application/octet-stream");
