@@ -62,7 +62,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
 
 def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing(gl, small):
     found = {r.label: r for r in halos.STUDY.run(little(), []) if r.group == "helices"}
-    right = found["float64 reference, smooth edges (1 sample)"]
+    right = found["float64 reference (1 sample)"]
     assert {figure.value for figure in right.errors.values()} == {0.0}
     assert not right.ours
     shown = found["smooth edges (1 sample)"]
