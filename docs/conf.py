@@ -76,6 +76,8 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "show_signature": False,
+    "write_computation_times": False,  # that page asks for scripts on the network
+    "default_thumb_file": str(HERE / "brain.jpg"),  # of examples that draw nothing
     "abort_on_example_error": True,
     "remove_config_comments": True,
     "min_reported_time": 0,

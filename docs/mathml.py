@@ -14,6 +14,9 @@ BOLD = re.compile(r'<mi mathvariant="bold">')
 # MathML Core, which is what browsers draw, knows no other variant than "normal": boldness is a matter of style there.
 BOLD_IN_BROWSERS = '<mi mathvariant="normal" style="font-weight: bold">'
 
+# Long ones scroll in narrow windows. The class "math" is the theme's, for pictures that a script puts there.
+ROOM = "margin: 0 0 1.15rem; overflow-x: auto; overflow-y: hidden"
+
 
 def formula(text: str, *, display: bool) -> str:
     """Return TeX as MathML.
@@ -39,7 +42,7 @@ def _inline(translator: Any, node: nodes.math) -> None:
 
 
 def _block(translator: Any, node: nodes.math_block) -> None:
-    translator.body.append(f'<div class="math">{formula(node.astext(), display=True)}</div>\n')
+    translator.body.append(f'<div style="{ROOM}">{formula(node.astext(), display=True)}</div>\n')
     raise nodes.SkipNode
 
 
