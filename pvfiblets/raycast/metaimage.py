@@ -1,11 +1,12 @@
 """Reading volumes from MetaImage files (``.mhd``, ``.mha``).
 
-VTK's reader gives the numbers. Where they lie is taken from the header: the reader transposes the directions, which
-MetaImage lists axis by axis, and ITK, whose format this is, means LPS+ by its coordinates.
+VTK's reader is not used: it crashes on damaged headers, and it transposes the directions, which MetaImage lists axis
+by axis. ITK, whose format this is, means LPS+ by its coordinates. Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
 """
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,15 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
+from .packed import Packing, data_file, numbers
+
 __all__ = ["read_metaimage"]
 
+TYPES = {
+    "MET_CHAR": "i1", "MET_UCHAR": "u1", "MET_SHORT": "i2", "MET_USHORT": "u2", "MET_INT": "i4", "MET_UINT": "u4",
+    "MET_LONG": "i4", "MET_ULONG": "u4", "MET_LONG_LONG": "i8", "MET_ULONG_LONG": "u8", "MET_FLOAT": "f4",
+    "MET_DOUBLE": "f8",
+}  # fmt: skip
 LONGEST_HEADER = 1 << 16
 PLACES = ("offset", "position", "origin")
 DIRECTIONS = ("transformmatrix", "orientation", "rotation")
@@ -46,36 +54,54 @@ def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Arra
     FormatError
         If it is not such a file, is damaged, or has other than three axes or more than one number per voxel.
     """
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOImage import vtkMetaImageReader
-
-    from .vtk_files import read
-
     path = Path(path)
-    fields = _fields(path)
+    fields, size = _fields(path)
     dims = _numbers(path, fields, ("dimsize",), None)
     if dims is None:
         raise FormatError(path, None, "no field DimSize", "a MetaImage header with one")
-    if len(dims) != 3 or fields.get("elementnumberofchannels", "1").strip() != "1":
-        channels = fields.get("elementnumberofchannels", "1")
+    channels = fields.get("elementnumberofchannels", "1").strip()
+    if len(dims) != 3 or channels != "1":
         raise FormatError(
             path, None, f"{len(dims)} axes and {channels} numbers per voxel",
             "three axes and one number per voxel: save one of its volumes or components",
         )  # fmt: skip
-    affine = _affine(path, fields)
-    data = fields.get("elementdatafile", "LOCAL")
-    if data.upper() not in ("LOCAL", "LIST") and "%" not in data and not (path.parent / data).exists():
-        raise FileNotFoundError(f"{path}: its data are in {data!r}, and there is no file {path.parent / data}")
-    image = read(vtkMetaImageReader(), path)
-    scalars = image.GetPointData().GetScalars()
-    shape = image.GetDimensions()
-    if scalars is None or list(shape) != dims.astype(int).tolist():
-        raise FormatError(path, None, f"{' x '.join(map(str, shape))} voxels", f"DimSize = {fields['dimsize']}")
-    return vtk_to_numpy(scalars).reshape(shape, order="F"), affine
+    if not all(n >= 1 and n == int(n) for n in dims.tolist() if math.isfinite(n)) or not np.isfinite(dims).all():
+        raise FormatError(path, None, f"DimSize = {fields['dimsize']}", "three whole numbers above 0")
+    shape = [int(n) for n in dims.tolist()]
+    return _data(path, fields, size, shape).reshape(shape, order="F"), _affine(path, fields)
 
 
-def _fields(path: Path) -> dict[str, str]:
-    """The header's fields, names in lower case."""
+def _data(path: Path, fields: dict[str, str], size: int, shape: list[int]) -> npt.NDArray[Any]:
+    """All numbers of the file in one row."""
+    word = fields.get("elementtype", "none").upper()
+    if word not in TYPES:
+        raise FormatError(path, None, f"ElementType = {word}", f"one of {', '.join(TYPES)}")
+    msb = _true(fields, "binarydatabyteordermsb") or _true(fields, "elementbyteordermsb")
+    dtype = np.dtype(TYPES[word]).newbyteorder(">" if msb else "<")
+    named, start = fields.get("elementdatafile", "LOCAL"), size
+    if named.upper().split()[:1] == ["LIST"] or "%" in named:
+        raise FormatError(path, None, f"ElementDataFile = {named}", "data in one file: join them first")
+    place = path
+    if named.upper() != "LOCAL":
+        place, start = data_file(path, named), 0
+    text = fields.get("headersize", "0")
+    if not text.removeprefix("-").isdecimal() or int(text[:18]) < -1:
+        raise FormatError(path, None, f"HeaderSize = {text}", "-1, or a number of bytes")
+    skip = int(text[:18]) if place is not path else 0
+    if "binarydata" in fields and not _true(fields, "binarydata"):
+        return numbers(place, start, math.prod(shape), dtype, "ascii")
+    packing: Packing = "zlib" if _true(fields, "compresseddata") else "raw"
+    if packing == "zlib":
+        start, skip = start + max(skip, 0), 0
+    return numbers(place, start, math.prod(shape), dtype, packing, skip)
+
+
+def _true(fields: dict[str, str], name: str) -> bool:
+    return fields.get(name, "False")[:1].upper() in ("T", "1")
+
+
+def _fields(path: Path) -> tuple[dict[str, str], int]:
+    """The header's fields, names in lower case, and its bytes."""
     fields: dict[str, str] = {}
     with path.open("rb") as file:
         read = 0
@@ -87,12 +113,12 @@ def _fields(path: Path) -> dict[str, str]:
                 if line.strip():
                     raise FormatError(path, file.tell() - len(line), repr(line[:40]), "a line 'Field = value'")
                 if not line:
-                    return fields
+                    break
                 continue
             fields[name.strip().lower()] = value.strip()
             if name.strip().lower() == "elementdatafile":  # always the last
-                return fields
-    return fields
+                break
+        return fields, file.tell()
 
 
 def _numbers(path: Path, fields: dict[str, str], names: tuple[str, ...], n: int | None) -> Array | None:

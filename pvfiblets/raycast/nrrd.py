@@ -6,10 +6,8 @@ the header is read here. Format: https://teem.sourceforge.net/nrrd/format.html
 
 from __future__ import annotations
 
-import bz2
-import gzip
+import math
 import os
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
+
+from .packed import Packing, data_file, numbers
 
 __all__ = ["read_nrrd"]
 
@@ -37,7 +37,7 @@ TYPES = {
     }.items()
     for name in names.split(",")
 }
-ENCODINGS = {
+ENCODINGS: dict[str, Packing] = {
     "raw": "raw", "gz": "gzip", "gzip": "gzip", "bz2": "bzip2", "bzip2": "bzip2",
     "txt": "ascii", "text": "ascii", "ascii": "ascii",
 }  # fmt: skip
@@ -235,35 +235,12 @@ def _data(header: _Header, sizes: list[int]) -> npt.NDArray[Any]:
     if named is not None:
         if named.split()[:1] == ["LIST"] or "%" in named:
             raise header.error(f"data file: {named}", "data in one file: join them first")
-        path, start = header.path.parent / named, 0
-    count = int(np.prod(sizes, dtype=np.int64))
+        path, start = data_file(header.path, named), 0
     skip = _whole(header, "byte skip", header.get("byte skip", "byteskip") or "0")
+    if skip < -1:
+        raise header.error(f"byte skip: {skip}", "-1, or a number of bytes")
     start = _skip_lines(path, start, _whole(header, "line skip", header.get("line skip", "lineskip") or "0"))
-    if encoding == "raw":
-        size = path.stat().st_size
-        start = size - count * dtype.itemsize if skip == -1 else start + skip
-        if start < 0 or size - start < count * dtype.itemsize:
-            raise FormatError(
-                path, None, f"{max(size - max(start, 0), 0)} bytes of data",
-                f"{count * dtype.itemsize}, as the header's sizes and type say",
-            )  # fmt: skip
-        return np.memmap(path, dtype, "r", start, (count,))
-    packed = path.read_bytes()[start:]
-    if encoding == "ascii":
-        try:
-            values = np.array(packed.split(), np.float64 if dtype.kind == "f" else np.int64).astype(dtype)
-        except (ValueError, OverflowError):
-            raise FormatError(path, start, "other than numbers", "numbers as text, as the encoding says") from None
-    else:
-        try:
-            unpacked = gzip.decompress(packed) if encoding == "gzip" else bz2.decompress(packed)
-        except (OSError, EOFError, ValueError, zlib.error) as error:
-            raise FormatError(path, start, f"damaged {encoding} data ({error})", f"whole {encoding} data") from None
-        unpacked = unpacked[len(unpacked) - count * dtype.itemsize if skip == -1 else skip :]
-        values = np.frombuffer(unpacked[: len(unpacked) // dtype.itemsize * dtype.itemsize], dtype)
-    if len(values) < count:
-        raise FormatError(path, None, f"{len(values)} numbers", f"{count}, as the header's sizes say")
-    return values[:count]
+    return numbers(path, start, math.prod(sizes), dtype, encoding, skip)
 
 
 def _skip_lines(path: Path, start: int, lines: int) -> int:
@@ -271,5 +248,8 @@ def _skip_lines(path: Path, start: int, lines: int) -> int:
     with path.open("rb") as file:
         file.seek(start)
         for _ in range(lines):
-            file.readline()
+            while (line := file.readline(LONGEST_HEADER)) and not line.endswith(b"\n"):
+                pass
+            if not line:
+                break
         return file.tell()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import zlib
 from pathlib import Path
 from typing import Any, Literal
 
@@ -190,18 +189,10 @@ def _of_file(path: Path, scalars: Any) -> Found:
     lower = path.name.lower()
     name = path.name[: -len(next((s for s in SUFFIXES if lower.endswith(s)), "")) or None]
     if lower.endswith(NIBABEL):
-        import nibabel as nib
-        from nibabel.filebasedimages import ImageFileError
-        from nibabel.spatialimages import HeaderDataError
+        from .nibabel_files import opened
 
-        from pvfiblets.errors import FormatError
-
-        try:
-            return _of_nibabel(nib.load(path), path.name, name)
-        except FileNotFoundError:
-            raise
-        except (ImageFileError, HeaderDataError, EOFError, OSError, zlib.error) as error:
-            raise FormatError(path, None, f"what nibabel cannot read ({error})", "a whole NIfTI or MGH image") from None
+        with opened(path) as image:
+            return _of_nibabel(image, path.name, name)
     if lower.endswith((".nrrd", ".nhdr")):
         from .nrrd import read_nrrd
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bz2
 import gzip
+import tracemalloc
 import zlib
 
 import nibabel as nib
@@ -84,7 +85,7 @@ def test_nifti_that_ends_early(tmp_path):
         nib.save(nib.Nifti1Image(big, AFFINE), tmp_path / name)
         whole = (tmp_path / name).read_bytes()
         (tmp_path / name).write_bytes(whole[: len(whole) // 2])
-        with pytest.raises(FormatError, match="what nibabel cannot read"):
+        with pytest.raises(FormatError, match="what nibabel cannot read|found 13676 bytes, expected 27352"):
             as_raycast_volume(tmp_path / name)
 
 
@@ -257,6 +258,112 @@ def test_bad_metaimages(tmp_path):
     placed = metaimage(tmp_path / "d.mha", header="Offset = 1 2")  # the later one counts
     with pytest.raises(FormatError, match="offset = 1 2, expected 3 numbers"):
         as_raycast_volume(placed)
+
+
+@pytest.mark.parametrize("kind", ["i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"])  # of long integers VTK writes half
+@pytest.mark.parametrize("deflated", [False, True])
+def test_metaimages_are_what_vtk_reads(tmp_path, kind, deflated):
+    from vtkmodules.vtkIOImage import vtkMetaImageReader, vtkMetaImageWriter
+
+    values = np.random.default_rng(0).integers(0, 120, (3, 4, 5)).astype(kind)
+    image = pv.ImageData(dimensions=values.shape, spacing=(2.0, 3.0, 4.0), origin=(1.0, 2.0, 3.0))
+    image["v"] = values.ravel(order="F")
+    writer = vtkMetaImageWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(str(tmp_path / "a.mha"))
+    writer.SetCompression(deflated)
+    writer.Write()
+    got, affine = read_metaimage(tmp_path / "a.mha")
+    reader = vtkMetaImageReader()
+    reader.SetFileName(str(tmp_path / "a.mha"))
+    reader.Update()
+    theirs = pv.wrap(reader.GetOutput()).active_scalars.reshape(values.shape, order="F")
+    assert got.dtype == values.dtype == theirs.dtype
+    np.testing.assert_array_equal(got, theirs)
+    np.testing.assert_allclose(affine @ (0, 0, 0, 1), (-1.0, -2.0, 3.0, 1.0))
+
+
+def test_metaimages_with_text_or_bytes_before_the_data(tmp_path):
+    VALUES.tofile(tmp_path / "a.raw")
+    head = "NDims = 3\nDimSize = 5 4 3\nElementType = MET_SHORT\n"
+    (tmp_path / "a.raw").write_bytes(b"header" + VALUES.tobytes())
+    for size in (6, -1):
+        (tmp_path / "a.mhd").write_text(f"{head}HeaderSize = {size}\nElementDataFile = a.raw\n")
+        np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd")[0], VALUES.T)
+    text = " ".join(map(str, VALUES.ravel()))
+    (tmp_path / "b.mha").write_text(f"{head}BinaryData = False\nElementDataFile = LOCAL\n{text}\n")
+    np.testing.assert_array_equal(read_metaimage(tmp_path / "b.mha")[0], VALUES.T)
+    (tmp_path / "b.mha").write_text(f"{head}BinaryData = False\nElementDataFile = LOCAL\n{text[:-9]} x\n")
+    with pytest.raises(FormatError, match="other than numbers"):
+        read_metaimage(tmp_path / "b.mha")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("DimSize = 3 4 5.5", "expected three whole numbers above 0"),
+        ("DimSize = 3 4 0", "expected three whole numbers above 0"),
+        ("DimSize = 3 4 nan", "expected three whole numbers above 0"),
+        ("DimSize = 30000 40000 50000", "expected 120000000000000 behind what is skipped"),
+        ("ElementType = MET_COLOUR", "ElementType = MET_COLOUR, expected one of MET_CHAR"),
+        ("HeaderSize = many", "HeaderSize = many, expected -1, or a number of bytes"),
+        ("ElementDataFile = LIST", "join them first"),
+        ("CompressedData = True", "damaged zlib data"),
+    ],
+)
+def test_what_metaimages_say_is_not_taken_at_their_word(tmp_path, change, message):
+    VALUES.tofile(tmp_path / "a.raw")
+    fields = {"NDims": "3", "DimSize": "5 4 3", "ElementType": "MET_SHORT", "HeaderSize": "0"}
+    name, _, value = change.partition(" = ")
+    fields |= {"ElementDataFile": "a.raw", name: value}
+    fields["ElementDataFile"] = fields.pop("ElementDataFile")  # always the last
+    (tmp_path / "a.mhd").write_text("".join(f"{key} = {text}\n" for key, text in fields.items()))
+    with pytest.raises(FormatError, match=message):
+        read_metaimage(tmp_path / "a.mhd")
+
+
+@pytest.mark.parametrize("packing", ["gzip", "bzip2", "zlib"])
+@pytest.mark.parametrize("where", ["nrrd", "mha", "nii.gz"])
+def test_small_files_that_swell_take_no_memory(tmp_path, packing, where):
+    """A hundred megabytes of zeros are a hundred kilobytes: no more of them is unpacked than the header asks for."""
+    pack = {"gzip": gzip.compress, "bzip2": bz2.compress, "zlib": zlib.compress}[packing]
+    path = tmp_path / f"a.{where}"
+    if where == "nrrd" and packing != "zlib":
+        nrrd(path, encoding=packing, data=pack(VALUES.tobytes(order="F") + bytes(100_000_000)))
+    elif where == "mha" and packing == "zlib":
+        head = "NDims = 3\nDimSize = 5 4 3\nElementType = MET_SHORT\nCompressedData = True\nElementDataFile = LOCAL\n"
+        path.write_bytes(head.encode() + pack(VALUES.tobytes() + bytes(100_000_000)))
+    elif where == "nii.gz" and packing == "gzip":
+        made = nib.Nifti1Image(VALUES, AFFINE)
+        made.header.set_data_shape((3000, 4000, 5000))
+        path.write_bytes(pack(made.header.binaryblock + bytes(1_000_000)))
+    else:
+        return
+    tracemalloc.start()
+    try:
+        if where == "nii.gz":
+            with pytest.raises(FormatError, match="found 100[0-9]* bytes, expected 12000000[0-9]*,"):
+                as_raycast_volume(path)
+        else:
+            assert as_raycast_volume(path).shape in (SHAPE, SHAPE[::-1])
+        assert tracemalloc.get_traced_memory()[1] < 8_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_nrrd_with_absurd_numbers(tmp_path):
+    for more, message in [
+        ({"sizes": "9223372036854775807 4 5"}, "as the header's sizes and type say"),
+        ({"byte_skip": "-5"}, "byte skip: -5, expected -1, or a number of bytes"),
+        ({"line_skip": "1000000000000"}, "0 bytes of data"),
+    ]:
+        with pytest.raises(FormatError, match=message):
+            as_raycast_volume(nrrd(tmp_path / "a.nrrd", **more))
+    whole = nrrd(tmp_path / "a.nhdr", data_file="a.raw").read_text()
+    for name in (".", "x" * 3000, "b.raw"):
+        (tmp_path / "a.nhdr").write_text(whole.replace("a.raw", name))
+        with pytest.raises(FileNotFoundError, match="its data are in '.*', and there is no file"):
+            as_raycast_volume(tmp_path / "a.nhdr")
 
 
 # VTK's XML, bare numbers, and all of them together
