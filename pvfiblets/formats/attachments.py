@@ -16,6 +16,7 @@ points, per point; streamlines first, should both be equal.
 
 from __future__ import annotations
 
+import tokenize
 import warnings
 from os import PathLike, fspath
 from pathlib import Path
@@ -138,7 +139,7 @@ def _read_npy(path: str) -> Array:
     try:
         # Mapping checks the shape against the file's size before memory is spent.
         values = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, EOFError, OSError, OverflowError, TypeError, SyntaxError) as error:
+    except (ValueError, EOFError, OSError, OverflowError, TypeError, SyntaxError, tokenize.TokenError) as error:
         raise FormatError(path, 6, f"a damaged header ({error})", "an array of numbers") from error
     return _as_numbers(path, np.array(values))
 

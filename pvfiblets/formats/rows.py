@@ -128,7 +128,7 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
         begin, end = np.searchsorted(leave_out, (first, last))
         block = rows[first:last]
         if block.dtype != kind:
-            with np.errstate(over="ignore"):  # infinities are found and reported later
+            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found and reported later
                 block = block.astype(kind)
         place = target[first - begin : last - end]
         source = block.view(row)[:, 0]
@@ -149,8 +149,8 @@ def transformed(points: Array, affine: NDArray[np.float64]) -> NDArray[np.float3
     linear, shift = affine[:3, :3], affine[:3, 3]
 
     def part(first: int, last: int) -> None:
-        block = points[first:last].astype(np.float64)
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):  # some NaN cannot even be widened without a complaint
+            block = points[first:last].astype(np.float64)
             for j in range(3):
                 # Not by matrix product: its library would start threads inside these threads.
                 column = np.full(last - first, shift[j])

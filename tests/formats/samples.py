@@ -132,3 +132,64 @@ def corpus(folder: Path) -> dict[str, Path]:
             new.writestr(entry.filename, old.read(entry))
     files["deflated.trx"] = deflated
     return files
+
+
+def values_corpus(folder: Path) -> dict[str, Path]:
+    """Values for the points, or the streamlines, of :func:`rich` in files of every kind."""
+    from pvfiblets.formats.attachments import write_scalars
+
+    s = rich()
+    write_scalars(folder / "v.tsf", s, "fa")
+    np.save(folder / "v.npy", s.per_point["fa"])
+    np.savetxt(folder / "v.txt", s.per_streamline["weight"])
+    np.savetxt(folder / "v.csv", s.per_streamline["pair"], delimiter=",")
+    return {name: folder / name for name in ("v.tsf", "v.npy", "v.txt", "v.csv")}
+
+
+def volume_corpus(folder: Path) -> dict[str, Path]:
+    """A small volume in files of every kind that rays can be cast through, by independent writers where there are."""
+    import bz2
+
+    import nibabel as nib
+    import pyvista as pv
+    from vtkmodules.vtkIOImage import vtkMetaImageWriter
+
+    values = np.random.default_rng(0).integers(0, 200, (5, 6, 7)).astype(np.int16)
+    for name, kind in (("v.nii", nib.Nifti1Image), ("v.nii.gz", nib.Nifti1Image),
+                       ("v.mgh", nib.MGHImage), ("v.mgz", nib.MGHImage)):  # fmt: skip
+        nib.save(kind(values, AFFINE), folder / name)
+    raw = values.tobytes(order="F")
+    text = " ".join(map(str, values.ravel(order="F"))).encode()
+    packed = {"v.nrrd": ("raw", raw), "gzip.nrrd": ("gzip", gzip.compress(raw, mtime=0)),
+              "bzip2.nrrd": ("bzip2", bz2.compress(raw)), "text.nrrd": ("ascii", text)}  # fmt: skip
+    header = (
+        "NRRD0004\ntype: int16\ndimension: 3\nspace: left-posterior-superior\nsizes: 5 6 7\nendian: little\n"
+        "space directions: (2,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\nencoding: {}\n"
+    )
+    for name, (encoding, data) in packed.items():
+        (folder / name).write_bytes(header.format(encoding).encode() + b"\n" + data)
+    (folder / "apart.raw").write_bytes(raw)
+    (folder / "apart.nhdr").write_text(header.format("raw") + "byte skip: -1\nline skip: 0\ndata file: apart.raw\n\n")
+    image = pv.ImageData(dimensions=values.shape, spacing=(2.0, 2.0, 3.0))
+    image["v"] = values.ravel(order="F")
+    for name, deflated in (("v.mha", False), ("deflated.mha", True), ("apart.mhd", False)):
+        writer = vtkMetaImageWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(str(folder / name))
+        if name.endswith(".mhd"):
+            writer.SetRAWFileName(str(folder / "apart2.raw"))
+        writer.SetCompression(deflated)
+        writer.Write()
+    image.save(folder / "v.vti")
+    image.save(folder / "text.vti", binary=False)
+    from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+    xml = vtkXMLImageDataWriter()
+    xml.SetInputData(image)
+    xml.SetFileName(str(folder / "deflated.vti"))
+    xml.SetCompressorTypeToZLib()
+    xml.SetDataModeToAppended()
+    xml.Write()
+    names = ("v.nii", "v.nii.gz", "v.mgh", "v.mgz", *packed, "apart.nhdr", "v.mha", "deflated.mha", "apart.mhd",
+             "v.vti", "text.vti", "deflated.vti")  # fmt: skip
+    return {name: folder / name for name in names}

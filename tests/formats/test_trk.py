@@ -299,3 +299,15 @@ def test_far_from_the_origin_keeps_float32_precision(tmp_path):
     formats.write(tmp_path / "a.trk", s)
     # The file counts from the image's corner, so only the result's float32 is coarse: 2^20 / 2^24.
     assert np.abs(formats.read(tmp_path / "a.trk").points - s.points).max() <= 0.0626
+
+
+def test_a_signalling_nan_is_left_out_without_a_warning(tmp_path):
+    """Widening such a number makes the processor complain."""
+    path = tmp_path / "a.trk"
+    formats.write(path, Streamlines(np.arange(12.0, dtype=np.float32).reshape(4, 3), [0, 4]))
+    data = bytearray(path.read_bytes())
+    data[1004 + 12 : 1004 + 16] = (0x7F800001).to_bytes(4, "little")  # behind the header and the count: point 1's x
+    path.write_bytes(data)
+    s = formats.read(path)
+    assert s.n_points == 3
+    assert sum(s.dropped.values()) == 1
