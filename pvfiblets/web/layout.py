@@ -68,6 +68,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .v-overlay .v-list-item { min-height: 34px !important }
 .v-overlay .v-list-item-title { font-size: 13px }
 .v-toolbar__content > .v-btn { margin-inline: 0 !important }
+.v-slider { touch-action: pan-y }
 .v-slider.v-input--horizontal { margin-inline: 6px }
 .v-field-label { font-size: 13px !important }
 .v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;
@@ -179,6 +180,10 @@ def _view(app: Any) -> None:
                     v3.VIcon(icon, size=20)
                     v3.VTooltip(hint, activator="parent", location="right")
         html.Div("{{ measured ? measured + ' · ' : '' }}{{ frame }}", classes="pv-status")
+        v3.VBtn(
+            "Clear {{ measured }}", v_if="measured", size="x-small", classes="text-none", data_action="clear-distance",
+            click=app.selecting.clear_distance, style="position: absolute; right: 8px; bottom: 26px; z-index: 3",
+        )  # fmt: skip
         with html.Div(
             v_if="!layers.length && !job.text",
             style="position: absolute; inset: 0; display: grid; place-items: center; z-index: 3; pointer-events: none",

@@ -61,12 +61,17 @@ class FileActions(Actions):
             except Exception as error:  # noqa: BLE001 - the others are opened all the same
                 self._app.complain(str(error))
         if self._app.options.demo:
-            self.open_demo()
+            await self._open_demo()
         self._app.stream.warm()
 
     def open_demo(self) -> None:
-        """Open the made-up tractogram."""
-        self._app.scene.add_demo()
+        """Open the made-up tractogram, which is made beside everything else."""
+        self._app.later(self._open_demo())
+
+    async def _open_demo(self) -> None:
+        scene = self._app.scene
+        loaded = await self.beside("demo", lambda *_: scene.load_demo(), "making it", cancellable=False)
+        scene.add_loaded_demo(loaded)
         self._app.refresh()
 
     async def open(self, path: str, kind: str | None = None) -> None:

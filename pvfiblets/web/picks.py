@@ -6,6 +6,7 @@ from typing import Any
 
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import profile_chart, short
+from pvfiblets.web.marks import hide_distance, show_distance
 from pvfiblets.web.wire import number
 
 ROWS = 200
@@ -66,11 +67,22 @@ class SelectionActions(Actions):
         self._app.refresh()
 
     def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
-        found = self._app.scene.measure(*first, *last)
-        if found is None:
-            self._app.say("Begin and end on something that is drawn.")
-            return
-        self._app.page.measured = f"{short(found['mm'])} mm"
+        app = self._app
+        if hide_distance(app.plotter):
+            app.plotter.render()  # or what is seen could be the line of before
+        found = app.scene.measure(*first, *last)
+        app.page.measured = "" if found is None else f"{short(found['mm'])} mm"
+        if found is not None:
+            show_distance(app.plotter, found["from"], found["to"], app.page.measured)
+        else:
+            app.say("Begin and end on something that is drawn.")
+        app.stream.request()
+
+    def clear_distance(self) -> None:
+        """Take the measured distance away."""
+        hide_distance(self._app.plotter)
+        self._app.page.measured = ""
+        self._app.stream.request()
 
     # The tab
 
@@ -79,7 +91,16 @@ class SelectionActions(Actions):
         scene, page = self._app.scene, self._app.page
         count = scene.count()
         if not count:
-            page.selection = {"count": 0}
+            page.selection, self._shown = {"count": 0}, None
+            return
+        # Tables and profiles of many streamlines take long, and most changes of a scene are none of theirs.
+        having = [
+            (layer.id, layer.name, layer.source, layer.selected, layer.settings["scalars"])
+            for layer in scene.layers
+            if layer.selected is not None
+        ]
+        shown = (having, page.chosen, self._profile)
+        if shown == self._shown:
             return
         table = scene.table(limit=ROWS)
         rows = table["rows"]
@@ -102,6 +123,7 @@ class SelectionActions(Actions):
             "more": f"and {table['total'] - len(rows):,} more" if table["total"] > len(rows) else "",
             **self._plot(),
         }
+        self._shown = shown
 
     def _owner(self) -> Any:
         """The layer whose selection is profiled: the chosen one, or the first that has one."""

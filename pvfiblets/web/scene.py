@@ -6,7 +6,7 @@ refuses, all is as it was. So undo, sessions and single settings are the same th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from pvfiblets.web.bars import Bars
 from pvfiblets.web.cameras import Cameras
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State, as_volume_choice, volume_in
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
+from pvfiblets.web.marks import hide_distance
 from pvfiblets.web.questions import Questions
 from pvfiblets.web.selecting import Selecting
 from pvfiblets.web.showing import Showing
@@ -254,12 +255,20 @@ class Scene(Showing, Selecting, Questions, Cameras):
         """Read a file and add a layer of it; see :meth:`load`."""
         return self.add(self.load(path, kind, progress, cancel))
 
-    def add_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Layer]:
-        """Add made-up tracts, and a made-up head around them that is not visible at first."""
-        tracts = self.add(self.files.load(Source(demo="tracts", size=int(streamlines))))
-        head = self.add(self.files.load(Source(demo="head", size=int(voxels))))
+    def load_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Loaded]:
+        """Make tracts up, and a head around them, for :meth:`add_loaded_demo`; may run in a thread of its own."""
+        sources = Source(demo="tracts", size=int(streamlines)), Source(demo="head", size=int(voxels))
+        return [self.files.load(source) for source in sources]
+
+    def add_loaded_demo(self, loaded: Sequence[Loaded]) -> list[Layer]:
+        """Add what was made up: tracts, and a head that is not visible at first."""
+        tracts, head = [self.add(one) for one in loaded]
         self.show(head.id, False)
         return [tracts, self.layer(head.id)]
+
+    def add_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Layer]:
+        """Make tracts and a head up, and add them."""
+        return self.add_loaded_demo(self.load_demo(streamlines, voxels))
 
     def remove(self, layer_id: str) -> None:
         """Take a layer away."""
@@ -339,6 +348,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
     def close(self) -> None:
         """Take all layers away and remove what was made of files; twice is harmless."""
         self._listeners.clear()
+        hide_distance(self.plotter)
         self.become(State(background=self._state.background))
         self.store.clear()
         self.files.close()

@@ -26,7 +26,8 @@ class Desk:
         self.history = History(scene)
         self.page = Page()
         self.state = contextlib.nullcontext()
-        self.stream = SimpleNamespace(request=lambda: None, warm=lambda: None, size=scene.plotter.window_size)
+        size = tuple(scene.plotter.window_size)
+        self.stream = SimpleNamespace(request=lambda: None, warm=lambda: None, size=size, settle=lambda: size)
         self.said = []
         self.refreshed = 0
         self.files = FileActions(self)

@@ -237,3 +237,15 @@ def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
     for wrong in ("layer1", None, 3):
         with pytest.raises(ValueError, match="list of layers"):
             desk.cuts.set_layers(clip.id, wrong)
+
+
+def test_the_demo_is_made_beside_the_page(desk, scene, threads, monkeypatch):
+    monkeypatch.setattr(type(scene).load_demo, "__defaults__", (20, 8))
+
+    async def test():
+        desk.files.open_demo()
+        await desk.done()
+
+    asyncio.run(test())
+    assert threads == [False, False]
+    assert [(layer.kind, layer.visible) for layer in scene.layers] == [("tractogram", True), ("volume", False)]
