@@ -97,8 +97,8 @@ class Cameras:
             mm; ``None`` where there is nothing.
         """
         width, height = self.plotter.window_size
-        column = int(number(x, "x", 0, width - 1))
-        row = int(number(y, "y", 0, height - 1))
+        column = round(number(x, "x", 0, width - 1))
+        row = round(number(y, "y", 0, height - 1))
         renderer = self.plotter.renderer
         depth = renderer.GetZ(column, row)
         if not depth < 1.0:
