@@ -7,6 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+import numpy.typing as npt
+
 from .volume import FILTERS
 
 if TYPE_CHECKING:
@@ -47,7 +50,7 @@ class Casting:
     low, high : float
         Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
     step : float
-        Of a ray, in mean voxel spacings, above 0.
+        Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` says what it is of voxels that are far from cubes.
     jitter : bool
         Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
     filter : str
@@ -139,6 +142,21 @@ class Casting:
             if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
                 raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
             object.__setattr__(self, "box", box)
+
+    def step_mm(self, spacing: npt.ArrayLike) -> float:
+        """Return the length of a step, mm.
+
+        Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
+        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more.
+
+        Parameters
+        ----------
+        spacing : array_like
+            ``(3,)`` mm between voxels along each axis.
+        """
+        lengths = np.asarray(spacing, np.float64)
+        mean, least = float(lengths.mean()), float(lengths.min())
+        return min(self.step * mean, max(self.step, 1.0) * least)
 
     def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
         try:

@@ -24,8 +24,10 @@ __all__ = ["DENSE", "OFF", "is_steep", "typical_bend"]
 OFF = 1e-2
 """What colours and opacities may be off by."""
 
-DENSE = 10.0
-"""Optical depth of a step beyond which its parts are not told from its opacity."""
+DENSE = 9.0
+"""Optical depth of a step beyond which its parts are not told from its opacity. The denser, the more a bend of the
+values within a step counts, such as where a field begins: at 10, light of a ball is off by 0.012. Steps of half a voxel
+through a table that ends in opacity 1, as most do, have 8.3, and one look-up is enough for them."""
 
 STEPS = 3.0
 """What errors of steps add up to, as they have either sign, in errors of one."""

@@ -149,6 +149,7 @@ def test_what_is_steep():
         for kappa_step in (1e-3, 1.0, 1e3):
             assert is_steep(steep_transfer(name, kappa_step), STEP)
     assert is_steep(steep_transfer("ramp", 100.0), STEP)  # so dense that parts of a step are not told from it
+    assert is_steep(steep_transfer("ramp", 9.5), STEP)  # and light where the ball begins would be off by more than OFF
     assert is_steep(steep_transfer("ramp", 1.0), STEP, low=0.5)
     assert not is_steep(steep_transfer("ramp", 1.0), STEP, low=-1.0)
     assert is_steep(steep_transfer("ramp", 1.0), STEP, chord=0.1)
@@ -186,3 +187,12 @@ def test_what_is_even():
     even = transfer.even_range([0.4, 0.2, 0.4, 0.92, 0.0], [0.8, 0.4, 0.95, 2.0, 0.1])
     assert even.tolist() == [True, False, False, True, True]
     assert not transfer.even_range(0.88, 0.8999)  # the opacity rises within the entry
+
+
+def test_a_step_is_no_longer_than_a_voxel_is_short_unless_it_is_asked_to_be():
+    half, four = Casting(values=(0.5,), step=0.5), Casting(values=(0.5,), step=4.0)
+    assert half.step_mm((2.0, 2.0, 2.0)) == 1.0
+    assert half.step_mm((1.0, 1.0, 1.6)) == pytest.approx(0.6)
+    assert half.step_mm((1.0, 1000.0, 1.0)) == 1.0
+    assert four.step_mm((1.0, 1000.0, 1.0)) == 4.0
+    assert four.step_mm((3.0, 3.0, 3.0)) == 12.0
