@@ -14,13 +14,21 @@ def named(case):
     return f"{case.system}: {case.name}"
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if not case.draws], ids=named)
+def parameters(draws):
+    """Cases to run; what is known not to hold must go on not holding until its mark is taken away."""
+    marks = {True: lambda case: [pytest.mark.xfail(reason=case.known, strict=True)], False: lambda case: []}
+    return [
+        pytest.param(case, id=named(case), marks=marks[bool(case.known)](case)) for case in CASES if case.draws == draws
+    ]
+
+
+@pytest.mark.parametrize("case", parameters(False))
 def test_what_must_hold_does(case):
     outcome = case.run(Setting())
     assert outcome.held, f"{outcome.measured:.4g} {outcome.unit}, at most {outcome.limit:.4g}: {outcome.note}"
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if case.draws], ids=named)
+@pytest.mark.parametrize("case", parameters(True))
 def test_what_must_hold_of_pictures_does(gl, case):
     outcome = case.run(Setting(ctx=gl))
     assert outcome.held, f"{outcome.measured:.4g} {outcome.unit}, at most {outcome.limit:.4g}: {outcome.note}"

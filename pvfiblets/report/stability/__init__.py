@@ -15,7 +15,7 @@ from .case import Case
 
 __all__ = ["MODULES", "all_cases"]
 
-MODULES = ("codec_cases", "camera_cases")
+MODULES = ("codec_cases", "camera_cases", "volume_cases")
 
 
 def all_cases() -> list[Case]:

@@ -31,6 +31,8 @@ def result_of(case: Case, setting: Setting) -> CaseResult:
         said, figure, limit, held = found.note, Figure(found.measured, found.unit), found.limit, found.held
     if setting.ctx is not None and (code := setting.ctx.error) != "GL_NO_ERROR":
         said, held = f"{code} {said}".strip(), False
+    if case.known and not held:
+        said = f"known: {case.known}" + (f" ({said})" if said else "")
     seconds = round(time.perf_counter() - begun, 2)
     return CaseResult(case.system, case.name, case.does, case.must, figure, limit, held, said, seconds)
 
