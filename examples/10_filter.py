@@ -26,7 +26,8 @@ def main(folder: Path) -> None:
     for index in range(4):
         plotter.subplot(index // 2, index % 2)
         plotter.set_background("black")
-        actor = plotter.add_fiblets(fiblets, scalar_bar_args={"color": "white"})
+        bar = {"color": "white", "vertical": True, "height": 0.8, "position_x": 0.89, "position_y": 0.05}
+        actor = plotter.add_fiblets(fiblets, scalar_bar_args=bar)
         if index == 0:
             title = "length 60 to 90 mm, curvature below 0.06 per mm"
             actor.criterion("length", (60, 90))

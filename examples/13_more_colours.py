@@ -24,7 +24,7 @@ def main(folder: Path) -> None:
     x, y, z = volume.points.T
     volume["made-up FA"] = 0.5 + 0.4 * np.cos(x / 15) * np.cos(y / 18) * np.cos(z / 16)
     lesion = regions.Sphere((30, 10, 25), 12)
-    bar = {"color": "white", "title_font_size": 14, "label_font_size": 12}
+    bar = {"color": "white", "title_font_size": 14, "label_font_size": 12, "n_labels": 2}
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
     for index in range(4):
         plotter.subplot(index // 2, index % 2)
