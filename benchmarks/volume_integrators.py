@@ -29,10 +29,10 @@ from pvfiblets.raycast.reference_profiles import profiles
 from pvfiblets.raycast.transfer import Transfer
 from pvfiblets.raycast.volume import RaycastVolume
 from pvfiblets.report.volume_fields import DENSE, field, tables
+from pvfiblets.report.volume_pictures import light_of
 
 DENSITIES = (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3)  # kappa times a step of half a voxel, where it is densest
 STEPS = (0.25, 0.5, 1.0)
-EMPTY = 0xFFFFFFFF
 WRONG = 1e-2
 
 
@@ -105,10 +105,7 @@ def picture(
         buffer = renderer.render(view, style)
         ctx.finish()
         times.append(time.process_time() - start)
-    there = np.frombuffer(buffer.depth.read(), "u4").reshape(size[::-1]) != EMPTY
-    rgba = np.frombuffer(buffer.colours.read(), "u1").reshape(*size[::-1], 4) / 255.0
-    rgba[..., :3] *= rgba[..., 3:]
-    return np.where(there[..., None], rgba, 0.0), float(np.median(times))
+    return light_of(buffer), float(np.median(times))
 
 
 def formulae(densities: list[float]) -> list[dict[str, Any]]:

@@ -21,25 +21,12 @@ from orbit import card_slug, context, machine, write
 
 from pvfiblets.engine import View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.engine.raycast.occlusion import LIFT, MAX_SAMPLES, RayOcclusionPass
+from pvfiblets.engine.raycast.occlusion import MAX_SAMPLES, RayOcclusionPass
 from pvfiblets.raycast import reference
 from pvfiblets.raycast.casting import Casting
-from pvfiblets.raycast.volume import RaycastVolume
-from pvfiblets.synthetic.vessels import brain_like, vessel_tree
-
-
-def opened_head(n: int) -> RaycastVolume:
-    """Return a head without its upper third, of which the brain's folds show from above."""
-    head = brain_like(n)
-    return RaycastVolume(head.values[:, :, : round(0.66 * n)], head.affine)
-
-
-SETS = {"vessels": (vessel_tree, 90.0, (0.25, -1.0, 0.35)), "head": (opened_head, 85.0, (0.2, -0.4, 1.0))}
-"""What to draw, the value of its surface, and where to look at it from."""
+from pvfiblets.report.volume_openness import SETS, exact_openness, seen_from
 
 SAMPLES = (4, 8, 16, 32, 64, 128, 256, 512)
-BESIDE = 0.05  # mm
-DIRECTIONS = 48  # along each side of the reference's rule of directions
 
 
 def main() -> None:
@@ -71,7 +58,7 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
     volume = make(options.voxels)
     renderer, occlusion = RaycastRenderer(ctx, volume), RayOcclusionPass(ctx)
     casting = Casting(values=(value,), step=options.step)
-    matrix = camera(volume, options.size, away)
+    matrix = seen_from(volume, options.size, away)
     try:
         view = View(tuple(options.size), matrix)
         buffer = renderer.render(view, RaycastStyle(casting=casting))
@@ -109,24 +96,6 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
         renderer.release()
 
 
-def camera(volume: Any, size: tuple[int, int], away: tuple[float, float, float]) -> np.ndarray:
-    """Return a matrix that shows a volume from a direction, and fills the picture with it."""
-    bounds = np.array(volume.bounds).reshape(3, 2)
-    middle, reach = bounds.mean(axis=1), float(np.ptp(bounds, axis=1).max())
-    z = np.array(away) / np.linalg.norm(away)
-    x = np.cross([0.0, 0.0, 1.0], z)
-    x /= np.linalg.norm(x)
-    view = np.eye(4)
-    view[:3, :3] = x, np.cross(z, x), z
-    view[:3, 3] = -view[:3, :3] @ (middle + 2.2 * reach * z)
-    near, far, t = 1.2 * reach, 3.4 * reach, 1.0 / np.tan(np.radians(27.0) / 2.0)
-    projection = np.zeros((4, 4))
-    projection[0, 0], projection[1, 1] = t * size[1] / size[0], t
-    projection[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
-    projection[3, 2] = -1.0
-    return projection @ view
-
-
 def errors(off: np.ndarray) -> dict[str, float]:
     """Return how far openness is off, as parts of 1."""
     return {"mean": float(off.mean()), "rms": float(np.sqrt((off**2).mean())), "p99": float(np.percentile(off, 99)),
@@ -151,55 +120,6 @@ def against_reference(
         "median": float(np.median(size)),
         **errors(size),
     }
-
-
-def exact_openness(
-    volume: Any, value: float, through: Any, gradients: np.ndarray, t: np.ndarray, radius: float, n: int = DIRECTIONS
-) -> np.ndarray:
-    """Return equation 10 at hits of rays, by a rule of n x n stratified directions, in float64.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    value : float
-        Of the surface.
-    through : reference.Rays
-        ``(k,)`` of the pixels.
-    gradients, t : numpy.ndarray
-        ``(k, 3)`` and ``(k,)``: at the hits, and mm along the rays to them.
-    radius : float
-        mm.
-    n : int
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(k,)``: share of the directions that meet nothing.
-    """
-    # The open side is the viewer's by the field next to the hit, not by differences over two voxels.
-    before, after = (reference.sample(volume, through.points(t + beside)) for beside in (-BESIDE, BESIDE))
-    normals = gradients / np.linalg.norm(gradients, axis=-1, keepdims=True)
-    above = before > after
-    normals *= np.where(above, 1.0, -1.0)[:, None]
-    turn = volume.inverse[:3, :3]
-    hits = through.points(t)
-    starts = hits + LIFT * normals / np.linalg.norm(normals @ turn.T, axis=-1, keepdims=True)
-    wrong = (reference.sample(volume, starts) >= value) != above
-    back = hits - LIFT * through.directions / np.linalg.norm(through.directions @ turn.T, axis=-1, keepdims=True)
-    starts = np.where(wrong[:, None], back, starts)
-    right = np.cross(normals, np.where(np.abs(normals[:, :1]) < 0.7, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
-    right /= np.linalg.norm(right, axis=-1, keepdims=True)
-    u, v = (side.ravel()[:, None] for side in np.meshgrid(*[(np.arange(n) + 0.5) / n] * 2))
-    x, y = np.sqrt(u) * np.cos(2.0 * np.pi * v), np.sqrt(u) * np.sin(2.0 * np.pi * v)
-    ways = right[:, None] * x + np.cross(normals, right)[:, None] * y + normals[:, None] * np.sqrt(1.0 - u)
-    origins = np.broadcast_to(starts[:, None], ways.shape)
-    voxels, steps = origins @ turn.T + volume.inverse[:3, 3], ways @ turn.T
-    with np.errstate(divide="ignore"):
-        ends = np.where(steps > 0.0, (np.array(volume.shape) - 1.0 - voxels) / steps, -voxels / steps)
-    far = np.minimum(np.where(steps == 0.0, np.inf, ends).min(axis=-1), radius)
-    gone = far <= 0.0
-    rays = reference.Rays(origins, ways, np.where(gone, np.nan, 0.0), np.where(gone, np.nan, far), through.matrix)
-    return (reference.isosurface(volume, value, rays).value < 0).mean(axis=1)
 
 
 def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:

@@ -12,7 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pvfiblets.engine.raycast.occlusion import LIFT
 from pvfiblets.raycast import RaycastVolume, reference
+from pvfiblets.report.volume_openness import exact_openness, seen_from
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -48,20 +50,20 @@ def test_one_command_tells_error_and_time(tmp_path):
     assert f"| {many['rms']:.4f} |" in table
 
 
-def test_the_reference_is_that_of_a_ball(bench):
+def test_the_reference_is_that_of_a_ball():
     """Chords in a ball of radius r, from a little off its wall, that are shorter than R."""
     x = np.arange(33) - 16.0
     field = np.sqrt(x[:, None, None] ** 2 + x[:, None] ** 2 + x**2).astype(np.float32)
     affine = np.eye(4)
     affine[:3, 3] = -16.0
     volume = RaycastVolume(field, affine)
-    matrix = bench.camera(volume, (8, 8), (0.3, -1.0, 0.2))
+    matrix = seen_from(volume, (8, 8), (0.3, -1.0, 0.2))
     ways = np.random.default_rng(0).normal(size=(6, 3))
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     through = reference.Rays(np.zeros((6, 3)), ways, np.zeros(6), np.full(6, 16.0), matrix)
     hits = reference.isosurface(volume, 12.0, through)
-    found = bench.exact_openness(volume, 12.0, through, hits.gradient, hits.t, 9.0)
-    start = 12.0 - bench.LIFT
+    found = exact_openness(volume, 12.0, through, hits.gradient, hits.t, 9.0)
+    start = 12.0 - LIFT
     least = (9.0**2 - 12.0**2 + start**2) / (2 * 9.0 * start)
     assert found == pytest.approx(1.0 - least**2, abs=0.01)
 

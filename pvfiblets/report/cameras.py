@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "orbit", "unit"]
+__all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "by_turns", "orbit", "unit"]
 
 VERTICAL_ANGLE = 45.0  # degrees; this and the distances are those of Russig et al. 2020, section 4
 VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
@@ -81,6 +83,18 @@ def orbit(tubes: Any, view: str, frames: int, size: tuple[int, int]) -> list[Cam
         direction = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
         cameras.append(Camera((size[0], size[1]), centre + distance * direction, centre, near, far))
     return cameras
+
+
+def by_turns(draw: Callable[[Camera], object], cameras: Sequence[Camera]) -> Callable[[], None]:
+    """Return what draws all cameras, each a little other than the time before: renderers draw nothing twice."""
+    wider = [replace(camera, far=camera.far * (1.0 + 1e-7)) for camera in cameras]
+    turn = itertools.cycle([wider, cameras])
+
+    def drawn() -> None:
+        for camera in next(turn):
+            draw(camera)
+
+    return drawn
 
 
 def unit(vectors: Array) -> Array:

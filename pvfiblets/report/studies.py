@@ -22,14 +22,12 @@ MODULES = {
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
     "tubes": "pvfiblets.report.tubes",
+    "volume": "pvfiblets.report.volume",
     "halos": "pvfiblets.report.halos",
     "features": "pvfiblets.report.features",
     "stability": "pvfiblets.report.stability.study",
 }
-PLANNED = {
-    "tubes": "benchmarks/tube_errors.py",
-    "volume": "benchmarks/volume_errors.py",
-}
+PLANNED: dict[str, str] = {}
 
 
 def chosen_names(only: Sequence[str] | None = None) -> list[str]:

@@ -13,20 +13,21 @@ from pvfiblets.raycast import RaycastVolume, reference
 from .cameras import Camera
 from .volume_scene import Look, Truth, grey_of, lit, truth
 
-__all__ = ["Right", "along_of", "colours_of", "directions_of", "places", "right_of"]
+__all__ = ["Right", "along_of", "colours_of", "directions_of", "light_of", "places", "right_of"]
 
 Array = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint32]
 
+EMPTY = 0xFFFFFFFF
+
 
 def colours_of(gbuffer: Any, look: Look, camera: Camera) -> Array:
     """Return the picture that a G-buffer means, by the lamp of meshes: ``(height, width, 3)``, row 0 at the bottom."""
-    width, height = gbuffer.size
-    there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != 0xFFFFFFFF
     if look.mode == "composite":
-        rgba = np.frombuffer(gbuffer.colours.read(), np.uint8).reshape(height, width, 4) / 255.0
-        shown = rgba[..., :3] * rgba[..., 3:]
-    elif look.mode == "mip":
+        return light_of(gbuffer)[..., :3]
+    width, height = gbuffer.size
+    there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != EMPTY
+    if look.mode == "mip":
         values = np.frombuffer(gbuffer.position.read(), np.float32).reshape(height, width, 2)[..., 1]
         shown = grey_of(values.astype(np.float64), look)
     else:
@@ -49,6 +50,16 @@ def directions_of(words: Words) -> Array:
     )
     found = np.stack([x, u, v], axis=-1)
     return found / np.linalg.norm(found, axis=-1, keepdims=True)
+
+
+def light_of(gbuffer: Any) -> Array:
+    """Return light, multiplied by its opacity, and opacity: ``(height, width, 4)``, row 0 at the bottom."""
+    width, height = gbuffer.size
+    there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != EMPTY
+    rgba = np.frombuffer(gbuffer.colours.read(), np.uint8).reshape(height, width, 4) / 255.0
+    rgba[..., :3] *= rgba[..., 3:]
+    found: Array = np.where(there[..., None], rgba, 0.0)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +90,7 @@ def along_of(keys: Words, rays: Any) -> Array:
     z, w = np.moveaxis(rays.origins @ rays.matrix[2:, :3].T + rays.matrix[2:, 3], -1, 0)
     dz, dw = np.moveaxis(rays.directions @ rays.matrix[2:, :3].T, -1, 0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(keys == 0xFFFFFFFF, np.nan, (depth * w - z) / (dz - depth * dw))
+        return np.where(keys == EMPTY, np.nan, (depth * w - z) / (dz - depth * dw))
 
 
 def places(of: Right, depths: list[Words], spacing: float) -> dict[str, Any]:
