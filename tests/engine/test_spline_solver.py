@@ -341,6 +341,20 @@ def probes(gl):
         asked.release()
 
 
+def test_a_solver_is_given_other_steps_without_being_made_anew(gl, sample):
+    points, o, d, *_ = sample("usual")
+    asked = SolverProbe(gl, "bisection", clock=iter(range(9)).__next__)
+    for iterations in (2, 9):
+        asked.limit(iterations)
+        found = asked.hits(points, o, d)
+        for got, wanted in zip(found, probe(gl, "bisection", points, o, d, iterations=iterations), strict=True):
+            np.testing.assert_array_equal(got, wanted)
+    assert asked.seconds == 1.0  # by the clock that was given
+    with pytest.raises(ValueError, match="iterations is 0"):
+        asked.limit(0)
+    asked.release()
+
+
 def test_released_twice_and_bad_choices(gl):
     asked = SolverProbe(gl, "itp")
     asked.release()

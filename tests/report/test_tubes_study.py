@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.report import tubes
-from pvfiblets.report.cameras import Lens, orbit
+from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Options, Unavailable
 from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
@@ -114,6 +114,17 @@ def test_errors_are_in_radii_and_in_pixels():
     assert off["depth p50"] == pytest.approx(0.25)
     wide = np.roll(truth.there.reshape(80, 120), 1, axis=1).ravel()  # moved by a pixel: 2/pi of one on average
     assert truth.errors(right, wide)["silhouette"] == pytest.approx(2.0 / np.pi, rel=0.05)
+
+
+def test_no_picture_is_asked_for_twice_in_a_row():
+    seen = []
+    cameras = orbit(helices(1), "far", 2, (8, 8))
+    draw = by_turns(lambda camera: seen.append(camera.far), cameras)
+    for _ in range(3):
+        draw()
+    assert seen[:2] != seen[2:4] != seen[4:]
+    assert seen[:2] == seen[4:]
+    np.testing.assert_allclose(seen, [camera.far for camera in cameras] * 3, rtol=1e-6)
 
 
 def test_depth_is_rounded_as_a_format_has_it():
