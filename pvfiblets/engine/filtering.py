@@ -24,14 +24,13 @@ if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
     from .chunks import Chunk
 
-__all__ = ["CONSTANTS", "POINT_UNIT", "STREAMLINE_UNIT", "Filter", "FilterTextures"]
+__all__ = ["MASK_BITS", "POINT_UNIT", "STREAMLINE_UNIT", "Filter", "FilterTextures"]
 
 STREAMLINE_UNIT, POINT_UNIT = 24, 25
 """Texture units."""
 
 MASK_BITS = 12
-CONSTANTS = {"mask_bits": MASK_BITS}
-"""Of the sources: a row of a mask holds two to the power of this many words of 32 bits."""
+"""A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too."""
 
 AHEAD = 2
 """Points of the next chunk that shaders of this one ask about."""

@@ -81,14 +81,14 @@ GROUP_SIZE = 64
 def nowhere(ctx: moderngl.Context, gl: OpenGL) -> Iterator[None]:
     """Draw into a pixel that nobody looks at: no drawing call runs without a target, not even one that only counts."""
     with gl.framebuffers_kept():
-        target = ctx.simple_framebuffer((1, 1))
+        pixel = ctx.renderbuffer((1, 1))
+        target = ctx.framebuffer([pixel])
         try:
             target.use()
             yield
         finally:
-            for attachment in target.color_attachments:
-                attachment.release()
             target.release()
+            pixel.release()
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:

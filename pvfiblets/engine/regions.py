@@ -28,16 +28,13 @@ if TYPE_CHECKING:
     from ..codec.query.shapes import Shape
     from .opengl import OpenGL
 
-__all__ = ["BLOCK_BYTES", "CONSTANTS", "FIELDS_UNIT", "FieldTextures", "RegionBlock", "region_block", "region_features"]
+__all__ = ["BLOCK_BYTES", "FIELDS_UNIT", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
 REGIONS_BINDING = BLOCKS["Regions"]
 """Binding of the uniform block ``Regions``."""
 
 FIELDS_UNIT = 27
 """Texture unit of ``region_fields``."""
-
-CONSTANTS = {"max_region_leaves": MAX_LEAVES, "max_region_ops": MAX_OPS}
-"""Of the sources in ``shaders/regions``."""
 
 UNDECIDED = -1
 """Kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it."""

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .. import filtering, regions
 from ..measures import ComputeMeasurer, FeedbackMeasurer, Measurer
-from . import compute, geometry, mesh
 from .compute import ComputePipeline
-from .geometry import GeometryPipeline
+from .constants import CONSTANTS
 from .job import Job, Pipeline
 from .limits import TEXTURED, Limits
-from .mesh import MeshPipeline
-from .tessellation import TessellationPipeline
 
 if TYPE_CHECKING:
     import moderngl
@@ -22,25 +18,22 @@ if TYPE_CHECKING:
 
 __all__ = ["CONSTANTS", "ComputePipeline", "Job", "Limits", "Pipeline", "make_measurer", "make_pipeline"]
 
-CONSTANTS = {
-    **compute.CONSTANTS,
-    **geometry.CONSTANTS,
-    **mesh.CONSTANTS,
-    **filtering.CONSTANTS,
-    **regions.CONSTANTS,
-}
-"""Of all pipelines' sources."""
-
 
 def make_pipeline(
     name: str, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int, n_chunks: int, limits: Limits
 ) -> Pipeline:
     """Make a pipeline by its name, which the context must support."""
     if name in ("mesh", "mesh-serial"):
+        from .mesh import MeshPipeline
+
         return MeshPipeline(ctx, gl, programs, n_fiblets, serial=name == "mesh-serial")
     if name == "tessellation":
+        from .tessellation import TessellationPipeline
+
         return TessellationPipeline(ctx, gl, programs, n_fiblets)
     if name == "geometry":
+        from .geometry import GeometryPipeline
+
         return GeometryPipeline(ctx, gl, programs, n_fiblets)
     return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups)
 

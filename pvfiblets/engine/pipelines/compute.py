@@ -47,22 +47,13 @@ from ..errors import EngineError
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, is_software
 from ..shaders import EXTENDED, Programs
-from ..view import MAX_CLIP_PLANES
+from .constants import GROUP_WORDS, MARK_WORDS
 from .job import Job
 
 if TYPE_CHECKING:
     from .geometry import GeometryPipeline
 
-__all__ = ["CLASSES", "CONSTANTS", "ComputePipeline"]
-
-GROUP_WORDS = 8
-MARK_WORDS = 15
-CONSTANTS = {
-    "group_size": GROUP_SIZE,
-    "group_words": GROUP_WORDS,
-    "mark_words": MARK_WORDS,
-    "max_clip_planes": MAX_CLIP_PLANES,
-}
+__all__ = ["CLASSES", "ComputePipeline"]
 
 CLASSES = 4
 ROUNDS = 6

@@ -24,17 +24,11 @@ from collections.abc import Mapping
 import moderngl
 
 from ...codec.layout import MAX_POINTS
+from .constants import SHARES
 from .job import Job
 from .textured import TexturedPipeline
 
-__all__ = ["CONSTANTS", "GeometryPipeline"]
-
-SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
-VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
-CONSTANTS = {
-    **{f"{drawn}_share": share for drawn, share in SHARES.items()},
-    **{f"{drawn}_vertices": count for drawn, count in VERTICES.items()},
-}
+__all__ = ["GeometryPipeline"]
 
 
 class GeometryPipeline(TexturedPipeline):

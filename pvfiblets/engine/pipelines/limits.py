@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import moderngl
 
 from ..opengl import OpenGL
-from .compute import CLASSES, MARK_WORDS
+from .compute import CLASSES
+from .constants import MARK_WORDS
 
 __all__ = ["TEXTURED", "Limits"]
 

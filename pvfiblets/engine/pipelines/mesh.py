@@ -26,20 +26,11 @@ import moderngl
 from ..chunks import Chunk
 from ..opengl import OpenGL
 from ..shaders import Programs
+from .constants import TASK_FIBLETS, THREADS
 from .job import Job
 from .raster import RasterPipeline
 
-__all__ = ["CONSTANTS", "MeshPipeline"]
-
-THREADS = 32
-"""Of a work group: a warp, as the paper has it."""
-
-TASK_ROUNDS = 8
-"""How many fiblets each invocation of a task work group tests."""
-
-TASK_FIBLETS = THREADS * TASK_ROUNDS
-
-CONSTANTS = {"mesh_threads": THREADS, "task_rounds": TASK_ROUNDS, "task_fiblets": TASK_FIBLETS}
+__all__ = ["MeshPipeline"]
 
 _BALLOT = 0x8  # of GL_SUBGROUP_SUPPORTED_FEATURES_KHR
 _TASK_STAGE = 0x80  # of GL_SUBGROUP_SUPPORTED_STAGES_KHR
