@@ -104,7 +104,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
 def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dict[str, Figure]:
     return {
         "memory": Figure(nbytes / 1e6, "MB"),
-        "more memory": Figure((nbytes - plain_nbytes) / 1e3, "kB"),
+        "more memory": Figure((nbytes - plain_nbytes) / 1e6, "MB"),
         "more time": Figure(1e3 * (timing.each - plain.each), "ms per frame"),
     }
 

@@ -44,7 +44,7 @@ def measured(_headless, request):
 
 def more(found, *name):
     """Bytes that a feature adds."""
-    return 1e3 * found[name].costs["more memory"].value
+    return 1e6 * found[name].costs["more memory"].value
 
 
 def test_every_subject_is_beside_its_plain_self(measured):

@@ -1,0 +1,92 @@
+"""A scene pays only for what it uses: no program, switch, pass, buffer or module that nobody asked for.
+
+Each feature alone is drawn in a process of its own by ``scenes.py``, and what is seen there between the program and
+OpenGL, and among the imported modules, must be what ``expected.py`` names: no more and no less.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from pvfiblets.engine.shaders import FEATURES
+
+from .expected import CHANGED, COMPANIONS, KINDS, PLAIN, expected
+from .scenes import SCENES, prepare
+
+SCRIPT = Path(__file__).with_name("scenes.py")
+
+pytestmark = [
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot"),
+    pytest.mark.slow,
+    pytest.mark.timeout(1200),  # the first test waits for all scenes
+]
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory, _headless):
+    """What every scene is made of, by name."""
+    renderer = _headless._context.info["GL_RENDERER"]
+    if "llvmpipe" not in renderer:
+        pytest.skip(f"what a picture is made of depends on the OpenGL; expected.py has llvmpipe's, this is {renderer}")
+    folder = tmp_path_factory.mktemp("left-out")
+    prepare(folder)
+    names = list(SCENES)
+
+    def run(chosen: list[str]) -> list[str]:
+        done = subprocess.run(
+            [sys.executable, str(SCRIPT), str(folder), *chosen], capture_output=True, text=True, check=True
+        )
+        return done.stdout.splitlines()
+
+    with ThreadPoolExecutor(2) as threads:
+        lines = [line for part in threads.map(run, (names[::2], names[1::2])) for line in part]
+    return {found["name"]: found for found in map(json.loads, lines)}
+
+
+def of_kind(found: dict, kind: str) -> set[str]:
+    """Return what was seen of one kind."""
+    if kind == "resolve":
+        return set(found["told"]) - set(FEATURES)
+    names = set(found[kind])
+    if kind == "packages":
+        return {name for name in names - COMPANIONS if not name.startswith("_cython")}
+    if kind == "modules":
+        return {name.removeprefix("pvfiblets.") for name in names}
+    return names
+
+
+def test_every_scene_is_expected():
+    assert set(SCENES) == set(PLAIN) | set(CHANGED)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_nothing_unasked_is_there(seen, name):
+    found = seen[name]
+    assert "error" not in found, found["error"]
+    for kind in KINDS:
+        there, wanted = of_kind(found, kind), expected(name, kind)
+        assert there == wanted, f"{kind}: unasked {sorted(there - wanted)}, missing {sorted(wanted - there)}"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_all_memory_is_told_kept_and_given_back(seen, name):
+    """The bytes of ``explain()`` are those of OpenGL; a frame makes nothing anew; a closed plotter leaves nothing."""
+    found = seen[name]
+    assert sum(found["buffers"].values()) + found["selection"] == found["nbytes"] > 0
+    assert found["made"] == 0
+    assert found["left"] == 0
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_switches_that_are_told_were_on_or_are_of_a_class_that_may_be_empty(seen, name):
+    """``explain()`` names no switch of a feature that nobody asked for."""
+    told = set(seen[name]["told"]) & set(FEATURES)
+    # Whether a class of fiblets is drawn by programs of its own is the pipeline's choice.
+    assert told - {"CLIPPING", "CLIPPING_DEPTH"} <= set(seen[name]["features"])
