@@ -201,11 +201,15 @@ class WindowContext:
 
         And moderngl's: it binds, whenever it has made a framebuffer, the one that it remembers, and what was bound
         when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
+
+        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: who
+        asks next, such as after making a buffer, would take it for his own.
         """
         state = self.window.GetState()
         state.Reset()
         state.Push()
         if self.ctx is not None:
+            self.ctx.clear_errors()
             self.ctx.fbo = self.ctx.screen
             self.ctx.mglo.fbo = self.ctx.screen.mglo
         try:

@@ -1,0 +1,325 @@
+"""Thousands of frames of whatever a plotter offers, at random: no error of OpenGL, and nothing that grows.
+
+    python benchmarks/soak.py [--frames 2000] [--round 100] [--seed 0] [--size 120] [--output DIR]
+
+Every round opens a plotter, does one to three random acts before each frame (``soak_acts.py``: adding, removing,
+styles, cuts, filters, selections, picking, widgets, VTK's passes, picture effects, resizing, second windows), and ends
+by removing everything. Then OpenGL is asked what is still there, by the names of its objects and their bytes, and once
+the windows are closed the process is asked for its memory. What is left must be what was there before, and the memory
+after the first rounds must not rise. An error is told with the acts that led to it; the same seed repeats them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import gc
+import json
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+import volume_memory
+from soak_acts import WEIGHTS, Data
+
+from pvfiblets.engine.loader import loader
+from pvfiblets.mappers import windows
+from pvfiblets.report.machine import about
+
+MOST_ACTORS = 4
+TOLD = 40
+"""Acts told of those that led to an error."""
+
+KINDS = ("Texture", "Buffer", "Framebuffer", "Renderbuffer", "VertexArray", "Query", "Sampler", "Program")
+
+
+class SoakError(AssertionError):
+    """What went wrong, and after which acts."""
+
+
+class Window:
+    """A plotter, and what was added to it."""
+
+    def __init__(self, size: int, shape: tuple[int, int]) -> None:
+        self.plotter = pv.Plotter(off_screen=True, window_size=(size, size), shape=shape)
+        self.actors: list[tuple[str, Any]] = []
+        self.drawn = False
+
+    def of(self, *kinds: str) -> list[Any]:
+        """Return the actors that these methods of the plotter have added."""
+        return [actor for kind, actor in self.actors if kind in kinds]
+
+    def clear(self) -> None:
+        """Remove everything that can be."""
+        self.plotter.fiblets.clear_widgets()
+        self.plotter.clear()
+        self.actors.clear()
+
+    def draw(self) -> str:
+        """Draw a frame, and return what OpenGL says of it."""
+        if not self.drawn:
+            self.plotter.show(auto_close=False, interactive=False)
+            self.drawn = True
+        self.plotter.render()
+        self.plotter.render_window.MakeCurrent()
+        return error_of_current()
+
+    def close(self) -> None:
+        """Close the window."""
+        self.plotter.close()
+        self.actors.clear()
+
+
+class Soak:
+    """A random walk over scenes.
+
+    Parameters
+    ----------
+    seed : int
+        The same seed makes the same walk.
+    size : int
+        Largest side of windows, pixels.
+
+    Attributes
+    ----------
+    windows : list of Window
+        One or two.
+    told : list of str
+        What was done, frame by frame.
+    acts : collections.Counter
+        How often each act was.
+    refused : collections.Counter
+        What was said by acts that do not go with what there is, such as a number of layers too many: the scene must
+        go on as it was.
+    """
+
+    def __init__(self, seed: int, size: int) -> None:
+        self.seed, self.size = seed, size
+        self.data = Data(seed)
+        self.windows: list[Window] = []
+        self.told: list[str] = []
+        self.acts: Counter[str] = Counter()
+        self.refused: Counter[str] = Counter()
+        self.frames = 0
+        self._rng = np.random.default_rng(seed)
+        self._kinds = list(WEIGHTS)
+        weights = np.array(list(WEIGHTS.values()), float)
+        self._shares = weights / weights.sum()
+
+    def open(self, shape: tuple[int, int] = (1, 1)) -> Window:
+        """Open another window."""
+        self.windows.append(Window(self.size, shape))
+        return self.windows[-1]
+
+    def window(self, rng: np.random.Generator) -> Window:
+        """Return one of the windows."""
+        window = self.windows[int(rng.integers(0, len(self.windows)))]
+        n, m = window.plotter.shape if len(window.plotter.renderers) > 1 else (1, 1)
+        window.plotter.subplot(int(rng.integers(0, n)), int(rng.integers(0, m)))
+        return window
+
+    def add(self, method: str, *what: Any, **how: Any) -> str | None:
+        """Add something to a window that has room for it."""
+        window = self.window(self._rng)
+        if len(window.actors) >= MOST_ACTORS:
+            return None
+        window.actors.append((method, getattr(window.plotter, method)(*what, **how)))
+        shown = {name: value for name, value in how.items() if not isinstance(value, np.ndarray)}
+        return f"{method} {shown}"
+
+    def frame(self) -> None:
+        """Do one to three acts, and draw all windows.
+
+        Raises
+        ------
+        SoakError
+            If anything but a refusal is raised, or OpenGL tells of an error.
+        """
+        self.frames += 1
+        for _ in range(int(self._rng.integers(1, 4))):
+            act = self._kinds[int(self._rng.choice(len(self._kinds), p=self._shares))]
+            self._watched(act.__name__, lambda act=act: act(self, self._rng))
+        self._draw()
+
+    def _draw(self) -> None:
+        for i, window in enumerate(self.windows):
+            said = self._watched(f"draw window {i}", window.draw)
+            if said != "GL_NO_ERROR":
+                raise self._failed(f"OpenGL says {said} in window {i}")
+
+    def _watched(self, name: str, act: Any) -> Any:
+        try:
+            done = act()
+        except (ValueError, KeyError) as error:
+            if name.startswith("draw"):
+                raise self._failed(f"{type(error).__name__}: {error}") from error
+            self.refused[f"{name}: {error}"] += 1
+            done = f"{name}, refused: {error}"
+        except Exception as error:
+            self.told.append(f"{self.frames}: {name} failed")
+            raise self._failed(f"{type(error).__name__}: {error}") from error
+        if not name.startswith("draw") and done is not None:
+            self.told.append(f"{self.frames}: {done}")
+            self.acts[name] += 1
+        return done
+
+    def _failed(self, what: str) -> SoakError:
+        acts = "\n  ".join(self.told[-TOLD:])
+        return SoakError(f"frame {self.frames} of seed {self.seed}: {what}; after\n  {acts}")
+
+    def round(self, frames: int) -> dict[str, Any]:
+        """Draw frames in a new plotter, take all away, and return what is left.
+
+        Returns
+        -------
+        dict
+            ``before`` and ``after``: objects of OpenGL by kind, and bytes, of the empty window; ``contexts``: how many
+            mappers still keep something in a window; ``actors``: of ours that are still alive; ``resident_mb``: of the
+            process, all windows closed.
+        """
+        first = self.open()
+        self._draw()
+        before = held()
+        start = len(self.told)
+        for _ in range(frames):
+            self.frame()
+        self.told.append(f"{self.frames}: the end of a round")
+        while len(self.windows) > 1:
+            self.windows.pop().close()
+        first.clear()
+        undo(first.plotter, self.size)
+        self._draw()
+        gc.collect()
+        self._draw()
+        after = held()
+        contexts = sum(len(context.slots) for context in windows._contexts.values())  # noqa: SLF001
+        self.windows.pop().close()
+        del first
+        gc.collect()
+        return {
+            "frames": self.frames, "size": self.size, "acts": len(self.told) - start, "before": before, "after": after,
+            "contexts": contexts, "actors": alive(), "resident_mb": resident(), "objects": len(gc.get_objects()),
+        }  # fmt: skip
+
+
+def undo(plotter: Any, size: int) -> None:
+    """Take back what acts did to the window itself."""
+    plotter.subplot(0, 0)
+    plotter.picture.reset()
+    for name in ("disable_ssao", "disable_depth_peeling", "disable_eye_dome_lighting", "disable_anti_aliasing"):
+        getattr(plotter, name)()
+    plotter.window_size = (size, size)
+
+
+def error_of_current() -> str:
+    """Return the name of the current context's error, and clear it."""
+    code = int(ctypes.CFUNCTYPE(ctypes.c_uint)(loader()("glGetError"))())
+    names = {0x0500: "GL_INVALID_ENUM", 0x0501: "GL_INVALID_VALUE", 0x0502: "GL_INVALID_OPERATION",
+             0x0505: "GL_OUT_OF_MEMORY", 0x0506: "GL_INVALID_FRAMEBUFFER_OPERATION"}  # fmt: skip
+    return names.get(code, hex(code)) if code else "GL_NO_ERROR"
+
+
+def held() -> dict[str, int]:
+    """Return how many objects of each kind the current context has, and the bytes of them."""
+    address_of = loader()
+    found = {}
+    for kind in KINDS:
+        is_one = ctypes.CFUNCTYPE(ctypes.c_ubyte, ctypes.c_uint)(address_of(f"glIs{kind}"))
+        found[kind] = sum(bool(is_one(name)) for name in range(1, volume_memory.MOST_NAMES))
+    found["bytes"] = volume_memory.held() or 0
+    error_of_current()  # it asks textures for levels that they lack
+    return found
+
+
+def alive() -> int:
+    """Return how many actors and mappers of ours there are."""
+    return sum(
+        str(type(thing).__module__).startswith(("pvfiblets.plotting", "pvfiblets.mappers"))
+        and type(thing).__name__.endswith(("Actor", "Mapper"))
+        for thing in gc.get_objects()
+    )
+
+
+def resident() -> float:
+    """Return the process's resident memory, MB, after giving back to the system what can be."""
+    if not sys.platform.startswith("linux"):
+        return 0.0
+    ctypes.CDLL(None).malloc_trim(0)
+    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text(encoding="utf-8").splitlines())
+    return int(status["VmRSS"].split()[0]) / 1024
+
+
+def slope(rounds: list[dict[str, Any]]) -> float:
+    """Return kB of resident memory for each further frame, the first quarter of the rounds left out."""
+    rest = rounds[len(rounds) // 4 :]
+    if len(rest) < 2:
+        return 0.0
+    frames, memory = ([row[key] for row in rest] for key in ("frames", "resident_mb"))
+    return float(np.polyfit(frames, memory, 1)[0]) * 1024.0
+
+
+def walk(frames: int, per_round: int, seed: int, size: int, show: Any = None) -> tuple[Soak, list[dict[str, Any]]]:
+    """Draw so many frames in rounds; return the walk, and what was left after each round."""
+    soak = Soak(seed, size)
+    rounds = []
+    while soak.frames < frames:
+        begin = time.perf_counter(), time.process_time()
+        rounds.append(soak.round(min(per_round, frames - soak.frames)))
+        rounds[-1]["seconds"] = time.perf_counter() - begin[0]
+        rounds[-1]["cpu_seconds"] = time.process_time() - begin[1]
+        if show is not None:
+            show(rounds[-1])
+    return soak, rounds
+
+
+def told(soak: Soak, rounds: list[dict[str, Any]]) -> str:
+    """Return the table of a page."""
+    keys = [kind for kind in KINDS if kind != "Program"]
+    lines = [
+        f"{soak.frames} frames, {sum(row['acts'] for row in rounds)} acts of {len(soak.acts)} kinds, seed {soak.seed}; "
+        f"{slope(rounds):+.1f} kB of resident memory for each frame after the first quarter.",
+        "",
+        *(f"- refused {n} times: {what}" for what, n in soak.refused.most_common()),
+        "",
+        "| frames | objects of OpenGL before, after | GPU bytes before, after | actors left | resident MB | seconds |",
+        "|---|---|---|---|---|---|",
+    ]
+    lines += [
+        f"| {row['frames']} | {sum(row['before'][k] for k in keys)}, {sum(row['after'][k] for k in keys)} "
+        f"| {row['before']['bytes']:,}, {row['after']['bytes']:,} | {row['actors']} | {row['resident_mb']:.0f} "
+        f"| {row['seconds']:.0f} |"
+        for row in rounds
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Run the soak and write what it found."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--frames", type=int, default=2000)
+    parser.add_argument("--round", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--size", type=int, default=120)
+    parser.add_argument("--output", type=Path, help="a folder for soak.json and soak.md")
+    options = parser.parse_args()
+
+    def show(row: dict[str, Any]) -> None:
+        print(json.dumps(row), flush=True)
+
+    soak, rounds = walk(options.frames, options.round, options.seed, options.size, show)
+    page = told(soak, rounds)
+    print(page)
+    if options.output is not None:
+        options.output.mkdir(parents=True, exist_ok=True)
+        (options.output / "soak.md").write_text(page, encoding="utf-8")
+        content = {"machine": about(options.seed, quick=False), "acts": dict(soak.acts)}
+        content |= {"refused": dict(soak.refused), "rounds": rounds}
+        (options.output / "soak.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
