@@ -44,6 +44,10 @@ triangulated = pv.Sphere(radius=12).triangulate()
 points, triangles = np.asarray(triangulated.points), triangulated.regular_faces
 ids = [1, 2, 3]
 """,
+    "docs/index.md": BRAIN + """
+pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
+""",
+    "docs/effects.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",
     "docs/volumes.md": "",
@@ -55,6 +59,12 @@ pvfiblets.compress_file("big.tck", "brain.fiblets")
 image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
 """,
 }  # fmt: skip
+# Pages whose commands are no program of this kind, and what runs them.
+RUN_ELSEWHERE = {
+    "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",
+    "docs/reference/fiblets-files.md": "test_fiblets_files.py runs the reader that it prints",
+    "CONTRIBUTING.md": "make and pytest themselves, which continuous integration runs",
+}
 # A smaller brain, and windows that stay open for what a page says after it has shown them.
 INSTEAD = {
     "brain_streamlines(20_000, seed=1, fa=True)": "brain_streamlines(400, seed=1, fa=True)",
@@ -65,6 +75,15 @@ INSTEAD = {
 def blocks(page: Path) -> list[tuple[str, str]]:
     """Return (language, text) of each block of a page that is to be run."""
     return re.findall(r"^```(python|console|sh)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def pages_with_blocks() -> set[str]:
+    """Return the pages, of the repository's front and of the docs, that have something to be run."""
+    found = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    found += [
+        page for room in ("explanation", "reference", "benchmarks") for page in (ROOT / "docs" / room).rglob("*.md")
+    ]
+    return {page.relative_to(ROOT).as_posix() for page in found if blocks(page)}
 
 
 def program(page: str) -> str:

@@ -38,3 +38,7 @@ def test_a_page_runs(page, tmp_path):
     assert done.returncode == 0, done.stderr
     named = set(re.findall(r'screenshot\("([^"]+)"', pages.program(page)))
     assert named <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_every_page_with_something_to_run_is_run():
+    assert pages.pages_with_blocks() == {*pages.GIVEN, *pages.RUN_ELSEWHERE}
