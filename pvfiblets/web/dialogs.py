@@ -30,6 +30,9 @@ POINTER = (
 )
 
 
+LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choose: labels that look like buttons
+
+
 def build(app: Any) -> None:
     """Build all of them."""
     _files(app)
@@ -74,7 +77,7 @@ def _files(app: Any) -> None:
                 v3.VIcon("mdi-arrow-up")
             html.Span("/{{ folder }}", classes="pv-value", style="flex: 1")
             with html.Label(v_if="upload_limit > 0", classes="v-btn v-btn--density-default v-btn--size-small "
-                            "v-btn--variant-tonal px-3 text-none", style="cursor: pointer"):  # fmt: skip
+                            "v-btn--variant-tonal px-3 text-none", style=LABEL):  # fmt: skip
                 html.Span("Upload…")
                 html.Input(type="file", hidden=True, data_upload=True, data_limit=("upload_limit",))
         with v3.VCardText(classes="pa-0", style="max-height: 60vh"):
@@ -103,7 +106,7 @@ def _sessions(app: Any) -> None:
                     click="utils.download('session.json', trigger('save_session'), 'application/json')",
                 )  # fmt: skip
                 with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4 "
-                                "text-none", style="cursor: pointer"):  # fmt: skip
+                                "text-none", style=LABEL):  # fmt: skip
                     html.Span("Load…")
                     html.Input(type="file", accept=".json,application/json", hidden=True, data_session=True)
             html.Div("Or in the served folder, beside the data; it is opened there like any other file.",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import threading
 import time
 from collections.abc import Callable
@@ -87,7 +88,8 @@ class FileActions(Actions):
             app.say(f"{name} was not opened: cancelled.")
             return
         except EXPECTED as error:
-            raise ValueError(f"{name} was not opened: {sentence(error)}") from error
+            said = sentence(error).replace(f"{app.confined.root}{os.sep}", "")  # where it lies is the server's affair
+            raise ValueError(f"{name} was not opened: {said}") from error
         app.page.chosen = layer.id
         app.refresh()
 
