@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
+from pvfiblets.streamlines import Streamlines
 
 from .samples import rich, tck_bytes
 
@@ -91,3 +94,22 @@ def test_files_that_do_not_fit(tmp_path):
             formats.attach(s, path)
     with pytest.raises(formats.UnknownFormatError, match=r"\.tsf, \.npy"):
         formats.attach(s, "a.dat")
+
+
+@given(st.lists(st.integers(0, 5), max_size=8), st.sampled_from([".tsf", ".npy", ".txt", ".csv"]), st.booleans())
+def test_any_values_come_back(tmp_path_factory, counts, suffix, wide):
+    n = sum(counts)
+    values = np.random.default_rng(n).normal(size=n).astype(np.float64 if wide else np.float32)
+    offsets = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+    s = Streamlines(np.zeros((n, 3), np.float32), offsets, per_point={"v": values})
+    path = tmp_path_factory.mktemp("any") / f"a{suffix}"
+    if suffix == ".tsf":
+        attachments.write_scalars(path, s, "v")
+    elif suffix == ".npy":
+        np.save(path, values)
+    else:
+        np.savetxt(path, values, delimiter=",")
+    where = formats.attach(s, path, "again")
+    # Of as many points as streamlines, values are taken to be the streamlines'.
+    assert where == ("per_streamline" if len(counts) == n and suffix != ".tsf" else "per_point")
+    np.testing.assert_array_equal(getattr(s, where)["again"], values)

@@ -11,6 +11,8 @@ import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pvfiblets.errors import FormatError
 from pvfiblets.plotting.volumes import as_volume
@@ -364,6 +366,25 @@ def test_nrrd_with_absurd_numbers(tmp_path):
         (tmp_path / "a.nhdr").write_text(whole.replace("a.raw", name))
         with pytest.raises(FileNotFoundError, match="its data are in '.*', and there is no file"):
             as_raycast_volume(tmp_path / "a.nhdr")
+
+
+@given(
+    st.tuples(*[st.integers(2, 6)] * 3),
+    st.sampled_from(["u1", "<i2", ">i2", "<u2", ">f4", "<f8"]),
+    st.sampled_from(["raw", "gzip", "bzip2", "ascii"]),
+    st.integers(0, 1000),
+)
+def test_any_volume_is_the_same_from_nrrd_and_metaimage(tmp_path_factory, shape, kind, encoding, seed):
+    rng = np.random.default_rng(seed)
+    values = rng.integers(0, 200, shape).astype(kind)
+    folder = tmp_path_factory.mktemp("any")
+    got, _ = read_nrrd(nrrd(folder / "a.nrrd", values, encoding))
+    np.testing.assert_array_equal(got, values)
+    msb, packed = kind[0] == ">", encoding == "gzip"
+    short = values.astype(">i2" if msb else "<i2")
+    got, affine = read_metaimage(metaimage(folder / "a.mha", values=short, compressed=packed, msb=msb))
+    np.testing.assert_array_equal(got, values)
+    np.testing.assert_allclose(affine, AFFINE, atol=1e-12)
 
 
 # VTK's XML, bare numbers, and all of them together
