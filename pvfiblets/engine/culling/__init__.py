@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...later import names_from
 from ..errors import EngineError
 from .occlusion import Occlusion
 
@@ -13,8 +14,14 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ..opengl import OpenGL
     from ..shaders import Programs
+    from .coverage import CoverageBuffer
+    from .pyramid import DepthPyramid
 
-__all__ = ["Occlusion", "make_occlusion"]
+__all__ = ["CoverageBuffer", "DepthPyramid", "Occlusion", "make_occlusion"]
+
+_HOME = {"CoverageBuffer": "coverage", "DepthPyramid": "pyramid"}
+
+__getattr__, __dir__ = names_from(__name__, _HOME)
 
 
 def make_occlusion(
