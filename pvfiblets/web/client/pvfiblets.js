@@ -157,19 +157,24 @@
     if (slid) requestAnimationFrame(() => slid && follow(slid));
   };
 
-  // The value that it is left at comes from Vuetify, after this event.
-  const letGo = () => {
+  // Of a pointer, the value that it is left at comes from Vuetify, after this event; of keys, it is sent from here.
+  const letGo = (byKey) => {
     if (!slid) return;
+    const { slider, text } = slid;
     slid = null;
-    setTimeout(() => call("release"), 0);
+    setTimeout(() => {
+      const value = thumbs(slider);
+      if (byKey && JSON.stringify(value) !== text) call("slide", ...JSON.parse(slider.dataset.live), value);
+      call("release");
+    }, 0);
   };
 
   document.addEventListener("pointerdown", hold, true);
   window.addEventListener("pointermove", () => slid && requestAnimationFrame(() => slid && follow(slid)), true);
-  window.addEventListener("pointerup", letGo, true);
-  window.addEventListener("pointercancel", letGo, true);
+  window.addEventListener("pointerup", () => letGo(false), true);
+  window.addEventListener("pointercancel", () => letGo(false), true);
   document.addEventListener("keydown", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && hold(event), true);
-  document.addEventListener("keyup", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && letGo(), true);
+  document.addEventListener("keyup", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && letGo(true), true);
 
   // Files ------------------------------------------------------------------------------------------
 
