@@ -15,7 +15,17 @@ from .case import Case
 
 __all__ = ["MODULES", "all_cases"]
 
-MODULES = ("codec_cases", "camera_cases", "volume_cases")
+MODULES = (
+    "codec_cases",
+    "decode_cases",
+    "capsule_cases",
+    "camera_cases",
+    "spline_cases",
+    "halo_cases",
+    "volume_cases",
+    "picking_cases",
+    "format_cases",
+)
 
 
 def all_cases() -> list[Case]:
