@@ -1,4 +1,4 @@
-# One command each: `make demo`, `make serve`, `make test`, `make lint`, `make fuzz`, `make bench`.
+# One command each: `make demo`, `make serve`, `make test`, `make lint`, `make fuzz`, `make soak`, `make bench`.
 # A new machine needs only make and Python >= 3.11 with its venv module.
 
 PYTHON ?= python3
@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 
-.PHONY: demo serve test lint fuzz bench docs check-wheel wheel environment gl shaders browser display clean
+.PHONY: demo serve test lint fuzz soak bench docs check-wheel wheel environment gl shaders browser display clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -27,8 +27,10 @@ lint: environment
 
 fuzz: environment
 	$(BIN)/python -m pytest -m hypothesis --hypothesis-profile=fuzz --timeout=3600
-	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/formats/test_fuzz.py --timeout=3600
-	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/codec/test_storage.py -k mutated --timeout=3600
+	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/formats/test_fuzz.py tests/web/test_session_damage.py --timeout=14400
+
+soak: environment gl
+	$(BIN)/python benchmarks/soak.py --frames 2000 --output $(DEMO)
 
 bench: environment gl
 	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json

@@ -21,6 +21,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import moderngl
 import numpy as np
 import pyvista as pv
 import volume_memory
@@ -31,6 +32,10 @@ from pvfiblets.mappers import windows
 from pvfiblets.report.machine import about
 
 MOST_ACTORS = 4
+OURS = (moderngl.Buffer, moderngl.ComputeShader, moderngl.Framebuffer, moderngl.Program, moderngl.Query,
+        moderngl.Renderbuffer, moderngl.Sampler, moderngl.Texture, moderngl.Texture3D, moderngl.TextureArray,
+        moderngl.VertexArray)  # fmt: skip
+
 TOLD = 40
 """Acts told of those that led to an error."""
 
@@ -177,9 +182,9 @@ class Soak:
         Returns
         -------
         dict
-            ``before`` and ``after``: objects of OpenGL by kind, and bytes, of the empty window; ``contexts``: how many
-            mappers still keep something in a window; ``actors``: of ours that are still alive; ``resident_mb``: of the
-            process, all windows closed.
+            ``before`` and ``after``: objects of OpenGL by kind, and bytes, of the empty window, VTK's own among them;
+            ``ours``: those of the engine; ``contexts``: how many mappers still keep something in a window; ``actors``:
+            of ours that are still alive; ``resident_mb``: of the process, all windows closed.
         """
         first = self.open()
         self._draw()
@@ -195,13 +200,14 @@ class Soak:
         self._draw()
         gc.collect()
         self._draw()
-        after = held()
+        after, ours = held(), unreleased()
         contexts = sum(len(context.slots) for context in windows._contexts.values())  # noqa: SLF001
         self.windows.pop().close()
         del first
         gc.collect()
         return {
-            "frames": self.frames, "size": self.size, "acts": len(self.told) - start, "before": before, "after": after,
+            "frames": self.frames, "size": self.size, "acts": len(self.told) - start,
+            "before": before, "after": after, "ours": sum(ours.values()),
             "contexts": contexts, "actors": alive(), "resident_mb": resident(), "objects": len(gc.get_objects()),
         }  # fmt: skip
 
@@ -242,6 +248,16 @@ def alive() -> int:
         and type(thing).__name__.endswith(("Actor", "Mapper"))
         for thing in gc.get_objects()
     )
+
+
+def unreleased() -> dict[str, int]:
+    """Return how many of the engine's objects of OpenGL were not given back, by kind, in all windows."""
+    found: Counter[str] = Counter()
+    for thing in gc.get_objects():
+        name = type(thing).__name__
+        if type(thing) in OURS and type(thing.mglo) is not moderngl.InvalidObject:
+            found[name] += not (name == "Framebuffer" and thing.glo == 0)
+    return dict(found)
 
 
 def resident() -> float:
@@ -285,13 +301,14 @@ def told(soak: Soak, rounds: list[dict[str, Any]]) -> str:
         "",
         *(f"- refused {n} times: {what}" for what, n in soak.refused.most_common()),
         "",
-        "| frames | objects of OpenGL before, after | GPU bytes before, after | actors left | resident MB | seconds |",
-        "|---|---|---|---|---|---|",
+        "| frames | objects of OpenGL before, after | of these the engine's | GPU bytes before, after | actors left "
+        "| resident MB | seconds |",
+        "|---|---|---|---|---|---|---|",
     ]
     lines += [
         f"| {row['frames']} | {sum(row['before'][k] for k in keys)}, {sum(row['after'][k] for k in keys)} "
-        f"| {row['before']['bytes']:,}, {row['after']['bytes']:,} | {row['actors']} | {row['resident_mb']:.0f} "
-        f"| {row['seconds']:.0f} |"
+        f"| {row['ours']} | {row['before']['bytes']:,}, {row['after']['bytes']:,} | {row['actors']} "
+        f"| {row['resident_mb']:.0f} | {row['seconds']:.0f} |"
         for row in rounds
     ]
     return "\n".join(lines) + "\n"
