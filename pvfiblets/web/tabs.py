@@ -167,7 +167,7 @@ def _filter(app: Any) -> None:
 
 def _regions(app: Any) -> None:
     html.Div("Regions", classes="pv-head")
-    with html.Div(classes="pv-pair px-3 pb-1"):
+    with html.Div(classes="pv-pair px-3 pb-1", style="flex-wrap: wrap"):
         v3.VBtn("Sphere", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
                 click=(app.filtering.add_region, "['sphere']"), data_region="sphere")  # fmt: skip
         v3.VBtn("Box", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
