@@ -23,7 +23,7 @@ FLAGS = (
     "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
     "--disable-quic", "--no-first-run",
 )  # fmt: skip
-PATIENCE = 60_000  # ms: machines that run tests are busy
+PATIENCE = 120_000  # ms: machines that run tests are busy
 
 
 def chromium() -> str | None:
@@ -122,11 +122,12 @@ class Visit:
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")).astype(np.int16)
 
     def rests(self):
-        """Wait until no picture has come for a while, and return the last."""
+        """Wait until no picture has come for a while, in which three could have been drawn, and return the last."""
         count = -1
         while len(self.received) != count:
             count = len(self.received)
-            self.page.wait_for_timeout(1000)
+            found = re.match(r"\d+", self.state("frame") or "")
+            self.page.wait_for_timeout(max(1000, 3 * int(found.group()) if found else 0))
         return self.picture()
 
     def changed(self, before, what="another picture", least=0.05):
@@ -147,11 +148,16 @@ class Visit:
 
     def drag(self, start=(0.4, 0.5), end=(0.65, 0.6), *, steps=12):
         """Drag over the view, from and to shares of it."""
+        self.trace((start, end), steps=steps)
+
+    def trace(self, places, *, steps=4):
+        """Draw a line over the view through places, shares of it."""
         box = self.page.locator("#pv-view").bounding_box()
-        at = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)]
+        at = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
         self.page.mouse.move(*at[0])
         self.page.mouse.down()
-        self.page.mouse.move(*at[1], steps=steps)
+        for place in at[1:]:
+            self.page.mouse.move(*place, steps=steps)
         self.page.mouse.up()
 
     def choose(self, name, title):

@@ -1,0 +1,211 @@
+"""What a page's tools, keys and dialogs do, in a real browser."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+
+
+def from_above(here):
+    """Look down: each of the topmost lines, 50 to 59, hides what is below it; y goes up and x to the right."""
+    here.press("1")
+    here.wait(lambda: here.state("edges").get("top") == "A", "the view from above")
+    if not here.state("parallel"):
+        here.press("5")
+        here.wait(lambda: here.state("parallel"), "parallel lines of sight")
+    here.rests()
+
+
+def picked(here, count):
+    """Wait until so many are selected, and return the numbers in the table."""
+    here.wait(lambda: here.state("selection")["count"] == count, f"{count} selected streamlines")
+    here.wait(lambda: here.page.locator("#picked tbody tr").count() == count, "a row for each")
+    return {int(text) for text in here.page.locator("#picked tbody tr td:first-child").all_inner_texts()}
+
+
+def test_lassos_and_boxes_take_what_lies_in_them(visit):
+    here = visit("lines.fiblets")
+    from_above(here)
+    front, back = set(range(55, 60)), set(range(50, 55))  # the picture's middle is at y = 18 mm
+    here.press("l")
+    here.page.wait_for_selector("#pv-over[data-tool=lasso]")
+    here.trace([(0.98, 0.02), (0.98, 0.5), (0.5, 0.5), (0.02, 0.5), (0.2, 0.02)])  # the tools are in one corner
+    assert picked(here, 5) == front
+    here.press("b")
+    here.page.wait_for_selector("#pv-over[data-tool=box]")
+    here.page.keyboard.down("Shift")
+    here.trace([(0.98, 0.98), (0.5, 0.5)])
+    here.page.keyboard.up("Shift")
+    assert picked(here, 10) == front | back
+    here.trace([(0.02, 0.98), (0.5, 0.5)])
+    assert picked(here, 5) == back
+    here.page.click("#tab-selection button:has-text('As a layer')")
+    here.wait(lambda: here.layers() == 2, "a layer of what was selected")
+    assert here.state("layers")[1]["kind"] == "selection"
+    here.press("Escape")
+    here.page.click("#tab-selection button:has-text('Clear')")
+    here.wait(lambda: here.state("selection")["count"] == 0, "nothing selected")
+
+
+def test_a_distance_is_measured_in_millimetres(visit):
+    here = visit("lines.fiblets")
+    from_above(here)
+    here.page.fill("[data-property=line_width] input.pv-num", "6")
+    here.press("Tab")
+    here.wait(lambda: here.state("undo_label"), "wide lines")
+    lit = here.rests().max(axis=2) > 60
+    # From above, lines 50 to 59 are nearest; the longest spans 69 mm from left to right.
+    rows = np.flatnonzero(lit.any(axis=1))
+    extents = {row: np.flatnonzero(lit[row])[[0, -1]] for row in rows}
+    row = max(rows, key=lambda found: np.ptp(extents[found]))
+    first, last = extents[row]
+    per_mm = (last - first) / 69.0
+    row = int(np.median([other for other in rows if np.array_equal(extents[other], extents[row])]))
+    here.press("m")
+    here.page.wait_for_selector("#pv-over[data-tool=measure]")
+    height, width = lit.shape
+    here.drag(((first + 10 * per_mm) / width, row / height), ((first + 50 * per_mm) / width, row / height))
+    here.wait(lambda: here.state("measured"), "a distance")
+    assert "mm" in here.page.inner_text(".pv-status")
+    assert abs(float(here.state("measured").split()[0]) - 40.0) < 1.0
+
+
+def test_keys_are_listed_and_do_what_the_list_says(visit):
+    here = visit("lines.fiblets")
+    before = here.rests()
+    here.press("?")
+    listed = here.page.locator("#dialog-help").inner_text()
+    assert all(word in listed for word in ("undo, redo", "pick, box, lasso", "light or dark", "pinch"))
+    here.press("Escape")
+    here.wait(lambda: not here.page.locator("#dialog-help").is_visible(), "the list to close")
+    theme = here.page.locator(".v-application").first.get_attribute("class")
+    here.press("t")
+    here.wait(
+        lambda: here.page.locator(".v-application").first.get_attribute("class") != theme, "light instead of dark"
+    )
+    shades = here.page.evaluate(
+        "['background-color', 'color'].map(name => getComputedStyle(document.querySelector('#left'))"
+        ".getPropertyValue(name).match(/[0-9.]+/g).slice(0, 3).reduce((a, b) => a + Number(b), 0) / 3)"
+    )
+    assert shades[0] > 200
+    assert shades[1] < 80
+    here.press("[")
+    here.press("]")
+    here.wait(lambda: here.page.locator("#pv-view").bounding_box()["width"] == 1280, "the picture alone")
+    here.wait(lambda: here.picture().shape[1] == 1280, "a picture of that width")
+    here.press("[")
+    here.press("]")
+    here.wait(lambda: here.picture().shape == before.shape, "the panels again")
+    here.press("v")
+    here.wait(lambda: here.state("layers")[0]["visible"] is False, "a hidden layer")
+    here.press("Control+z")
+    here.wait(lambda: here.state("layers")[0]["visible"] is True, "the layer again")
+    here.press("Control+y")
+    here.wait(lambda: here.state("layers")[0]["visible"] is False, "the layer hidden again")
+    here.press("Control+Shift+z")  # there is nothing more to do again
+    here.press("Control+z")
+    here.wait(lambda: here.state("layers")[0]["visible"] is True, "the layer again")
+    assert np.abs(here.rests() - before).mean() < 0.5
+    with here.page.expect_download() as download:
+        here.press("c")
+    assert download.value.path().read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_script_of_a_page_makes_its_picture(visit):
+    from PIL import Image
+
+    here = visit("lines.fiblets")
+    before = here.rests()
+    here.choose("scalars", "length")
+    coloured = here.changed(before)
+    here.page.click("[data-cut=plane]")
+    here.changed(coloured)
+    here.press("2")
+    picture = here.rests()
+    here.page.click("[data-action=script]")
+    text = here.page.locator("#script").inner_text()
+    with here.page.expect_download() as download:
+        here.page.click("#dialog-script button:has-text('Download')")
+    assert download.value.path().read_text().split() == text.split()
+    script = here.served.root / "scene.py"
+    script.write_text(
+        re.sub(r"plotter\.show\(\)", 'plotter.screenshot("again.png")', download.value.path().read_text())
+    )
+    subprocess.run(
+        [sys.executable, script.name],
+        cwd=here.served.root,
+        env=os.environ | {"PYVISTA_OFF_SCREEN": "true"},
+        check=True,
+        timeout=300,
+    )
+    again = np.asarray(Image.open(here.served.root / "again.png").convert("RGB")).astype(np.int16)
+    assert again.shape == picture.shape
+    assert np.abs(again - picture).mean() < 0.5
+    script.unlink()
+
+
+def test_groups_shares_and_regions_choose_streamlines(visit):
+    here = visit("lines.fiblets")
+    counted = here.page.locator("[data-value=counted]")
+
+    def left(count):
+        here.wait(lambda: counted.inner_text() == f"{count} of 60 streamlines", f"{count} streamlines")
+
+    here.tab("filter")
+    left(60)
+    here.page.click("#tab-filter .v-select:has-text('all'), #tab-filter .v-select--chips .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('near')")
+    left(30)
+    here.press("Escape")
+    here.page.click("#tab-filter button:has-text('Show all')")
+    left(60)
+    # A sphere in the middle of everything: those that pass, and those that do not, are all of them.
+    here.page.click("[data-region=sphere]")
+    here.wait(lambda: counted.inner_text() != "60 of 60 streamlines", "fewer streamlines")
+    passing = int(counted.inner_text().split()[0])
+    assert 0 < passing < 60
+    negate = here.page.locator("[data-region-row] button:has-text('not')")
+    negate.first.click()
+    left(60 - passing)
+    # The same sphere twice, once with not: all of both is none, any of them is all.
+    here.page.click("[data-region=sphere]")
+    left(0)
+    here.page.click("#tab-filter .v-btn-toggle button:has-text('any')")
+    left(60)
+    here.press("Control+z")
+    left(0)
+    here.page.click("#tab-filter button:has-text('Show all')")
+    left(60)
+
+
+def test_volumes_and_meshes_are_layers_beside_lines(visit):
+    here = visit("lines.fiblets", "--volume", "head.nii.gz", "--mesh", "ball.ply")
+    here.wait(lambda: here.layers() == 3, "three layers")
+    assert {layer["kind"] for layer in here.state("layers")} == {"tractogram", "volume", "mesh"}
+    here.press("2")
+    both = here.rests()
+
+    def select(kind):
+        found = next(layer["id"] for layer in here.state("layers") if layer["kind"] == kind)
+        here.page.click(f"[data-layer={found}] .v-list-item-title")
+        here.wait(lambda: here.state("chosen") == found, f"the {kind} to be chosen")
+        return found
+
+    select("volume")
+    here.choose("mode", here.page.locator("[data-property=mode]").inner_text() and "maximum")
+    other = here.changed(both)
+    select("mesh")
+    colour = here.page.locator("[data-property=color] input[type=color]")
+    colour.fill("#00ff00")
+    colour.dispatch_event("change")
+    green = here.changed(other)
+    assert ((green[..., 1] - green[..., 0] > 60) & (green[..., 1] - green[..., 2] > 60)).sum() > 50
+    here.press("Delete")
+    here.wait(lambda: here.layers() == 2, "two layers")
+    here.tab("info")
+    here.page.click("[data-layer] .v-list-item-title >> nth=0")
+    assert here.page.locator("[data-info]").count() > 5
