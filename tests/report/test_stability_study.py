@@ -11,7 +11,7 @@ from pvfiblets.report.page import page
 from pvfiblets.report.record import FORMAT, Report, StudyResult
 from pvfiblets.report.run import one_study
 from pvfiblets.report.stability import study
-from pvfiblets.report.stability.case import Cases, Outcome, Setting, refused, worst
+from pvfiblets.report.stability.case import Case, Cases, Outcome, Setting, refused, worst
 from pvfiblets.report.study import Budget, Options, Unavailable
 
 from .test_pages import ABOUT
@@ -27,15 +27,16 @@ def some_cases():
     return cases
 
 
+def no_context(options):
+    raise Unavailable("no OpenGL here")
+
+
 @pytest.fixture
 def result(monkeypatch):
     """The study over the made-up cases, where no context can be made."""
 
-    def none(options):
-        raise Unavailable("no OpenGL here")
-
     monkeypatch.setattr(study, "all_cases", some_cases)
-    monkeypatch.setattr(study, "drawing_context", none)
+    monkeypatch.setattr(study, "drawing_context", no_context)
     return one_study("stability", Options(quick=True, log=lambda line: None))
 
 
@@ -72,10 +73,16 @@ def test_reports_of_before_there_were_cases_are_read(tmp_path):
 
 def test_a_budget_that_is_used_up_is_told(monkeypatch):
     monkeypatch.setattr(study, "all_cases", lambda: list(some_cases())[:2])
-    clock = iter([0.0, 0.0, 0.0, 99.0, 99.0, 99.0, 99.0]).__next__
+    monkeypatch.setattr(study, "drawing_context", no_context)
+    clock = iter([0.0, 0.0, 99.0, 99.0, 99.0, 99.0]).__next__
     result = one_study("stability", Options(budget=Budget(10.0, clock), log=lambda line: None))
-    assert len(result.cases) == 1
-    assert [item.what for item in result.left_out if "time" in item.reason] == ["roots: too far"]
+    assert [case.name for case in result.cases] == ["of nothing"]
+    assert [item.what for item in result.left_out if "time" in item.reason] == ["roots: 1 cases"]
+
+
+def test_every_system_has_its_turn_and_long_cases_come_last():
+    some = [Case(system, name, "", "", len, long=name == "long") for system in "ab" for name in ("long", "x", "y")]
+    assert [case.system + case.name for case in study.in_turn(some)] == ["ax", "bx", "ay", "by", "along", "blong"]
 
 
 def test_an_opengl_error_is_no_success(gl):

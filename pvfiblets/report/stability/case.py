@@ -77,6 +77,8 @@ class Case:
         Takes a :class:`Setting`, returns an :class:`Outcome`.
     draws : bool
         Whether it needs an OpenGL context.
+    long : bool
+        Whether it takes seconds: such cases come last where time is short.
     known : str
         Why it does not hold, of a fault that is known and not mended yet; tests fail when it holds after all.
     """
@@ -87,6 +89,7 @@ class Case:
     must: str
     run: Callable[[Setting], Outcome]
     draws: bool = False
+    long: bool = False
     known: str = ""
 
 
@@ -106,13 +109,20 @@ class Cases(list[Case]):
         self._draws = draws
 
     def add(
-        self, name: str, does: str, must: str, *, draws: bool | None = None, known: str = ""
+        self,
+        name: str,
+        does: str,
+        must: str,
+        *,
+        draws: bool | None = None,
+        long: bool = False,
+        known: str = "",
     ) -> Callable[[Callable[[Setting], Outcome]], Callable[[Setting], Outcome]]:
         """Take in the function that is decorated."""
         needs = self._draws if draws is None else draws
 
         def register(run: Callable[[Setting], Outcome]) -> Callable[[Setting], Outcome]:
-            self.append(Case(self.system, name, does, must, run, needs, known))
+            self.append(Case(self.system, name, does, must, run, needs, long, known))
             return run
 
         return register

@@ -47,7 +47,7 @@ def kept(
     return worst(found)
 
 
-@CASES.add("turns from 1e-6 to π", "25 lines of constant step, each with one angle at every point", WITHIN)
+@CASES.add("turns from 1e-6 to π", "25 lines of constant step, each with one angle at every point", WITHIN, long=True)
 def _angles(_: Setting) -> Outcome:
     alone = kept([lines_of(turning(angle)) for angle in ANGLES], ["fast"])
     return worst([alone, kept([lines_of(*map(turning, ANGLES))])])
@@ -126,7 +126,7 @@ def _nothing(_: Setting) -> Outcome:
     return kept(sets)
 
 
-@CASES.add("a million streamlines of 2 points", "random short segments within 200 mm", WITHIN)
+@CASES.add("a million streamlines of 2 points", "random short segments within 200 mm", WITHIN, long=True)
 def _many(_: Setting) -> Outcome:
     rng = np.random.default_rng(6)
     first = rng.uniform(-100.0, 100.0, (MANY, 1, 3)).astype(np.float32)
@@ -138,6 +138,7 @@ def _many(_: Setting) -> Outcome:
     "one streamline of 10 million points",
     "tracking of one line that never ends (the tests: of a million points, the whole report: of ten)",
     WITHIN,
+    long=True,
 )
 def _long(setting: Setting) -> Outcome:
     n = LONG if setting.whole else LONG_IN_TESTS

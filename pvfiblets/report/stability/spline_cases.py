@@ -206,7 +206,7 @@ def _near(setting: Setting) -> Outcome:
     return right(setting, winding(), camera(SIZE, eye=(0.0, -40.0, 10.0), near=1e-3, far=1e3))
 
 
-@CASES.add("a huge radius", "a tube 1000 mm thick, seen from 3000 mm", SHOWN)
+@CASES.add("a huge radius", "a tube 1000 mm thick, seen from 3000 mm", SHOWN, long=True)
 def _huge(setting: Setting) -> Outcome:
     return right(setting, winding(radius=1e3), camera(SIZE, eye=(0.0, -3000.0, 900.0), near=100.0, far=1e4))
 

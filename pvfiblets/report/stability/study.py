@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from typing import Any
@@ -37,6 +38,16 @@ def result_of(case: Case, setting: Setting) -> CaseResult:
     return CaseResult(case.system, case.name, case.does, case.must, figure, limit, held, said, seconds)
 
 
+def in_turn(cases: Sequence[Case]) -> list[Case]:
+    """Return one case of each system after the other, and the long ones last: every system has some in a short time."""
+    turn: Counter[str] = Counter()
+    order = []
+    for case in cases:
+        order.append((case.long, turn[case.system]))
+        turn[case.system] += 1
+    return [cases[i] for i in sorted(range(len(cases)), key=order.__getitem__)]
+
+
 class StabilityStudy:
     """All extreme cases."""
 
@@ -55,26 +66,27 @@ class StabilityStudy:
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record | CaseResult]:
         """Yield a result for every case."""
-        late, count, broken = [], 0, 0
+        late: Counter[str] = Counter()
+        count, broken = 0, 0
         with ExitStack() as stack:
             ctx: Any = None
             try:
                 ctx = stack.enter_context(drawing_context(options))
             except Unavailable as error:
                 left_out.append(LeftOut("all cases that draw", str(error)))
-            for case in all_cases():
+            for case in in_turn(all_cases()):
                 if case.draws and ctx is None:
                     continue
-                if not options.budget.allows():
-                    late.append(f"{case.system}: {case.name}")
+                if not (options.budget.allows() if case.long else options.budget.left > 0.0):
+                    late[case.system] += 1
                     continue
                 found = result_of(case, Setting(not options.quick, ctx))
                 count, broken = count + 1, broken + (not found.held)
                 if not found.held:
                     options.log(f"stability: {case.system}: {case.name}: does not hold ({found.note})")
                 yield found
-        if late:
-            left_out.append(LeftOut("; ".join(late), "the time given was used up"))
+        for system, number in late.items():
+            left_out.append(LeftOut(f"{system}: {number} cases", "the time given was used up"))
         options.log(f"stability: {count - broken} of {count} cases hold")
 
 

@@ -127,6 +127,7 @@ def steep(name: str, kappa_step: float) -> Transfer:
     "κΔ from 1e-3 to 1e3",
     "a ramp, an edge, a one-entry peak and sixteen of them, from thin to dense",
     "light within a hundredth of the integral in float64, in every pixel",
+    long=True,
 )
 def _steep(setting: Setting) -> Outcome:
     volume = ball()
