@@ -44,9 +44,9 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
         shown = [record for record in study.records if record.group]
         for pair in study.axes:
             for group in dict.fromkeys(record.group for record in shown):
-                records = [record for record in shown if record.group == group]
+                records = [record for record in shown if record.group == group and _points(record, pair)]
                 name = f"{study.name}-{pair.key}-{group}.png"
-                if not _drawable(records, pair):
+                if not records:
                     continue
                 _picture(study, records, pair).savefig(folder / name, dpi=90)
                 made.setdefault(study.name, []).append((name, f"{pair.y_label} against {pair.x_label}: {group}"))
@@ -61,10 +61,6 @@ def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
         return sorted((float(name[len(prefix) :]), value) for name, value in numbers if math.isfinite(value))
     x, y = record.shown(pair.x), record.shown(pair.y)
     return [(x, y)] if math.isfinite(x) and math.isfinite(y) and x > 0.0 else []
-
-
-def _drawable(records: Sequence[Record], pair: Axes) -> bool:
-    return any(_points(record, pair) for record in records)
 
 
 def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:

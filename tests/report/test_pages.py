@@ -120,6 +120,19 @@ def test_ticks_are_short(number, shown):
     assert plots._short(number) == shown
 
 
+def test_data_sets_without_a_pairs_figures_take_no_room_in_its_picture(tmp_path):
+    def widths(extra):
+        records = [Record("points", "g", "", "ours", "", {"max": Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")})]
+        records += [Record(name, "g", "", "ours", "", {"wrong": Figure(0.5, "%")}, {"size": Figure(2.0, "bytes")})
+                    for name in extra]  # fmt: skip
+        axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm")]
+        plots.draw(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), tmp_path)
+        with Image.open(tmp_path / "x-a-g.png") as picture:
+            return picture.size
+
+    assert widths(["pixels", "voxels"]) == widths([])
+
+
 def test_pictures_are_told_in_milliseconds_per_frame():
     axes = [Axes("time", "times/draw", "errors/wrong", "ms per frame", "wrong pixels, %")]
     records = [
