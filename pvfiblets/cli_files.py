@@ -14,6 +14,7 @@ from pvfiblets.formats.spool import gathered
 from pvfiblets.web.values import plain
 
 COMPRESSED = ".fiblets"
+REWRITTEN_POINTS = 1 << 20  # larger pieces are no faster
 
 
 class VerificationError(FibletsError):
@@ -59,10 +60,10 @@ def convert(
         print(summary(source, target, result))
 
 
-def rewrite(source: str, target: str) -> dict[str, Any]:
-    """Write a tractogram in another format, in bounded memory; return the keys of ``convert --json``."""
+def rewrite(source: str, target: str, max_points: int = REWRITTEN_POINTS) -> dict[str, Any]:
+    """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
-    with gathered(formats.iter_chunks(source), Path(target).resolve().parent) as streamlines:
+    with gathered(formats.iter_chunks(source, max_points), Path(target).resolve().parent) as streamlines:
         lost = formats.write(target, streamlines)
         n_streamlines, n_points = len(streamlines), streamlines.n_points
         dropped = dict(streamlines.dropped)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import errno
 import io
 import json
-import mmap
 import os
 import struct
 import tokenize
@@ -24,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
-from ..formats.mapped import drop_pages
+from ..formats.mapped import forget
 
 __all__ = ["HEADER", "Member", "array_member", "check_members", "forget", "open_archive", "write_archive"]
 
@@ -176,19 +175,6 @@ def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.
     if n == 0:
         return np.empty(shape, dtype)
     return np.memmap(path, dtype, "r", at, shape)
-
-
-def forget(array: npt.NDArray[Any], first: int, last: int) -> None:
-    """Let go of the memory behind rows of a mapped array; they stay readable. Arrays in memory are left alone.
-
-    Without this a file that is streamed through its map ends up resident as a whole.
-    """
-    if not isinstance(array, np.memmap) or array.size == 0:
-        return
-    row = array.strides[0]
-    start = array.offset % mmap.ALLOCATIONGRANULARITY  # the map begins at the page that holds the array's first byte
-    mapped = array._mmap  # type: ignore[attr-defined]  # noqa: SLF001  numpy has no other way to its map
-    drop_pages(mapped, start + first * row, (last - first) * row)
 
 
 def check_members(path: str | os.PathLike[str]) -> list[str]:

@@ -83,6 +83,28 @@ class MappedFile:
             )
 
 
+def forget(array: NDArray[Any], first: int, last: int) -> None:
+    """Let go of the memory behind rows of a mapped array, or of a view of one; they stay readable.
+
+    Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
+    and so are private maps (mode ``'c'``), whose changes are nowhere else. Give 0 for `first` where rows are read in
+    order: reading a block brings back pages of the one before, and what is forgotten twice costs nothing.
+    """
+    owner: Any = array
+    found: Any = None
+    while owner is not None:  # the outermost map: views of it do not know where in it they begin
+        found = owner if isinstance(owner, np.memmap) else found
+        owner = getattr(owner, "base", None)
+    if found is None or found.mode == "c" or array.size == 0:
+        return
+    mapped = found._mmap  # noqa: SLF001  numpy has no other way to its map
+    within = array.__array_interface__["data"][0] - found.__array_interface__["data"][0]
+    # The map begins at the page that holds the array's first byte.
+    start = found.offset % mmap.ALLOCATIONGRANULARITY + within
+    row = array.strides[0]
+    drop_pages(mapped, start + first * row, (last - first) * row)
+
+
 def drop_pages(mapped: mmap.mmap, position: int, n_bytes: int) -> None:
     """Let go of whole pages of memory within some bytes of a map, where the system can; they stay readable."""
     if not hasattr(mmap, "MADV_DONTNEED"):

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.mapped import MappedFile, replacing
+from pvfiblets.formats.mapped import MappedFile, forget, replacing
 from pvfiblets.formats.rows import NONFINITE, finite_rows
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 
@@ -41,6 +41,9 @@ Ints = NDArray[np.int64]
 MAGIC_TRACKS = "mrtrix tracks"
 _HEADER_LIMIT = 1 << 24
 """No header is longer; the search for its END stops here (16 MiB of command history)."""
+
+_BLOCK_POINTS = 1 << 20
+"""Points written at a time."""
 
 HOLDS: tuple[str, ...] = ()
 """Parts of Streamlines besides the points that the format can carry."""
@@ -288,11 +291,18 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     (coordinates beyond 16 m); few other programs read such a file.
     """
     kind: np.dtype[Any] = np.dtype("<f4")
-    if streamlines.points.dtype == np.float64 and streamlines.n_points:
-        reach = max(abs(v) for v in streamlines.bounds)
-        if reach * 2.0**-24 > 1e-3:
-            kind = np.dtype("<f8")
+    if streamlines.points.dtype == np.float64 and _reach(streamlines.points) * 2.0**-24 > 1e-3:
+        kind = np.dtype("<f8")
     write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, kind)
+
+
+def _reach(points: Array) -> float:
+    """Return the largest coordinate, whatever its sign; of mapped points nothing stays in memory."""
+    most = 0.0
+    for first in range(0, len(points), _BLOCK_POINTS):
+        most = max(most, float(np.abs(points[first : first + _BLOCK_POINTS]).max()))
+        forget(points, 0, min(first + _BLOCK_POINTS, len(points)))
+    return most
 
 
 def write_rows(
@@ -311,12 +321,13 @@ def write_rows(
     header = f"{fields}{offset}".ljust(offset - len("\nEND\n")) + "\nEND\n"
     with replacing(path) as file:
         file.write(header.encode())
-        for start, stop in streamlines.blocks(1 << 20):
+        for start, stop in streamlines.blocks(_BLOCK_POINTS):
             first, last = streamlines.offsets[start], streamlines.offsets[stop]
             rows = np.full((last - first + stop - start, k), np.nan, kind)
             is_point = np.ones(len(rows), bool)
             ends = streamlines.offsets[start + 1 : stop + 1] - first
             is_point[ends + np.arange(stop - start)] = False
             rows[is_point] = values[first:last]
+            forget(values, 0, last)
             file.write(rows.data)
         file.write(np.full(k, np.inf, kind).data)

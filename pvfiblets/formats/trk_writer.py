@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvfiblets.formats.mapped import replacing
+from pvfiblets.formats.mapped import forget, replacing
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras
 from pvfiblets.streamlines import Streamlines
@@ -47,6 +47,10 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
         file.write(header.tobytes())
         for start, stop in streamlines.blocks(_BLOCK_POINTS):
             file.write(_records(streamlines, from_ras, points, values, start, stop).data)
+            for array in (streamlines.points, *points.values()):
+                forget(array, 0, int(streamlines.offsets[stop]))
+            for array in values.values():
+                forget(array, 0, stop)
 
 
 def _header(streamlines: Streamlines) -> tuple[Any, Array]:

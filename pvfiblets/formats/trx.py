@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.mapped import replacing
+from pvfiblets.formats.mapped import forget, replacing
 from pvfiblets.formats.rows import finite, without_rows
 from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
@@ -309,6 +309,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
                 for i in range(0, len(values), 1 << 20):
                     part = np.ascontiguousarray(values[i : i + (1 << 20)])
                     target.write(part.astype(part.dtype.newbyteorder("<"), copy=False).data)
+                    forget(values, 0, min(i + (1 << 20), len(values)))
 
 
 def _entry(base: str, values: Array, name: str) -> str:

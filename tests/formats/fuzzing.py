@@ -5,8 +5,8 @@
 prints, as JSON, how many of N damaged copies of FILE were read, and how many were refused. A copy that ends in
 anything else is left in SCRATCH, and told on the error stream.
 
-- *No hang*: a timer raises after five seconds; where Python does not get to hear of it, a second one ends the process
-  with a traceback.
+- *No hang*: a timer raises after five seconds of the processor's time; where Python does not get to hear of it, or
+  nothing happens at all, a second one ends the process with a traceback after a minute by the clock.
 - *No memory*: Python's allocations are counted (`tracemalloc`), and the process's address space is limited, so that
   what C++ asks for fails too.
 - *No crash*: this process would end, and its exit status tells.
@@ -30,7 +30,7 @@ from typing import Any
 
 import numpy as np
 
-SECONDS = 5
+SECONDS, BY_THE_CLOCK = 5, 60
 TIMES = 10
 """Memory that reading may take, in file sizes..."""
 
@@ -143,7 +143,7 @@ def main(reader: str, count: str, seed: str, file: str, scratch: str) -> None:
     target = Path(scratch) / f"damaged{''.join(path.suffixes)}"
     read(path)  # imports happen before memory is measured
     _expected_of(reader)
-    signal.signal(signal.SIGALRM, _hung)
+    signal.signal(signal.SIGPROF, _hung)
     if sys.platform.startswith("linux"):
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + TIMES * len(inner or data) + ROOM, resource.RLIM_INFINITY))
@@ -169,8 +169,8 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
     """Read one file, and return the bytes that Python allocated meanwhile."""
     tracemalloc.reset_peak()
     before = tracemalloc.get_traced_memory()[0]
-    signal.alarm(SECONDS)
-    faulthandler.dump_traceback_later(2 * SECONDS, exit=True)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    faulthandler.dump_traceback_later(BY_THE_CLOCK, exit=True)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -182,7 +182,7 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
     else:
         outcomes["read"] += 1
     finally:
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
         faulthandler.cancel_dump_traceback_later()
     return tracemalloc.get_traced_memory()[1] - before
 

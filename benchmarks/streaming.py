@@ -1,0 +1,161 @@
+"""Files converted piece by piece: points per second, and the peak of memory against the number of points.
+
+    python benchmarks/streaming.py [--points 1e6 1e7 1e8] [--source .tck .trk .trx] [--target .fiblets] [--output DIR]
+
+Lines like those of whole-brain tracking (0.5 mm steps, 250 points each) are written as a file, piece by piece, and
+converted by ``pvfiblets.compress_file`` or, for other targets, by what ``pvfiblets convert`` calls. Each conversion is
+a process of its own, so that its peak of resident memory, mapped pages of files included, is that conversion's alone.
+The slope of that peak over the points says what a larger file would take. ``--points 1e9`` wants 26 GB of disk.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pvfiblets import formats
+from pvfiblets.formats.spool import gathered
+from pvfiblets.report.machine import about
+from pvfiblets.streamlines import Streamlines
+
+STEP, LENGTH, LINES = 0.5, 250, 2000
+SEED = 0
+
+# The peak is set back before each conversion. Not getrusage: that also remembers the process that started this one.
+CONVERSIONS = """
+import json, sys, time
+import numba
+from pvfiblets.cli_files import rewrite
+from pvfiblets.codec import convert
+
+def convert_one(source, target, chunk):
+    if target.endswith(".fiblets"):
+        convert.CHUNK_POINTS = chunk
+        return convert.compress_file(source, target)
+    return rewrite(source, target, chunk)
+
+for source, target, chunk in json.loads(sys.argv[1]):
+    with open("/proc/self/clear_refs", "w") as peak:
+        peak.write("5")
+    wall, cpu = time.perf_counter(), time.process_time()
+    result = convert_one(source, target, chunk)
+    status = dict(line.split(":", 1) for line in open("/proc/self/status"))
+    print(json.dumps({
+        "points": result["points"], "streamlines": result["streamlines"], "bytes": result["bytes"],
+        "error_mm": result["error_mm"], "promise_mm": result.get("promise_mm"), "dropped": result["dropped"],
+        "seconds": time.perf_counter() - wall, "cpu_seconds": time.process_time() - cpu,
+        "peak_mb": int(status["VmHWM"].split()[0]) / 1024, "threads": numba.get_num_threads(),
+    }))
+"""
+
+
+def chunks(n_points: int, seed: int = SEED) -> Iterator[Streamlines]:
+    """Yield lines of `n_points` points in all: one block of smooth walks, turned and moved anew each time."""
+    rng = np.random.default_rng(seed)
+    turns = rng.normal(size=(LINES, LENGTH, 3)) * 0.05
+    turns[:, 0] = rng.normal(size=(LINES, 3))
+    directions = np.cumsum(turns, axis=1)
+    directions /= np.linalg.norm(directions, axis=2, keepdims=True)
+    block = np.cumsum(STEP * directions, axis=1) + rng.uniform(-60.0, 60.0, (LINES, 1, 3))
+    left = n_points
+    while left > 0:
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        points = (block.reshape(-1, 3) @ turn + rng.uniform(-10.0, 10.0, 3)).astype(np.float32)[:left]
+        offsets = np.arange(0, len(points) + LENGTH, LENGTH)
+        offsets[-1] = len(points)
+        yield Streamlines(points, np.unique(offsets))
+        left -= len(points)
+
+
+def made(path: Path, n_points: int) -> Path:
+    """Write a file of so many points without ever holding them, and return it."""
+    with gathered(chunks(n_points), path.parent) as streamlines:
+        formats.write(path, streamlines)
+    return path
+
+
+def converted(*jobs: tuple[Path, Path], chunk_points: int = 1 << 20) -> list[dict[str, Any]]:
+    """Convert files, one after the other, in a process of their own; return what each took."""
+    listed = json.dumps([(str(source), str(target), chunk_points) for source, target in jobs])
+    done = subprocess.run([sys.executable, "-c", CONVERSIONS, listed], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"the conversion of {jobs[0][0]} ended with {done.returncode}: {done.stderr}")
+    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    for row, (source, target) in zip(rows, jobs, strict=True):
+        row |= {"source": source.suffix, "target": target.suffix, "source_bytes": source.stat().st_size}
+    return rows
+
+
+def slope(rows: list[dict[str, Any]]) -> float:
+    """Return bytes of peak memory per point, by least squares over conversions of unlike sizes."""
+    points, peaks = (np.array([row[key] for row in rows], float) for key in ("points", "peak_mb"))
+    return float(np.polyfit(points, peaks, 1)[0] * 2**20)
+
+
+def measure(sizes: list[int], sources: list[str], targets: list[str], folder: Path) -> list[dict[str, Any]]:
+    """Convert files of all sizes and formats, and say each as it is done."""
+    rows = []
+    for size in sizes:
+        for suffix in sources:
+            begin = time.perf_counter()
+            source = made(folder / f"source{suffix}", size)
+            print(f"{source.name}: {size:,} points written in {time.perf_counter() - begin:.0f} s", flush=True)
+            for target in targets:
+                (row,) = converted((source, folder / f"target{target}"))
+                rows.append(row)
+                print(json.dumps(row), flush=True)
+                (folder / f"target{target}").unlink()
+            source.unlink()
+    return rows
+
+
+def told(rows: list[dict[str, Any]]) -> str:
+    """Return the table of a page."""
+    lines = [
+        "| from | to | points | GB read | peak MB | M points/s | M points per CPU second | bytes per point |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    lines += [
+        f"| {r['source']} | {r['target']} | {r['points']:,} | {r['source_bytes'] / 1e9:.2f} | {r['peak_mb']:.0f} "
+        f"| {r['points'] / r['seconds'] / 1e6:.1f} | {r['points'] / r['cpu_seconds'] / 1e6:.1f} "
+        f"| {r['bytes'] / r['points']:.2f} |"
+        for r in rows
+    ]
+    for pair in dict.fromkeys((r["source"], r["target"]) for r in rows):
+        of_pair = [r for r in rows if (r["source"], r["target"]) == pair]
+        if len({r["points"] for r in of_pair}) > 1:
+            lines += ["", f"{pair[0]} to {pair[1]}: {slope(of_pair):.3f} bytes of memory for each further point."]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Run the benchmark and write its table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=float, nargs="+", default=[1e6, 1e7, 1e8])
+    parser.add_argument("--source", nargs="+", default=[".tck", ".trk", ".trx"])
+    parser.add_argument("--target", nargs="+", default=[".fiblets"])
+    parser.add_argument("--output", type=Path, help="a folder for streaming.json and streaming.md")
+    parser.add_argument("--scratch", type=Path, help="a folder with room for the files; the system's by default")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(dir=options.scratch) as name:
+        rows = measure([int(size) for size in options.points], options.source, options.target, Path(name))
+    page = told(rows)
+    print(page)
+    if options.output is not None:
+        options.output.mkdir(parents=True, exist_ok=True)
+        (options.output / "streaming.md").write_text(page, encoding="utf-8")
+        content = {"machine": about(SEED, quick=False), "rows": rows}
+        (options.output / "streaming.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
