@@ -44,9 +44,9 @@ def _capsules(_: Setting) -> Outcome:
                 tip = own[0] + vectors[ranks[f]] if ends[f] else points[starts[f + 1]]
                 radius = float(fiblets.reach[f]) * fiblets.parameters.reach_scale
                 slack = 16.0 * float(np.spacing(np.abs(own).max() + np.abs(fiblets.origin).max()))
-                excess = float(_from_segment(own, own[0], tip).max()) - radius
-                found.append(Outcome(excess, slack, "mm", name) if excess > slack else Outcome(0.0, 0.0, "mm"))
-    return next((outcome for outcome in found if not outcome.held), found[0])
+                farthest = float(_from_segment(own, own[0], tip).max())
+                found.append(Outcome(farthest / (radius + slack), 1.0, "of the radius", name))
+    return worst(found)
 
 
 def _from_segment(points: Array, a: Array, b: Array) -> Array:

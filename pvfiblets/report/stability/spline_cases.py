@@ -177,7 +177,7 @@ def right(setting: Setting, tubes: SplineTubes, matrix: Array, size: tuple[int, 
         depths.append(depth)
     sure = (kinds[0] == kinds[1]) & (kinds[0] == kinds[2])
     both = there & kinds[0] & sure
-    off = np.abs(key / 4294967296.0 - depths[0]) > 1e-6 + np.abs(depths[2] - depths[0])
+    off = np.abs(key / 4294967296.0 - depths[0]) > 2.0**-22 + np.abs(depths[2] - depths[0])
     wrong = (sure & (there != kinds[0])) | (both & off)
     if not np.isfinite(place[there]).all() or not there.any():
         return Outcome(np.inf, 2.0, "pixels in 1,000", "nothing drawn, or not finite")
