@@ -1,0 +1,415 @@
+"""Makes the pictures of ``pvfiblets serve`` in docs/serving.md: ``python docs/serving_pictures.py [STATE…]``.
+
+A server is started as a user starts one, and its page is led into each state in Chromium. The tracts and the head are
+those of the folder that ``PVFIBLETS_DATA`` names, or of ``../shared/data``; where they are missing, made-up ones.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from tests.web.browsing import FLAGS, Served, Visit, chromium  # noqa: E402 - the tests' way to drive a page
+
+DATA = Path(os.environ.get("PVFIBLETS_DATA", HERE.parents[1] / "shared" / "data"))
+LARGEST = 99_000  # bytes of a picture
+EVERY = 3  # of how many streamlines one is shown
+STATES: dict[str, Callable[[Any], Any]] = {}
+
+
+def state(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Add a state that a picture is made of, by its function's name."""
+    STATES[function.__name__.removesuffix("_")] = function
+    return function
+
+
+# What is served
+
+
+def make_root(root: Path) -> None:
+    """Write what the pages show into a folder."""
+    import pvfiblets
+
+    root.mkdir()
+    tracts, head = _tracts(), _head()
+    fiblets = pvfiblets.compress(tracts, per_point=["fa"] if "fa" in tracts.per_point else [])
+    fiblets.save(root / "brain.fiblets")
+    pvfiblets.write(root / "brain.trk", tracts)
+    (root / "other subjects").mkdir()
+    if head is None:
+        _made_up_head(root / "t1.nii.gz")
+    else:
+        shutil.copy(head, root / "t1.nii.gz")
+    import pyvista as pv
+
+    pv.ParametricEllipsoid(9, 12, 8, center=(26, 4, 26)).save(root / "lesion.ply")
+
+
+def _tracts() -> Any:
+    """Return streamlines with ``fa`` per point and three groups."""
+    import pvfiblets
+    from pvfiblets.streamlines import Streamlines
+    from pvfiblets.synthetic import brain_streamlines
+
+    real, anisotropy = DATA / "wholebrain_eudx_0.5mm_fifth.tck", DATA / "tractseg_FA.nii.gz"
+    if not (real.is_file() and anisotropy.is_file()):
+        return brain_streamlines(3000)
+    import nibabel
+
+    lines = pvfiblets.read(real)
+    lines = lines[::EVERY]
+    image = nibabel.load(anisotropy)
+    fa = _between_voxels(
+        np.asarray(image.dataobj), nibabel.affines.apply_affine(np.linalg.inv(image.affine), lines.points)
+    )
+    starts = lines.offsets[:-1]
+    low, high = (end.reduceat(lines.points[:, 0], starts) for end in (np.minimum, np.maximum))
+    sides = {"left": high < 0, "right": low > 0, "across": (low <= 0) & (high >= 0)}
+    return Streamlines(
+        lines.points,
+        lines.offsets,
+        per_point={"fa": np.clip(fa, 0.0, 1.0).astype(np.float32)},
+        groups={name: np.flatnonzero(members) for name, members in sides.items()},
+    )
+
+
+def _between_voxels(values: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return values at places in voxels, trilinear."""
+    places = np.clip(places, 0.0, np.subtract(values.shape, 1.001))
+    first = places.astype(np.int64)
+    share = places - first
+    found = np.zeros(len(places))
+    for corner in np.ndindex(2, 2, 2):
+        weight = np.where(corner, share, 1.0 - share).prod(axis=1)
+        found += weight * values[tuple((first + corner).T)]
+    return found
+
+
+def _head() -> Path | None:
+    found = DATA / "nv_MNI152_2009_template.nii.gz"
+    return found if found.is_file() else None
+
+
+def _made_up_head(path: Path) -> None:
+    import nibabel
+
+    from pvfiblets.synthetic.vessels import brain_like
+
+    head = brain_like(144, noise=0.05)
+    affine = np.diag([1.16, 1.16, 1.16, 1.0]) @ head.affine
+    affine[:3, 3] += (0.0, -19.0, 2.0)
+    nibabel.save(nibabel.Nifti1Image(head.values.astype(np.float32), affine), path)
+
+
+# States
+
+
+class Studio:
+    """A browser, and servers of one folder."""
+
+    def __init__(self, browser: Any, root: Path) -> None:
+        self.browser, self.root = browser, root
+        self._servers: dict[tuple[str, ...], Served] = {}
+        self._visits: list[Visit] = []
+
+    def visit(self, *arguments: str, opened: bool = True, **options: Any) -> Visit:
+        """Open a page of a server with these arguments."""
+        if arguments not in self._servers:
+            paths = [str(self.root / part) if (self.root / part).is_file() else part for part in arguments]
+            self._servers[arguments] = Served(*paths, root=self.root)
+        here = Visit(self.browser, self._servers[arguments], **options)
+        self._visits.append(here)
+        return here.open() if opened else here
+
+    def leave(self) -> None:
+        """Close all pages."""
+        while self._visits:
+            self._visits.pop().close()
+
+    def stop(self) -> None:
+        """Stop all servers."""
+        for server in self._servers.values():
+            server.stop()
+
+
+@state
+def open_(studio: Studio) -> Visit:
+    """As it opens."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    return here
+
+
+@state
+def colours(studio: Studio) -> Visit:
+    """Colours that stand for values."""
+    here = studio.visit("brain.fiblets")
+    here.press("3")
+    here.choose("scalars", "fa")
+    here.choose("cmap", "inferno")
+    return here
+
+
+@state
+def clip(studio: Studio) -> Visit:
+    """Two cuts."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.page.click("[data-cut=slab]")
+    here.wait(lambda: len(here.state("clips")) == 1, "the slab")
+    here.page.click("[data-clip] button:has-text('Y')")
+    here.wait(lambda: here.state("clips")[0]["axis"] == "y", "the slab's new direction")
+    here.page.click("[data-cut=sphere]")
+    here.wait(lambda: len(here.state("clips")) == 2, "the sphere")
+    here.page.locator("[data-clip]").nth(1).locator("[data-action=side]").click()
+    here.wait(lambda: not here.state("clips")[1]["inside"], "the sphere's other side")
+    return here
+
+
+@state
+def filter_(studio: Studio) -> Visit:
+    """Criteria and a region."""
+    here = studio.visit("brain.fiblets")
+    here.press("2")
+    here.tab("filter")
+    here.page.click("#tab-filter .v-select:has(#add-criterion) .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('length')")
+    least = here.page.locator("[data-criterion=length] input.pv-num").first
+    least.fill("60")
+    here.press("Tab")
+    here.page.click("[data-region=sphere]")
+    here.wait(lambda: len(here.state("filters")["regions"]) == 1, "the region")
+    return here
+
+
+@state
+def selection(studio: Studio) -> Visit:
+    """What a lasso took."""
+    here = studio.visit("brain.fiblets")
+    here.press("3")
+    here.choose("scalars", "fa")
+    here.rests()
+    here.press("l")
+    here.page.wait_for_selector("#pv-over[data-tool=lasso]")
+    here.trace([(0.40, 0.28), (0.52, 0.24), (0.60, 0.30), (0.56, 0.38), (0.46, 0.38)])
+    here.wait(lambda: here.state("selection")["count"] > 0, "a selection")
+    here.press("Escape")
+    return here
+
+
+@state
+def info(studio: Studio) -> Visit:
+    """What is known of a layer."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.rests()
+    here.tab("info")
+    return here
+
+
+@state
+def volume(studio: Studio) -> Visit:
+    """A head around the tracts."""
+    here = studio.visit("brain.fiblets", "--volume", str(studio.root / "t1.nii.gz"))
+    here.wait(lambda: here.layers() == 2, "the volume")
+    here.press("4")
+    here.page.fill("[data-property=surface_opacity] input.pv-num", "1")
+    here.press("Tab")
+    colour = here.page.locator("[data-property=color] input[type=color]")
+    colour.fill("#d8c0b0")
+    colour.dispatch_event("change")
+    here.page.click("[data-cut=plane]")
+    here.wait(lambda: len(here.state("clips")) == 1, "the plane")
+    here.page.click("[data-select=clip-layers] .v-field")
+    for name, count in (("t1.nii.gz", 2), ("brain.fiblets", 1)):  # the head in place of the tracts
+        here.page.click(f".v-overlay--active .v-list-item:has-text('{name}')")
+        here.wait(lambda count=count: here.state("clips")[0]["layers"] != ["*"] and
+                  len(here.state("clips")[0]["layers"]) == count, "other layers to cut")  # fmt: skip
+    here.press("Escape")
+    here.page.click("[data-clip] [data-action=side]")
+    here.wait(lambda: not here.state("clips")[0]["inside"], "the other side")
+    return here
+
+
+@state
+def light(studio: Studio) -> Visit:
+    """Light panels, and a white background."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.press("t")
+    background = here.page.locator("input[type=color][aria-label=Background]")
+    background.fill("#ffffff")
+    background.dispatch_event("change")
+    here.wait(lambda: here.state("background") == "#ffffff", "a white background")
+    background.blur()
+    return here
+
+
+@state
+def tablet(studio: Studio) -> Visit:
+    """A narrow screen: the picture first."""
+    here = studio.visit("brain.fiblets", width=820, height=1180, has_touch=True, is_mobile=True)
+    here.press("1")
+    return here
+
+
+@state
+def tablet_panel(studio: Studio) -> Visit:
+    """A panel over the picture."""
+    here = tablet(studio)
+    here.rests()
+    here.press("[")
+    return here
+
+
+@state
+def help_(studio: Studio) -> Visit:
+    """Keys and what the pointer does."""
+    here = studio.visit("brain.fiblets")
+    here.press("?")
+    return here
+
+
+@state
+def files(studio: Studio) -> Visit:
+    """The file browser."""
+    here = studio.visit("brain.fiblets")
+    here.press("o")
+    return here
+
+
+@state
+def session(studio: Studio) -> Visit:
+    """Sessions as files."""
+    here = studio.visit("brain.fiblets")
+    here.press("s")
+    return here
+
+
+@state
+def script(studio: Studio) -> Visit:
+    """The same picture in Python."""
+    here = studio.visit("brain.fiblets")
+    here.press("2")
+    here.page.click("[data-cut=plane]")
+    here.wait(lambda: len(here.state("clips")) == 1, "the plane")
+    here.page.click("[data-action=script]")
+    return here
+
+
+@state
+def conversion(studio: Studio) -> Visit:
+    """A file that is being compressed."""
+    here = studio.visit("brain.fiblets")
+    here.press("o")
+    here.page.click("[data-entry='brain.trk']")
+    here.wait(lambda: "compress" in here.state("job").get("text", ""), "a file that is being compressed")
+    return here
+
+
+@state
+def refused(studio: Studio) -> Visit:
+    """A file that could not be opened."""
+    (studio.root / "broken.trk").write_bytes(b"TRACK" + bytes(2000))
+    here = studio.visit("brain.fiblets")
+    here.press("o")
+    here.page.click("[data-entry='broken.trk']")
+    here.wait(lambda: here.state("toast_open"), "why it was not opened")
+    (studio.root / "broken.trk").unlink()
+    return here
+
+
+@state
+def empty(studio: Studio) -> Visit:
+    """Nothing is open."""
+    here = studio.visit("--upload", "100", opened=False)
+    here.page.goto(here.served.url)
+    here.page.wait_for_selector("text=Nothing is open yet")
+    return here
+
+
+@state
+def full(studio: Studio) -> Visit:
+    """The page beyond the limit of sessions."""
+    studio.visit("brain.fiblets", "--limit", "1")
+    here = studio.visit("brain.fiblets", "--limit", "1", opened=False)
+    here.page.goto(here.served.url)
+    here.page.wait_for_selector("text=All sessions are taken")
+    return here
+
+
+@state
+def token(studio: Studio) -> Visit:
+    """The page that asks for the token."""
+    here = studio.visit("brain.fiblets", "--token", "auto", opened=False)
+    here.page.goto(here.served.base)
+    return here
+
+
+# Pictures
+
+
+def save(here: Visit, path: Path) -> None:
+    """Write what the page shows, as JPEG of a bounded size, or whole where the path ends in .png."""
+    from PIL import Image
+
+    if here.page.locator("#pv-view").count() and not path.stem.endswith("conversion"):
+        here.rests()
+    here.page.mouse.move(640, 719)
+    here.page.wait_for_timeout(400)  # what opens and closes has come to rest
+    shot = here.page.screenshot()
+    if path.suffix == ".png":
+        path.write_bytes(shot)
+        return
+    picture = Image.open(io.BytesIO(shot)).convert("RGB")
+    for quality in range(88, 30, -4):
+        file = io.BytesIO()
+        picture.save(file, "jpeg", quality=quality, optimize=True, progressive=True)
+        if file.tell() <= LARGEST:
+            break
+    path.write_bytes(file.getvalue())
+
+
+def main() -> int:
+    """Make the pictures that were asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("states", nargs="*", metavar="STATE", help=f"of {', '.join(STATES)}; by default all")
+    parser.add_argument("--output", type=Path, default=HERE / "pictures", help="folder")
+    parser.add_argument("--png", action="store_true", help="lossless pictures, to look at closely")
+    asked = parser.parse_args()
+    if unknown := set(asked.states) - set(STATES):
+        parser.error(f"there is no state {', '.join(sorted(unknown))}; there are {', '.join(STATES)}")
+    from playwright import sync_api
+
+    asked.output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, sync_api.sync_playwright() as driver:
+        root = Path(folder) / "data"
+        make_root(root)
+        browser = driver.chromium.launch(executable_path=chromium(), args=list(FLAGS))
+        studio = Studio(browser, root)
+        try:
+            for name in asked.states or STATES:
+                path = asked.output / f"serving_{name}.{'png' if asked.png else 'jpg'}"
+                save(STATES[name](studio), path)
+                studio.leave()
+                print(f"{path}  {path.stat().st_size / 1000:.0f} kB", flush=True)
+        finally:
+            studio.stop()
+            browser.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
