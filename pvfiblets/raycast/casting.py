@@ -29,6 +29,9 @@ INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson",
 MAX_VALUES = 8
 """Isosurfaces of one volume."""
 
+MOST_STEPS = 30_000
+"""Steps of a ray up to which flat voxels may shorten them: software OpenGL ends a loop after 65,535 turns."""
+
 LARGEST = (2.0 - 2.0**-23) * 2.0**127
 """The largest number that float32 holds."""
 
@@ -143,20 +146,24 @@ class Casting:
                 raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
             object.__setattr__(self, "box", box)
 
-    def step_mm(self, spacing: npt.ArrayLike) -> float:
+    def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
         """Return the length of a step, mm.
 
         Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
-        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more.
+        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
+        a ray through the whole volume took more than `MOST_STEPS` then.
 
         Parameters
         ----------
         spacing : array_like
             ``(3,)`` mm between voxels along each axis.
+        shape : tuple of int
+            Voxels along each axis.
         """
         lengths = np.asarray(spacing, np.float64)
-        mean, least = float(lengths.mean()), float(lengths.min())
-        return min(self.step * mean, max(self.step, 1.0) * least)
+        mean, least = self.step * float(lengths.mean()), max(self.step, 1.0) * float(lengths.min())
+        through = float(np.linalg.norm(lengths * shape))
+        return min(mean, max(least, through / MOST_STEPS))
 
     def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
         try:

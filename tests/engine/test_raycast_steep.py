@@ -191,8 +191,11 @@ def test_what_is_even():
 
 def test_a_step_is_no_longer_than_a_voxel_is_short_unless_it_is_asked_to_be():
     half, four = Casting(values=(0.5,), step=0.5), Casting(values=(0.5,), step=4.0)
-    assert half.step_mm((2.0, 2.0, 2.0)) == 1.0
-    assert half.step_mm((1.0, 1.0, 1.6)) == pytest.approx(0.6)
-    assert half.step_mm((1.0, 1000.0, 1.0)) == 1.0
-    assert four.step_mm((1.0, 1000.0, 1.0)) == 4.0
-    assert four.step_mm((3.0, 3.0, 3.0)) == 12.0
+    cube = (20, 20, 20)
+    assert half.step_mm((2.0, 2.0, 2.0), cube) == 1.0
+    assert half.step_mm((1.0, 1.0, 1.6), cube) == pytest.approx(0.6)
+    assert half.step_mm((1.0, 1000.0, 1.0), cube) == 1.0
+    assert four.step_mm((1.0, 1000.0, 1.0), cube) == 4.0
+    assert four.step_mm((3.0, 3.0, 3.0), cube) == 12.0
+    assert half.step_mm((1.0, 1000.0, 1.0), (20, 90, 20)) == pytest.approx(3.0, rel=1e-3)  # no more than 30,000 steps
+    assert half.step_mm((1.0, 1.0, 1.0), (2, 2, 60_000)) == 0.5

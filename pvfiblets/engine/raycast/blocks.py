@@ -71,7 +71,7 @@ class RayBlock:
 
     def step_mm(self, casting: Casting) -> float:
         """Return the length of a step."""
-        return casting.step_mm(self._volume.spacing)
+        return casting.step_mm(self._volume.spacing, self._volume.shape)
 
     def write(self, view: View, casting: Casting, levels: npt.NDArray[np.int64]) -> None:
         """Bring it up to date and bind it.

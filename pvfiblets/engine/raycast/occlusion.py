@@ -183,6 +183,6 @@ def turns_of_ray(volume: RaycastVolume, casting: Casting, to_data: npt.NDArray[n
     along = float(np.linalg.norm(to_data, 2))
     diagonal = float(np.linalg.norm(np.abs(volume.affine[:3, :3]) @ size))
     mm = min(radius * along, diagonal)
-    steps = mm / casting.step_mm(volume.spacing)
+    steps = mm / casting.step_mm(volume.spacing, volume.shape)
     leaves = min(float(np.linalg.norm(volume.inverse[:3, :3], 2)) * mm, float(size.sum())) * 3.0 / LEAF + 4.0
     return math.ceil(steps + leaves * (2.0 + math.log2(max(size.max() / LEAF, 1.0) + 1.0)))
