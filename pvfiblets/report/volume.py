@@ -192,8 +192,8 @@ def _varied(
     cameras = right.colours.cameras
     timed = Timed(ctx, options, name, "draw")
     for varied, how, fields in settings(look.mode, options.quick, spread):
-        if kind != "trilinear" and varied not in ("default", "step"):
-            continue
+        if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
+            continue  # a tricubic picture takes ten times as long
         if not timed.allows(f"{varied} {how}".strip()):
             continue
         style = RaycastStyle(casting=look.casting(filter=kind, **fields))
