@@ -180,32 +180,3 @@ def test_groups_shares_and_regions_choose_streamlines(visit):
     left(0)
     here.page.click("#tab-filter button:has-text('Show all')")
     left(60)
-
-
-def test_volumes_and_meshes_are_layers_beside_lines(visit):
-    here = visit("lines.fiblets", "--volume", "head.nii.gz", "--mesh", "ball.ply")
-    here.wait(lambda: here.layers() == 3, "three layers")
-    assert {layer["kind"] for layer in here.state("layers")} == {"tractogram", "volume", "mesh"}
-    here.press("2")
-    both = here.rests()
-
-    def select(kind):
-        found = next(layer["id"] for layer in here.state("layers") if layer["kind"] == kind)
-        here.page.click(f"[data-layer={found}] .v-list-item-title")
-        here.wait(lambda: here.state("chosen") == found, f"the {kind} to be chosen")
-        return found
-
-    select("volume")
-    here.choose("mode", here.page.locator("[data-property=mode]").inner_text() and "maximum")
-    other = here.changed(both)
-    select("mesh")
-    colour = here.page.locator("[data-property=color] input[type=color]")
-    colour.fill("#00ff00")
-    colour.dispatch_event("change")
-    green = here.changed(other)
-    assert ((green[..., 1] - green[..., 0] > 60) & (green[..., 1] - green[..., 2] > 60)).sum() > 50
-    here.press("Delete")
-    here.wait(lambda: here.layers() == 2, "two layers")
-    here.tab("info")
-    here.page.click("[data-layer] .v-list-item-title >> nth=0")
-    assert here.page.locator("[data-info]").count() > 5
