@@ -35,7 +35,7 @@ CONVERSIONS = """
 import json, sys, time
 import numba
 from pvfiblets.cli_files import rewrite
-from pvfiblets.codec import convert
+from pvfiblets.codec import convert, parameters
 
 def convert_one(source, target, chunk):
     if target.endswith(".fiblets"):
@@ -44,6 +44,7 @@ def convert_one(source, target, chunk):
     return rewrite(source, target, chunk)
 
 for source, target, chunk in json.loads(sys.argv[1]):
+    parameters.SAMPLE = min(parameters.SAMPLE, chunk)  # kept lengths of segments; smaller where pieces are
     with open("/proc/self/clear_refs", "w") as peak:
         peak.write("5")
     wall, cpu = time.perf_counter(), time.process_time()

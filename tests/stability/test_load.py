@@ -17,12 +17,12 @@ ROOT = Path(__file__).resolve().parents[2]
 LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="resident memory is read from /proc")
 
 CHUNK = 100_000
-SIZES = {True: (400_000, 1_600_000), False: (1_200_000, 4_800_000)}
+SIZES = {True: (400_000, 3_200_000), False: (1_200_000, 7_200_000)}
 """Points, by whether fiblets are made of them. Writers of other formats hold a million points at a time."""
 
-MOST = {True: 5.0, False: 2.5}
+MOST = {True: 7.0, False: 6.0}
 """Bytes of memory per point of the file. A file held in memory is 12; offsets of lines of 250 points are 0.03 each.
-What is allocated and given back meanwhile makes the peak uncertain by some megabytes."""
+What is allocated and given back meanwhile makes the peak uncertain by up to 20 MB."""
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def conversions(streaming, tmp_path_factory):
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
-def test_peak_memory_is_alike_for_four_times_the_points(streaming, conversions, pair):
+def test_peak_memory_is_alike_for_many_times_the_points(streaming, conversions, pair):
     rows, compressed = conversions[pair], pair[1] == ".fiblets"
     assert [row["points"] for row in rows] == [*SIZES[compressed]]
     assert [row["streamlines"] for row in rows] == [n // streaming.LENGTH for n in SIZES[compressed]]
