@@ -160,6 +160,10 @@ def make_parser() -> argparse.ArgumentParser:
         help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
     )  # fmt: skip
     report.add_argument("--quick", action="store_true", help="a little of each, in at most two minutes on two cores")
+    report.add_argument(
+        "--minutes", type=float, metavar="M", help="for measuring, shared among the studies (default: no limit)"
+    )
+    report.add_argument("--seed", type=int, default=0, metavar="N", help="of all made-up data (default: 0)")
     report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
     report.add_argument("-o", "--output", required=True, metavar="DIR")
     report.set_defaults(run="pvfiblets.cli_report:report")

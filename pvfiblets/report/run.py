@@ -33,6 +33,7 @@ def make_report(
     only: Sequence[str] | None = None,
     data: Sequence[Path] = (),
     quick: bool = False,
+    minutes: float | None = None,
     seed: int = 0,
     log: Log = to_stderr,
     clock: Callable[[], float] = time.monotonic,
@@ -49,6 +50,8 @@ def make_report(
         Real files, and folders of such.
     quick : bool
         A little of each, in two minutes at most on two cores, plots included. What does not fit is named in the report.
+    minutes : float, optional
+        For measuring, shared among the studies. By default as long as it takes, or those of a quick report.
     seed : int
         Of made-up data.
     log : callable
@@ -59,21 +62,23 @@ def make_report(
     Raises
     ------
     ValueError
-        For a name that is no study's.
+        For a name that is no study's, minutes that are not above 0, or a negative seed.
     FileNotFoundError
         If a file of ``data`` is not there.
     """
     names = studies.chosen_names(only)
+    if minutes is not None and not minutes > 0.0:
+        raise ValueError(f"minutes is {minutes}; give a number above 0")
+    if seed < 0:
+        raise ValueError(f"seed is {seed}; give a whole number, 0 or more")
     files_of(data)  # a wrong name is told before any measurement
     report = Report(machine.about(seed, quick))
-    # The studies that cannot be run cost nothing, and take no share.
-    left = sum(name in studies.MODULES for name in names)
-    whole = Budget(QUICK_SECONDS - PLOT_SECONDS if quick else float("inf"), clock)
-    for name in names:
-        share = whole.left / left if quick and left else float("inf")
+    seconds = 60.0 * minutes if minutes is not None else QUICK_SECONDS - PLOT_SECONDS if quick else float("inf")
+    whole = Budget(seconds, clock)
+    for done, name in enumerate(names):
         options = Options(
             quick=quick,
-            budget=Budget(share, clock),
+            budget=Budget(whole.left / (len(names) - done), clock),
             files=tuple(data),
             seed=seed,
             machine=report.about["name"],
@@ -84,17 +89,12 @@ def make_report(
         report.studies.append(one_study(name, options))
         if options.driver:
             report.about["driver"] = options.driver
-        left -= name in studies.MODULES
         report.save(folder)
     return report
 
 
 def one_study(name: str, options: Options) -> StudyResult:
     """Run one study; where it cannot be done, return the reason."""
-    if name not in studies.MODULES:
-        where = studies.PLANNED[name]
-        reason = f"not part of the report yet; {where} measures it" if where else "not part of the report yet"
-        return StudyResult(name, name.capitalize(), "", unavailable=reason)
     study = studies.find(name)
     result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
     options.log(f"{name}: {study.title}")

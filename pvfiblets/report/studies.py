@@ -2,10 +2,9 @@
 
 To add one, such as ``culling``: write ``pvfiblets/report/culling.py`` with an object ``STUDY`` that is a
 :class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.culling"`` into ``MODULES``. Nothing else
-knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a quick run's time, asks
+knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a run's time, asks
 ``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
-study: where no OpenGL context can be made). Names of studies that are not there yet, and what measures the same so
-far, are kept in ``PLANNED``.
+study: where no OpenGL context can be made).
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from importlib import import_module
 
 from .study import Study
 
-__all__ = ["MODULES", "PLANNED", "chosen_names", "find"]
+__all__ = ["MODULES", "chosen_names", "find"]
 
 MODULES = {
     "codec": "pvfiblets.report.codec",
@@ -27,7 +26,6 @@ MODULES = {
     "features": "pvfiblets.report.features",
     "stability": "pvfiblets.report.stability.study",
 }
-PLANNED: dict[str, str] = {}
 
 
 def chosen_names(only: Sequence[str] | None = None) -> list[str]:
@@ -38,11 +36,10 @@ def chosen_names(only: Sequence[str] | None = None) -> list[str]:
     ValueError
         For a name that is no study's; the error lists those there are.
     """
-    names = list(dict.fromkeys(only or [*MODULES, *(name for name in PLANNED if name not in MODULES)]))
+    names = list(dict.fromkeys(only or MODULES))
     for name in names:
-        if name not in MODULES and name not in PLANNED:
-            known = ", ".join([*MODULES, *(planned for planned in PLANNED if planned not in MODULES)])
-            raise ValueError(f"there is no study {name!r}; choose among {known}")
+        if name not in MODULES:
+            raise ValueError(f"there is no study {name!r}; choose among {', '.join(MODULES)}")
     return names
 
 

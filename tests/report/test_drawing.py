@@ -23,7 +23,6 @@ def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypa
 
     study = Drawing()
     monkeypatch.setattr(studies, "MODULES", {"drawing": ""})
-    monkeypatch.setattr(studies, "PLANNED", {})
     monkeypatch.setattr(studies, "find", lambda name: study)
     report = run.make_report(tmp_path, log=lambda line: None)
     assert report.about["driver"] == f"{gl.info['GL_RENDERER']}, {study.version}"

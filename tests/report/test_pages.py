@@ -91,15 +91,10 @@ def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys
     assert "none.json" in capsys.readouterr().err
     assert main(["report", "--from", "x.json", "--quick", "-o", str(tmp_path)]) == 1
     assert "--from" in capsys.readouterr().err
+    assert main(["report", "--only", "codec", "--minutes", "-1", "-o", str(tmp_path)]) == 1
+    assert "minutes is -1.0; give a number above 0" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["report"])
-
-
-def test_studies_to_come_make_a_page(tmp_path, capsys, monkeypatch):
-    monkeypatch.setitem(studies.PLANNED, "weather", "benchmarks/weather.py")
-    assert main(["report", "--only", "weather", "-o", str(tmp_path)]) == 0
-    assert "not part of the report yet" in (tmp_path / "report.md").read_text()
-    assert "wrote" in capsys.readouterr().err
 
 
 def test_each_default_is_told_at_its_own_figures_only():

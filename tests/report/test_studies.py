@@ -241,7 +241,6 @@ def fakes(monkeypatch):
     def use(*made):
         by_name = {study.name: study for study in made}
         monkeypatch.setattr(studies, "MODULES", dict.fromkeys(by_name, ""))
-        monkeypatch.setattr(studies, "PLANNED", {})
         monkeypatch.setattr(studies, "find", by_name.__getitem__)
 
     return use
@@ -294,12 +293,21 @@ def test_a_study_that_cannot_be_done_is_named_with_its_reason(fakes, tmp_path):
     assert "| away | not available | no OpenGL context can be made here |" in text
 
 
-def test_studies_to_come_are_named_too(tmp_path, monkeypatch):
-    for name in ("weather", "tides"):
-        monkeypatch.setitem(studies.PLANNED, name, f"benchmarks/{name}.py")
-    report = run.make_report(tmp_path, only=["weather", "tides"], log=quiet)
-    assert [study.name for study in report.studies] == ["weather", "tides"]
-    assert all("not part of the report yet" in study.unavailable for study in report.studies)
+def test_minutes_are_shared_and_what_does_not_fit_is_named(fakes, tmp_path):
+    clock = Clock()
+    fakes(FakeStudy("slow", clock, 50.0, 10), FakeStudy("brief", clock, 1.0, 3))
+    report = run.make_report(tmp_path, minutes=10.0, log=quiet, clock=clock)
+    assert [len(study.records) for study in report.studies] == [6, 3]
+    assert len(report.studies[0].left_out) == 4
+    assert report.about["quick"] is False
+
+
+@pytest.mark.parametrize(("wrong", "said"), [({"minutes": 0.0}, "minutes is 0.0"), ({"seed": -1}, "seed is -1"),
+                                             ({"minutes": float("nan")}, "minutes is nan")])  # fmt: skip
+def test_wrong_minutes_and_seeds_are_told(fakes, tmp_path, wrong, said):
+    fakes(FakeStudy("brief", Clock(), 1.0, 1))
+    with pytest.raises(ValueError, match=said):
+        run.make_report(tmp_path, log=quiet, **wrong)
 
 
 @pytest.mark.parametrize("name", [*studies.MODULES])
@@ -307,5 +315,5 @@ def test_registered_studies_are_what_they_say(name):
     study = studies.find(name)
     assert study.name == name
     assert study.title
-    assert study.axes
+    assert study.axes or name == "stability"  # whose cases are told in words
     assert set(studies.chosen_names()) >= {name}
