@@ -105,6 +105,8 @@ class Soak:
     def __init__(self, seed: int, size: int) -> None:
         self.seed, self.size = seed, size
         self.data = Data(seed)
+        gc.collect()
+        self._others = alive(), sum(unreleased().values())  # of whatever else this process has drawn
         self.windows: list[Window] = []
         self.told: list[str] = []
         self.acts: Counter[str] = Counter()
@@ -205,10 +207,12 @@ class Soak:
         self.windows.pop().close()
         del first
         gc.collect()
+        actors, objects = self._others
         return {
             "frames": self.frames, "size": self.size, "acts": len(self.told) - start,
-            "before": before, "after": after, "ours": sum(ours.values()),
-            "contexts": contexts, "actors": alive(), "resident_mb": resident(), "objects": len(gc.get_objects()),
+            "before": before, "after": after, "ours": sum(ours.values()) - objects,
+            "contexts": contexts, "actors": alive() - actors, "resident_mb": resident(),
+            "objects": len(gc.get_objects()),
         }  # fmt: skip
 
 

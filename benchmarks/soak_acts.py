@@ -180,9 +180,9 @@ def passes(soak: Any, rng: np.random.Generator) -> str:
     plotter = soak.window(rng).plotter
     name = str(rng.choice(
         ["enable_ssao", "disable_ssao", "enable_depth_peeling", "disable_depth_peeling", "enable_eye_dome_lighting",
-         "disable_eye_dome_lighting", "fxaa", "ssaa", "disable_anti_aliasing"]
+         "disable_eye_dome_lighting", "ssaa", "disable_anti_aliasing"]
     ))  # fmt: skip
-    if name in ("fxaa", "ssaa"):
+    if name == "ssaa":  # PyVista warns of the other, FXAA, where VTK draws by EGL, and takes this
         plotter.enable_anti_aliasing(name)
     elif name == "enable_ssao":
         plotter.enable_ssao(radius=10.0, kernel_size=8)

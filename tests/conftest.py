@@ -60,6 +60,7 @@ class _Headless:
 
     def _make(self):
         self._context = self._moderngl.create_standalone_context(require=430, backend="egl")
+        assert self._context.info["GL_VERSION"]  # read once, and kept: while it is current
         return self._context
 
     def context(self, module):

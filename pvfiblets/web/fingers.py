@@ -59,6 +59,12 @@ class Fingers:
         self._last = None if kind.startswith("End") else pair
         return True
 
+    def resize(self, times: float) -> None:
+        """Take the picture to have so many times the pixels along each side from now on."""
+        if self._last is not None:
+            x, y, distance, angle = self._last
+            self._last = _Pair(x * times, y * times, distance * times, angle)
+
     def _follow(self, before: _Pair, now: _Pair, *, turn: bool) -> None:
         camera = self._plotter.camera
         if min(before.distance, now.distance) >= LEAST:

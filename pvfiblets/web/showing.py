@@ -214,7 +214,9 @@ class Showing:
         """Show only streamlines for which a condition of :mod:`pvfiblets.web.shapes` holds; ``None`` for all."""
         layer = self._lines(layer_id)
         regions = None if condition is None else check_condition(condition)
-        self._filter_by(layer, "regions", ("regions", layer_id), regions=regions)
+        # Only what a slider does many times over is one step: other numbers of the same shapes.
+        moved = _outline(regions) == _outline(layer.filters.regions)
+        self._filter_by(layer, "regions", ("regions", layer_id) if moved else None, regions=regions)
 
     def _filter_by(self, layer: Layer, what: str, key: tuple[str, ...] | None = None, **changes: Any) -> None:
         filters = replace(layer.filters, **changes)
@@ -289,3 +291,12 @@ def check_filters(value: Any, data: Any) -> Filters:
         None if subset is None else check_subset(subset),
         None if regions is None else check_condition(regions),
     )
+
+
+def _outline(value: Any) -> Any:
+    """Return a condition without its numbers."""
+    if isinstance(value, Mapping):
+        return {name: _outline(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_outline(part) for part in value]
+    return None if isinstance(value, (int, float)) and not isinstance(value, bool) else value

@@ -266,6 +266,7 @@ class PictureStream:
         """Draw at a share of the size from now on, and let the pointer be where it was."""
         interactor = self._plotter.iren.interactor
         before, last, place = self._pixels, interactor.GetLastEventPosition(), interactor.GetEventPosition()
+        self._fingers.resize(share / self._drawn_at)
         self._drawn_at = share
         self.times.clear()
         samples, dpi = self._sharp

@@ -346,7 +346,7 @@ def test_nothing_is_done_twice_and_nothing_is_left(gl, cutter, camera, torus, mo
     assert before >= SIZE[0] * SIZE[1] * (16 + 40)
     cutter.prepare(View(SIZE, camera(SIZE), region=BOX), ORIGIN, SCALE, TOP)
     assert len(drawn) == 2
-    assert cutter.nbytes == SIZE[0] * SIZE[1] * 16
+    assert cutter.nbytes == SIZE[0] * SIZE[1] * 16 + cutter._block.size
     assert not cutter.prepare(View(SIZE, camera(SIZE)), ORIGIN, SCALE, TOP)
     assert cutter.nbytes == 0
 

@@ -130,6 +130,7 @@ def test_what_leaks_is_found(bench):
 
 def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
     """Depth peeling in a multi-sampled window leaves one; making the first buffer was then said to lack memory."""
+    others = sum(bench.soak.unreleased().values())
     points = np.linspace(-5.0, 5.0, 60)[:, None] * (1.0, 0.2, 0.0)
     lines = Streamlines(points, [0, 30, 60])
     plotter = pv.Plotter(off_screen=True, window_size=(64, 64))
@@ -146,8 +147,8 @@ def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
         plotter.render()
         picture = plotter.screenshot(return_img=True).astype(int)
         assert (picture[..., 0] - picture[..., 1] > 80).sum() > 30
-        assert sum(bench.soak.unreleased().values()) > 5
+        assert sum(bench.soak.unreleased().values()) > others + 5
     finally:
         plotter.close()
     assert not windows._contexts
-    assert sum(bench.soak.unreleased().values()) == 0
+    assert sum(bench.soak.unreleased().values()) == others

@@ -159,3 +159,23 @@ def test_undo_that_cannot_be_done_changes_nothing(scene, history, folder):
         history.undo()
     assert scene.layers == ()
     assert len(history) == 2
+
+
+def test_moving_a_region_is_one_step_and_joining_another_is_its_own(scene, history, clock):
+    layer = scene.open("lines.fiblets")
+
+    def ball(x):
+        return {"how": "passes", "region": {"kind": "sphere", "center": [x, 18.0, 10.0], "radius": 8.0}}
+
+    begun = len(history)
+    for condition in (ball(20.0), ball(21.0), ball(22.0), {"op": "and", "of": [ball(22.0), ball(30.0)]},
+                      {"op": "or", "of": [ball(22.0), ball(30.0)]}):  # fmt: skip
+        clock.now += 0.1
+        scene.set_regions(layer.id, condition)
+    assert len(history) == begun + 4  # a ball, where it went, another beside it, and how they are joined
+    history.undo()
+    assert scene.layers[0].filters.regions["op"] == "and"
+    history.undo()
+    assert scene.layers[0].filters.regions["region"]["center"][0] == 22.0
+    history.undo()
+    assert scene.layers[0].filters.regions["region"]["center"][0] == 20.0

@@ -172,3 +172,18 @@ def test_wide_lines_keep_their_width_on_the_page(plotter):
     shares = [float((stream._draw(share) < 128).any(-1).mean()) for share in (1.0, 0.5)]
     assert shares[0] > 0.01
     assert shares[1] == pytest.approx(shares[0], rel=0.1)
+
+
+def test_fewer_pixels_zoom_as_far_as_fingers_do(plotter):
+    """Fingers close to half their distance; the picture is reduced in between, and whole again."""
+    plotter.add_mesh(pv.Sphere())
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 400, "h": 240, "p": 1.0})
+    stream._draw()
+    before = plotter.camera.distance
+    for kind, half, share in (("StartPinch", 100, 0.5), ("Pinch", 80, 0.5), ("Pinch", 60, 1.0), ("EndPinch", 50, 1.0)):
+        places = {"1": {"x": 200 - half, "y": 120}, "2": {"x": 200 + half, "y": 120}}
+        stream.on_interaction("", {"type": kind, "w": 400, "h": 240, "positions": places})
+        stream._draw(share)
+    assert plotter.camera.distance == pytest.approx(before / 0.6, rel=0.03)  # an end moves nothing
+    assert np.linalg.norm(np.array(plotter.camera.focal_point)) < 0.01 * before
