@@ -44,22 +44,12 @@ class Camera:
     @property
     def world_to_camera(self) -> Array:
         """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
-        right = np.cross([0.0, 0.0, 1.0], self.backwards)
-        right /= np.linalg.norm(right)
-        matrix = np.eye(4)
-        matrix[:3, :3] = right, np.cross(self.backwards, right), self.backwards
-        matrix[:3, 3] = -matrix[:3, :3] @ self.eye
-        return matrix
+        return Lens.of(self).world_to_camera
 
     @property
     def model_view_projection(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
-        t, near, far = 1.0 / math.tan(math.radians(VERTICAL_ANGLE / 2)), self.near, self.far
-        projection = np.zeros((4, 4))
-        projection[0, 0], projection[1, 1] = t * self.size[1] / self.size[0], t
-        projection[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
-        projection[3, 2] = -1.0
-        return projection @ self.world_to_camera
+        return Lens.of(self).matrix
 
     def aim(self, plotter: Any) -> None:
         """Make a plotter look through this camera."""
@@ -145,17 +135,22 @@ class Lens:
         return 2.0 * self.slant / self.size[1]
 
     @property
+    def world_to_camera(self) -> Array:
+        """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = self.axes
+        matrix[:3, 3] = -self.axes @ self.eye
+        return matrix
+
+    @property
     def matrix(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
-        to_camera = np.eye(4)
-        to_camera[:3, :3] = self.axes
-        to_camera[:3, 3] = -self.axes @ self.eye
         projection = np.zeros((4, 4))
         projection[0, 0], projection[1, 1] = self.size[1] / self.size[0] / self.slant, 1.0 / self.slant
         depth = self.far - self.near
         projection[2, 2:] = -(self.far + self.near) / depth, -2.0 * self.far * self.near / depth
         projection[3, 2] = -1.0
-        return projection @ to_camera
+        return projection @ self.world_to_camera
 
     def seen(self, points: Array) -> Array:
         """Return (n, 3): tangents to the right and up, and distance in front of the eye."""

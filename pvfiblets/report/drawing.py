@@ -9,16 +9,20 @@ from __future__ import annotations
 import contextlib
 import re
 import time
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from .measure import Turns
-from .record import Timing
+from .record import LeftOut, Record, Timing
 from .study import Options, Unavailable
 
-__all__ = ["clock_of", "drawing_context", "timing", "turns_of"]
+__all__ = ["Part", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
+
+Part: TypeAlias = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
+"""Of a study: from a context and options to records."""
 
 SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
 
@@ -52,6 +56,14 @@ def drawing_context(options: Options) -> Iterator[Any]:
             yield ctx
     finally:
         ctx.release()
+
+
+def run_parts(parts: Mapping[Part, float], options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left, by weights."""
+    with drawing_context(options) as ctx:
+        for number, (part, weight) in enumerate(parts.items()):
+            share = weight / sum(list(parts.values())[number:])
+            yield from part(ctx, replace(options, budget=options.budget.share(share)), left_out)
 
 
 def clock_of(ctx: Any) -> tuple[Callable[[], float], str]:

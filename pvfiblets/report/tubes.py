@@ -12,7 +12,7 @@ import numpy as np
 from pvfiblets.splines import curves
 
 from .cameras import VIEWS, Lens, by_turns, orbit
-from .drawing import clock_of, drawing_context, timing, turns_of
+from .drawing import Part, clock_of, run_parts, timing, turns_of
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
 from .tubes_drawings import CastTubes, Drawing, drawings
@@ -33,7 +33,6 @@ QUICK_RANGES = (10.0, 1e3, 1e6)
 SEGMENTS = 20_000  # of a set that are held against their cubics
 LATE = "the time given was used up"
 
-Part = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
 
 
 @dataclass(frozen=True)
@@ -318,10 +317,7 @@ class TubesStudy:
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        with drawing_context(options) as ctx:
-            for number, (part, weight) in enumerate(PARTS.items()):
-                share = weight / sum(list(PARTS.values())[number:])
-                yield from part(ctx, replace(options, budget=options.budget.share(share)), left_out)
+        return run_parts(PARTS, options, left_out)
 
 
 STUDY = TubesStudy()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from pvfiblets.raycast.casting import INTEGRATORS, Casting
 from pvfiblets.synthetic.vessels import vessel_tree
 
 from .cameras import Camera, by_turns
-from .drawing import drawing_context
+from .drawing import Part, run_parts
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 from .volume_fields import DENSE, field, tables
@@ -35,7 +35,6 @@ VESSELS, QUICK_VESSELS = 128, 48
 SIZE, QUICK_SIZE = 256, 128
 PIXELS, QUICK_PIXELS = 3000, 500
 
-Part = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
 
 
 # --------------------------------------------------------------------------------------------------------- integrators
@@ -266,10 +265,7 @@ class VolumeStudy:
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        with drawing_context(options) as ctx:
-            for number, (part, weight) in enumerate(PARTS.items()):
-                share = weight / sum(list(PARTS.values())[number:])
-                yield from part(ctx, replace(options, budget=options.budget.share(share)), left_out)
+        return run_parts(PARTS, options, left_out)
 
 
 STUDY = VolumeStudy()

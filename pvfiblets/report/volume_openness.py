@@ -11,6 +11,8 @@ import numpy.typing as npt
 from pvfiblets.raycast import RaycastVolume, reference
 from pvfiblets.synthetic.vessels import brain_like, vessel_tree
 
+from .cameras import Lens, unit
+
 __all__ = ["SETS", "exact_openness", "opened_head", "seen_from"]
 
 BESIDE = 0.05  # mm
@@ -36,18 +38,9 @@ def seen_from(volume: RaycastVolume, size: tuple[int, int], away: tuple[float, f
     """Return a matrix that shows a volume from a direction, and fills the picture with it."""
     bounds = np.array(volume.bounds).reshape(3, 2)
     middle, reach = bounds.mean(axis=1), float(np.ptp(bounds, axis=1).max())
-    z = np.array(away) / np.linalg.norm(away)
-    x = np.cross([0.0, 0.0, 1.0], z)
-    x /= np.linalg.norm(x)
-    view = np.eye(4)
-    view[:3, :3] = x, np.cross(z, x), z
-    view[:3, 3] = -view[:3, :3] @ (middle + 2.2 * reach * z)
-    near, far, t = 1.2 * reach, 3.4 * reach, 1.0 / np.tan(np.radians(27.0) / 2.0)
-    projection = np.zeros((4, 4))
-    projection[0, 0], projection[1, 1] = t * size[1] / size[0], t
-    projection[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
-    projection[3, 2] = -1.0
-    return projection @ view
+    backwards = unit(np.array(away))
+    slant = float(np.tan(np.radians(27.0) / 2.0))
+    return Lens(size, middle + 2.2 * reach * backwards, backwards, slant, 1.2 * reach, 3.4 * reach).matrix
 
 
 def exact_openness(

@@ -1,7 +1,7 @@
 """A scene pays only for what it uses: no program, switch, pass, buffer or module that nobody asked for.
 
 Each feature alone is drawn in a process of its own by ``scenes.py``, and what is seen there between the program and
-OpenGL, and among the imported modules, must be what ``expected.py`` names: no more and no less.
+OpenGL, and among the imported modules, must be what ``plain.py`` and ``changed.py`` name: no more and no less.
 """
 
 from __future__ import annotations
@@ -17,8 +17,11 @@ import pytest
 
 from pvfiblets.engine.shaders import FEATURES
 
-from .expected import CHANGED, COMPANIONS, KINDS, PLAIN, expected
+from .changed import CHANGED
+from .expected import COMPANIONS, expected
+from .plain import PLAIN
 from .scenes import SCENES, prepare
+from .what import KINDS
 
 SCRIPT = Path(__file__).with_name("scenes.py")
 
@@ -34,7 +37,7 @@ def seen(tmp_path_factory, _headless):
     """What every scene is made of, by name."""
     renderer = _headless._context.info["GL_RENDERER"]
     if "llvmpipe" not in renderer:
-        pytest.skip(f"what a picture is made of depends on the OpenGL; expected.py has llvmpipe's, this is {renderer}")
+        pytest.skip(f"what a picture is made of depends on the OpenGL; plain.py has llvmpipe's, this is {renderer}")
     folder = tmp_path_factory.mktemp("left-out")
     prepare(folder)
     names = list(SCENES)

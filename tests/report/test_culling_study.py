@@ -15,11 +15,9 @@ from pvfiblets.report import culling, data
 from pvfiblets.report.culling_pictures import Shown, apart, averaged, colours, directions, errors, views
 from pvfiblets.report.flights import Flight
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Options, Unavailable
+from pvfiblets.report.study import Budget, Unavailable
 
-
-def little(**rest):
-    return Options(quick=True, repeats=1, log=lambda line: None, machine="m", **rest)
+from .little import little
 
 
 @pytest.fixture

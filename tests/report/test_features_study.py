@@ -12,14 +12,12 @@ from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.report import features
 from pvfiblets.report.features_scenes import PLAIN, torus
-from pvfiblets.report.study import Budget, Options, Unavailable
+from pvfiblets.report.study import Budget, Unavailable
+
+from .little import little
 
 SIZE = (96, 64)
 PIXELS = SIZE[0] * SIZE[1]
-
-
-def little(**rest):
-    return Options(quick=True, repeats=1, log=lambda line: None, machine="m", **rest)
 
 
 @pytest.fixture

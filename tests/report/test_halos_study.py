@@ -18,11 +18,9 @@ from pvfiblets.report.halos_drawing import FibletHalos, Strips
 from pvfiblets.report.halos_exact import crossings, gaps, pixel_errors
 from pvfiblets.report.halos_pictures import helices, look_of, orbit
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Options, Unavailable
+from pvfiblets.report.study import Budget, Unavailable
 
-
-def little(**rest):
-    return Options(quick=True, repeats=1, points=1500, log=lambda line: None, machine="m", **rest)
+from .little import little
 
 
 @pytest.fixture
@@ -36,7 +34,7 @@ def small(monkeypatch):
 def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 1500, 3))
     left = []
-    records = list(halos.STUDY.run(little(files=(tmp_path,)), left))
+    records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
     assert not left
     assert {record.data for record in records} == {"2 helices", "crossings", "brain, 0.5 mm", "some.tck"}
     for record in records:
@@ -61,7 +59,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
 
 
 def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing(gl, small):
-    found = {r.label: r for r in halos.STUDY.run(little(), []) if r.group == "helices"}
+    found = {r.label: r for r in halos.STUDY.run(little(points=1500), []) if r.group == "helices"}
     right = found["float64 reference (1 sample)"]
     assert {figure.value for figure in right.errors.values()} == {0.0}
     assert not right.ours
@@ -75,7 +73,7 @@ def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing
 
 def test_what_time_did_not_suffice_for_is_named(gl, small):
     left = []
-    assert list(halos.STUDY.run(little(budget=Budget(0.0)), left)) == []
+    assert list(halos.STUDY.run(little(points=1500, budget=Budget(0.0)), left)) == []
     late = [item.what for item in left if item.reason == "the time given was used up"]
     assert late[0] == "2 helices: everything"
     assert late[1].startswith("crossings: smooth edges (1 sample), ")
@@ -86,7 +84,7 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     for name in ("a", "b"):
         formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 300, 0))
     left = []
-    assert [s.name for s in halos.scenes(little(files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
+    assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]
 
 
@@ -96,7 +94,7 @@ def test_without_opengl_it_is_unavailable(small, monkeypatch):
 
     monkeypatch.setattr(standalone, "bare_context", none)
     with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
-        list(halos.STUDY.run(little(), []))
+        list(halos.STUDY.run(little(points=1500), []))
 
 
 # ----------------------------------------------------------------------------------------------------- what it measures
@@ -162,7 +160,7 @@ def test_pixel_errors_tell_what_differs(gl):
 
 
 def test_halos_of_fiblets_are_those_of_the_same_lines(gl):
-    scene = next(halos.scenes(little(), []))
+    scene = next(halos.scenes(little(points=1500), []))
     fiblets = compress(scene.tractogram.streamlines)
     shown = []
     for drawing in (FibletHalos(gl, fiblets, 2), Strips(gl, scene.drawn, 2)):

@@ -12,13 +12,11 @@ import pytest
 from pvfiblets.report import tubes
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Options, Unavailable
+from pvfiblets.report.study import Budget, Unavailable
 from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
 from pvfiblets.splines import SplineTubes
 
-
-def little(**more):
-    return Options(quick=True, repeats=1, log=lambda line: None, machine="m", **more)
+from .little import little
 
 
 @pytest.fixture

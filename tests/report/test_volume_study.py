@@ -10,11 +10,9 @@ import pytest
 
 from pvfiblets.raycast.casting import INTEGRATORS, Casting
 from pvfiblets.report import volume, volume_fields, volume_occlusion, volume_scene
-from pvfiblets.report.study import Budget, Options, Unavailable
+from pvfiblets.report.study import Budget, Unavailable
 
-
-def little(**more):
-    return Options(quick=True, repeats=1, log=lambda line: None, machine="m", **more)
+from .little import little
 
 
 @pytest.fixture
