@@ -110,7 +110,7 @@ class Explorer(TrameApp):
             "remove_chosen": self.remove_chosen,
             "point": self.selecting.point,
             "save_session": self.files.save_session,
-            "load_session": lambda text: self.files.load_session(text),
+            "load_session": lambda text: self.files.load_session(text),  # a browser names no folder
             "picture": self.camera.picture,
             "slide": self.sliders.slide,
             "release": self.sliders.release,
