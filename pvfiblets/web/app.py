@@ -283,6 +283,8 @@ class Explorer(TrameApp):
         """Show what goes with a frame; nothing is sent where it is as before."""
         with self.state:
             self.camera.refresh()
+            left_out = self.scene.bars.left_out
+            self.page.no_room = f"No room for the colours of {', '.join(left_out)}" if left_out else ""
             milliseconds = self.stream.milliseconds
             if milliseconds is not None and not self.stream.moving:
                 self.page.frame = f"{milliseconds:.0f} ms a frame"

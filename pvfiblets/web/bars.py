@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import weakref
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
+from pvfiblets.web.bar_places import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.document import Layer
 
-__all__ = ["Bars", "bar_arguments", "bars_of", "contrast", "has_labels"]
+__all__ = ["USUAL_DPI", "Bars", "bar_arguments", "bar_calls", "bars_of", "contrast"]
 
 MOST_BARS = 6
-LABELLED_RATIO = 0.35
-"""How much of its width a bar takes beside names."""
-_WIDTH, _FIRST, _STEP, _NAMES = 0.06, 0.88, 0.14, 0.12
-_LOW, _HEIGHT = 0.07, 0.3
-"""Below the middle of the height, where the letters at the sides stand, titles over the bars included."""
+USUAL_DPI = 72
 
 
 class Bars:
-    """The colour bars of a plotter.
+    """The colour bars of a plotter; they are placed anew whenever its window has another size.
 
     Parameters
     ----------
@@ -28,25 +27,66 @@ class Bars:
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter
         self._shown: list[tuple[Any, ...]] = []
+        self._wanted: list[Wanted] = []
+        self._placed_for: tuple[Any, ...] = ()
+        self.places: list[Place | None] = []
+        this = weakref.ref(self)
+
+        def started(*_: Any) -> None:
+            if (bars := this()) is not None:
+                bars.arrange()
+
+        self._tag = plotter.renderer.AddObserver("StartEvent", started)
+
+    @property
+    def left_out(self) -> list[str]:
+        """Titles of the bars that there is no room for."""
+        return [one.title for one, place in zip(self._wanted, self.places, strict=True) if place is None]
 
     def show(self, drawn: Sequence[tuple[Layer, Any]], background: str) -> None:
         """Bring the bars in step with layers and their actors, in the order of the layers."""
         found = bars_of(drawn)
         wanted = [(title, actor, _looks(layer, actor), background) for title, layer, actor in found]
-        if wanted == self._shown:
+        if wanted != self._shown:
+            for title, *_ in self._shown:
+                if title in self._plotter.scalar_bars:
+                    self._plotter.remove_scalar_bar(title, render=False)
+            self._shown = wanted
+            for title, _, actor in found:
+                self._plotter.add_scalar_bar(
+                    title, mapper=actor.mapper, render=False, n_labels=0 if _has_labels(actor) else MOST_LABELS,
+                    color=contrast(background), vertical=True, position_x=0.5, position_y=0.1,
+                )  # fmt: skip
+            self._placed_for = ()
+        self._wanted = [_wanted(title, actor) for title, _, actor in found]
+        self.arrange()
+
+    def arrange(self) -> None:
+        """Place the bars for the present size of the window, if they are not."""
+        window = self._plotter.render_window
+        if window is None or not self._shown:
+            self.places, self._placed_for = [], ()
             return
-        for title, *_ in self._shown:
-            if title in self._plotter.scalar_bars:
-                self._plotter.remove_scalar_bar(title, render=False)
-        self._shown = wanted
-        for place, (title, _, actor) in enumerate(found):
-            arguments = bar_arguments(place, actor, background)
-            bar = self._plotter.add_scalar_bar(title, mapper=actor.mapper, render=False, **arguments)
-            if has_labels(actor):
-                bar.SetBarRatio(LABELLED_RATIO)
-                bar.SetTextPositionToPrecedeScalarBar()
-                # VTK centres names from the second picture on only.
-                bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()
+        size, dpi = tuple(window.GetSize()), window.GetDPI()
+        now = (size, dpi, tuple(self._wanted))
+        if now == self._placed_for:
+            return
+        self._placed_for = now
+        family = self._plotter.theme.font.family
+        self.places = arrange(
+            self._wanted, size, dpi / USUAL_DPI, lambda text, font: _width_of(text, font, dpi, family)
+        )
+        for (title, *_), place in zip(self._shown, self.places, strict=True):
+            bar = self._plotter.scalar_bars[title]
+            bar.SetVisibility(place is not None)
+            if place is not None:
+                _put(bar, title, place, size)
+
+    def close(self) -> None:
+        """Stop following the window; twice is harmless."""
+        if self._tag is not None and self._plotter.render_window is not None:
+            self._plotter.renderer.RemoveObserver(self._tag)
+        self._tag = None
 
 
 def bars_of(drawn: Sequence[tuple[Layer, Any]]) -> list[tuple[str, Layer, Any]]:
@@ -66,23 +106,65 @@ def bars_of(drawn: Sequence[tuple[Layer, Any]]) -> list[tuple[str, Layer, Any]]:
     return found
 
 
-def bar_arguments(place: int, actor: Any, background: str) -> dict[str, Any]:
-    """Return arguments of ``plotter.add_scalar_bar`` for an actor's bar: the first at the right, others to the left."""
-    found = {
+def bar_arguments(place: Place, size: tuple[int, int], background: str) -> dict[str, Any]:
+    """Return arguments of ``plotter.add_scalar_bar`` for a bar in a place of a picture."""
+    return {
         "color": contrast(background),
         "vertical": True,
-        "width": _WIDTH,
-        "height": _HEIGHT,
-        "position_x": round(_FIRST - _STEP * place, 4),
-        "position_y": _LOW,
+        **_shares(place, size),
+        "n_labels": place.labels,
+        "title_font_size": place.font,
+        "label_font_size": place.label_font,
     }
-    if has_labels(actor):
-        return {**found, "position_x": round(_FIRST - _STEP * place - _NAMES, 4), "n_labels": 0}
-    return {**found, "title_font_size": 13, "label_font_size": 13}
 
 
-def has_labels(actor: Any) -> bool:
-    """Whether an actor's bar names its numbers; it is narrow then, with the names at its right."""
+def bar_calls(title: str, place: Place) -> dict[str, tuple[Any, ...]]:
+    """Return what is said to a bar that ``plotter.add_scalar_bar`` has no argument for: methods, and what they take."""
+    calls: dict[str, tuple[Any, ...]] = {
+        "SetBarRatio": (round(place.ratio, 4),),
+        "SetVerticalTitleSeparation": (place.gap,),
+    }
+    if not place.labels:
+        calls["SetTextPositionToPrecedeScalarBar"] = ()
+    if place.title != title:
+        calls["SetTitle"] = (place.title,)
+    return calls
+
+
+def _put(bar: Any, title: str, place: Place, size: tuple[int, int]) -> None:
+    """Make a bar what a script's arguments and calls make it."""
+    shares = _shares(place, size)
+    bar.SetTitle(title)
+    bar.SetPosition(shares["position_x"], shares["position_y"])
+    bar.SetWidth(shares["width"])
+    bar.SetHeight(shares["height"])
+    bar.SetUnconstrainedFontSize(True)
+    bar.SetAnnotationTextScaling(False)
+    bar.SetDrawTickLabels(place.labels > 0)
+    if place.labels:
+        bar.SetNumberOfLabels(place.labels)
+    bar.GetTitleTextProperty().SetFontSize(place.font)
+    for letters in (bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()):
+        letters.SetFontSize(place.label_font)
+    for name, arguments in bar_calls(title, place).items():
+        getattr(bar, name)(*arguments)
+    # VTK centres names from the second picture on only.
+    bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()
+
+
+def _shares(place: Place, size: tuple[int, int]) -> Mapping[str, float]:
+    """Return a place in shares of the picture's width and height."""
+    width, height = size
+    return {
+        "width": round(place.width / width, 5),
+        "height": round(place.height / height, 5),
+        "position_x": round(place.left / width, 5),
+        "position_y": round(place.bottom / height, 5),
+    }
+
+
+def _has_labels(actor: Any) -> bool:
+    """Whether an actor's bar names its numbers; the names stand at its right."""
     return bool(getattr(actor, "shows_labels", False))
 
 
@@ -90,6 +172,35 @@ def contrast(background: str) -> str:
     """Return black or white, whichever stands out."""
     parts = [int(background[k : k + 2], 16) for k in (1, 3, 5)]
     return "black" if sum(parts) > 382 else "white"
+
+
+def _wanted(title: str, actor: Any) -> Wanted:
+    table = actor.mapper.lookup_table
+    if _has_labels(actor):
+        names = (table.GetAnnotation(k) for k in range(table.GetNumberOfAnnotatedValues()))
+        return Wanted(title, tuple(str(name) for name in names), named=True)
+    low, high = actor.mapper.scalar_range
+    shares = [k / (count - 1) for count in range(2, MOST_LABELS + 1) for k in range(count)]
+    values = [low + share * (high - low) for share in shares]
+    if table.GetScale() and low > 0.0:  # logarithmic
+        values = [low * (high / low) ** share for share in shares]
+    return Wanted(title, tuple(sorted({f"{value:#.3g}" for value in values})))
+
+
+@lru_cache(4096)
+def _width_of(text: str, font: int, dpi: int, family: str) -> float:
+    """Return how wide VTK draws a text, in pixels."""
+    import vtkmodules.vtkRenderingFreeType
+    from pyvista.plotting.tools import parse_font_family
+    from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
+
+    del vtkmodules
+    letters = vtkTextProperty()
+    letters.SetFontFamily(parse_font_family(family))
+    letters.SetFontSize(font)
+    box = [0, 0, 0, 0]
+    vtkTextRenderer.GetInstance().GetBoundingBox(letters, text, box, dpi)
+    return float(box[1] - box[0] + 1)
 
 
 def _title(layer: Layer, actor: Any) -> str | None:
@@ -104,4 +215,4 @@ def _title(layer: Layer, actor: Any) -> str | None:
 def _looks(layer: Layer, actor: Any) -> tuple[Any, ...]:
     """What a bar copies from its actor and does not follow by itself: of meshes all, of others the kind of labels."""
     own = tuple(layer.settings[name] for name in ("cmap", "log_scale") if name in layer.settings)
-    return (*own, tuple(layer.settings["clim"] or ()), has_labels(actor))
+    return (*own, tuple(layer.settings["clim"] or ()), _has_labels(actor))

@@ -31,13 +31,17 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
-.pv-view[data-ground=light] :is(.pv-edge, .pv-status) { color: #000; text-shadow: 0 0 3px #fff, 0 0 3px #fff }
+.pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000; text-shadow: 0 0 3px #fff, 0 0 3px #fff }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
 @media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
 .pv-over svg { width: 100%; height: 100% }
 .pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
   opacity: .85; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
+.pv-notes { position: absolute; right: 8px; top: 8px; z-index: 3; max-width: calc(50% - 40px); display: flex;
+  flex-direction: column; align-items: end; gap: 4px; text-align: right; font: 12px Roboto, sans-serif; color: #fff;
+  text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
+.pv-notes .v-btn { pointer-events: auto }
 .pv-scroll { overflow-y: auto; min-height: 0 }
 .pv-row { display: grid; grid-template-columns: 104px 1fr; align-items: center; gap: 8px; padding: 3px 12px }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
@@ -179,11 +183,13 @@ def _view(app: Any) -> None:
                 ):  # fmt: skip
                     v3.VIcon(icon, size=20)
                     v3.VTooltip(hint, activator="parent", location="right")
-        html.Div("{{ measured ? measured + ' · ' : '' }}{{ frame }}", classes="pv-status")
-        v3.VBtn(
-            "Clear {{ measured }}", v_if="measured", size="x-small", classes="text-none", data_action="clear-distance",
-            click=app.selecting.clear_distance, style="position: absolute; right: 8px; bottom: 26px; z-index: 3",
-        )  # fmt: skip
+        html.Div("{{ frame }}", classes="pv-status")
+        with html.Div(classes="pv-notes"):
+            v3.VBtn(
+                "Clear {{ measured }}", v_if="measured", size="x-small", classes="text-none",
+                data_action="clear-distance", click=app.selecting.clear_distance,
+            )  # fmt: skip
+            html.Div("{{ no_room }}", v_if="no_room", data_value="no-room")
         with html.Div(
             v_if="!layers.length && !job.text",
             style="position: absolute; inset: 0; display: grid; place-items: center; z-index: 3; pointer-events: none",

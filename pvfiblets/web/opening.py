@@ -293,6 +293,7 @@ class FileActions(Actions):
         """Show the Python that makes the same picture."""
         from pvfiblets.web.script import as_script
 
+        self._app.stream.settle()  # the script's picture has all pixels
         self._app.page.script = as_script(self._app.scene)
         self._app.page.dialog = "script"
 

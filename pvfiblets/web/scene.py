@@ -76,7 +76,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}
         self.store = Store(self.files)
-        self._bars = Bars(plotter)
+        self.bars = Bars(plotter)
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
@@ -157,7 +157,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         put_in_order(self.plotter.renderer, [self._drawn[layer.id].actor for layer in state.layers])
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
-        self._bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
+        self.bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
 
     def _draw(self, layer: Layer, clips: tuple[Clip, ...]) -> None:
         """Bring one actor in step with its layer."""
@@ -350,6 +350,7 @@ class Scene(Showing, Selecting, Questions, Cameras):
         self._listeners.clear()
         hide_distance(self.plotter)
         self.become(State(background=self._state.background))
+        self.bars.close()
         self.store.clear()
         self.files.close()
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from pvfiblets.plotting.volumes import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
-from pvfiblets.web.bars import LABELLED_RATIO, bar_arguments, bars_of, has_labels
+from pvfiblets.web.bars import USUAL_DPI, bar_arguments, bar_calls, bars_of
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
@@ -126,6 +126,8 @@ class _Writer:
         self._lines += [f"plotter = pv.Plotter({off}window_size=({width}, {height}))"]
         self._lines += [f"plotter.set_background({self._scene.state.background!r})"]
         window, renderer = self._plotter.render_window, self._plotter.renderer
+        if (dpi := window.GetDPI()) != USUAL_DPI:
+            self._lines += [f"plotter.render_window.SetDPI({dpi})  # letters as large as on the page"]
         if renderer.GetUseFXAA():
             self._lines += ["plotter.enable_anti_aliasing('fxaa')"]
         elif window is not None and window.GetMultiSamples() > 1:
@@ -300,13 +302,18 @@ class _Writer:
 
     def _bars(self) -> None:
         state = self._scene.state
+        self._scene.bars.arrange()
         drawn = [(layer, self._scene.actor(layer.id)) for layer in state.layers]
-        for place, (title, layer, actor) in enumerate(bars_of(drawn)):
-            arguments = bar_arguments(place, actor, state.background)
+        size = self._plotter.window_size
+        for (title, layer, _), place in zip(bars_of(drawn), self._scene.bars.places, strict=True):
+            if place is None:
+                continue
+            arguments = bar_arguments(place, size, state.background)
             mapper = f"mapper={self._names[layer.id]}.mapper"
             self._call("bar = plotter.add_scalar_bar", repr(title), mapper, arguments)
-            if has_labels(actor):
-                self._lines += [f"bar.SetBarRatio({LABELLED_RATIO})", "bar.SetTextPositionToPrecedeScalarBar()"]
+            for name, given in bar_calls(title, place).items():
+                self._lines += [f"bar.{name}({', '.join(map(repr, given))})"]
+            if not place.labels:
                 self._lines += ["bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()"]
 
     def _camera(self) -> None:

@@ -44,6 +44,7 @@ class Page:
     background: str = "#000000"
     edges: Record = field(default_factory=dict)  # anatomical letters at the picture's edges
     measured: str = ""
+    no_room: str = ""  # which colour bars are not shown
 
     clips: list[Record] = field(default_factory=list)
     filters: Record = field(default_factory=dict)

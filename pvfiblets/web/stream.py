@@ -86,6 +86,7 @@ class PictureStream:
         self._wanted = asyncio.Event()
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
+        self._scale = 1.0  # its pixels for one of the page
         self._drawn_at = 1.0  # of that size
         self._moving_at = 1.0
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
@@ -115,8 +116,9 @@ class PictureStream:
         if (pixels := size["w"] * size["h"] * scale**2) > MOST_PIXELS:
             scale *= (MOST_PIXELS / pixels) ** 0.5
         wanted = max(int(size["w"] * scale), 16), max(int(size["h"] * scale), 16)
-        if wanted != self._size:
-            self._size = wanted
+        if (wanted, scale) != (self._size, self._scale):
+            self._size, self._scale = wanted, scale
+            self._plotter.render_window.SetDPI(self._dpi)
             self._plotter.iren.interactor.UpdateSize(*self._pixels)
         self.request()  # always: a page that was reloaded has no picture yet
 
@@ -255,6 +257,11 @@ class PictureStream:
         width, height = self._size
         return max(round(width * self._drawn_at), 16), max(round(height * self._drawn_at), 16)
 
+    @property
+    def _dpi(self) -> int:
+        """Pixels to an inch of what is drawn now."""
+        return max(1, round(self._sharp[1] * self._scale * self._drawn_at))
+
     def _next(self) -> float:
         """Return the share of the size at which the next frame of the moving camera is drawn."""
         last = list(self.times)[-2:]
@@ -269,10 +276,9 @@ class PictureStream:
         self._fingers.resize(share / self._drawn_at)
         self._drawn_at = share
         self.times.clear()
-        samples, dpi = self._sharp
         # Letters and lines keep their size on the page. Enlarged pixels have no use for samples.
-        self._plotter.render_window.SetDPI(max(1, round(dpi * share)))
-        self._plotter.render_window.SetMultiSamples(samples if share == 1.0 else 0)
+        self._plotter.render_window.SetDPI(self._dpi)
+        self._plotter.render_window.SetMultiSamples(self._sharp[0] if share == 1.0 else 0)
         interactor.UpdateSize(*self._pixels)
         for at in (last, place):  # an event moves the place before to the last
             interactor.SetEventPosition(

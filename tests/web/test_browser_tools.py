@@ -70,7 +70,7 @@ def test_a_distance_is_measured_in_millimetres(visit):
     height, width = lit.shape
     here.drag(((first + 10 * per_mm) / width, row / height), ((first + 50 * per_mm) / width, row / height))
     here.wait(lambda: here.state("measured"), "a distance")
-    assert "mm" in here.page.inner_text(".pv-status")
+    assert "mm" in here.page.inner_text("[data-action=clear-distance]")
     assert abs(float(here.state("measured").split()[0]) - 40.0) < 1.0
 
 

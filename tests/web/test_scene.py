@@ -289,7 +289,9 @@ def test_bars_leave_the_places_of_letters_free(scene, size):
     middle = slice(height // 2 - 12, height // 2 + 12)
     assert not bars[middle].any()
     assert not bars[:28, width // 2 - 20 : width // 2 + 20].any()
-    assert bars[:, width // 2 :].sum() > 0.5 * bars.sum()
+    assert not bars[:, :46].any()
+    if width > 320:  # there, all four have room in one half only if they overlap
+        assert bars[:, width // 2 :].sum() > 0.5 * bars.sum()
 
 
 @pytest.mark.parametrize(
