@@ -205,7 +205,11 @@ class Keeping(Generic[A]):
             return
         if state.title is not None:
             # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
-            self._plotter.scalar_bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
+            bars = self._plotter.scalar_bars
+            bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
+            # But not one that was given a place, both x and y.
+            if state.title in bars and not bars._scalar_bar_mappers[state.title]:  # noqa: SLF001
+                bars.remove_scalar_bar(state.title, render=False)
         if wanted is not None:
             self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
             usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}

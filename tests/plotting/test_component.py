@@ -194,6 +194,17 @@ def test_two_actors_that_share_a_bar_share_its_range(plotter, three_lines):
     assert len(plotter.scalar_bars) == 1
 
 
+def test_a_bar_at_a_place_of_its_own_goes_with_the_numbers(plotter, three_lines):
+    place = {"vertical": True, "position_x": 0.8, "position_y": 0.2, "height": 0.6}
+    actor = plotter.add_fiblets(three_lines, scalars="length", scalar_bar_args=place)
+    plotter.add_mesh(pv.Sphere(), scalars=np.zeros(842), scalar_bar_args={**place, "title": "of the sphere"})
+    actor.color = "gold"
+    assert list(plotter.scalar_bars.keys()) == ["of the sphere"]
+    actor.scalars = "curvature"
+    assert list(plotter.scalar_bars.keys()) == ["of the sphere", "curvature [1/mm]"]
+    assert list(plotter.scalar_bars["curvature [1/mm]"].GetPosition()) == [0.8, 0.2]
+
+
 def test_no_bar_for_colours_or_when_not_wanted(plotter, three_lines):
     plotter.add_fiblets(three_lines)
     plotter.add_fiblets(three_lines, color="red")
