@@ -35,12 +35,21 @@ myst_update_mathjax = False
 myst_heading_anchors = 4
 exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.py", "gallery/*.py.md5", "gallery/*.zip"]
 default_role = "py:obj"
+toc_object_entries_show_parents = "hide"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # numpydoc's sections say them in words
 numpydoc_show_class_members = False
 
+html_title = project  # the bar at the top has no room for more on a telephone
 html_theme = "pydata_sphinx_theme"
-html_theme_options = {"show_prev_next": False, "secondary_sidebar_items": ["page-toc"]}
+html_theme_options = {
+    "show_prev_next": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "show_toc_level": 2,
+    "header_links_before_dropdown": 6,
+}
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_show_sourcelink = False
 
 
@@ -63,7 +72,7 @@ def commands() -> str:
     return "\n".join(parts)
 
 
-os.environ["COLUMNS"] = "100"
+os.environ["COLUMNS"] = "80"  # as many as the page is wide
 (HERE / "_build" / "commands.md").write_text(commands())
 
 sphinx_gallery_conf = {

@@ -79,7 +79,10 @@ class Coloured:
 
     @property
     def clim(self) -> tuple[float, float]:
-        """Values of the first and the last colour; ``None`` sets the range of the data."""
+        """Values of the first and the last colour; ``None`` sets the range of the data.
+
+        Once set it stays, other scalars or not.
+        """
         low, high = self._table.scalar_range
         return low, high
 
