@@ -17,9 +17,10 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one picture after each change, and print what the last one costs."""
-    plotter = pv.Plotter(off_screen=True, window_size=(800, 600))
+    plotter = pv.Plotter(off_screen=True, window_size=(1000, 800))
     plotter.set_background("black")
-    actor = plotter.add_fiblets(brain_streamlines(5_000), name="brain", scalar_bar_args={"color": "white"})
+    bar = {"color": "white", "vertical": True, "position_x": 0.86, "position_y": 0.25, "height": 0.5}
+    actor = plotter.add_fiblets(brain_streamlines(8_000), name="brain", scalar_bar_args=bar)
     plotter.view_vector((0, 0, 1), viewup=(0, 1, 0))
     plotter.camera.zoom(1.4)
     plotter.show(auto_close=False)
@@ -33,7 +34,9 @@ def main(folder: Path) -> None:
 
     actor.color = "gold"
     actor.line_width = 3
-    actor.opacity = 0.6
+    actor.tube_shading = True
+    actor.ambient_occlusion = True
+    actor.subset(0.4)
     plotter.render()
     plotter.screenshot(folder / "live_3_gold.png")
 

@@ -31,7 +31,7 @@ def anatomy() -> pv.ImageData:
 def main(folder: Path) -> None:
     """Write one picture of four cuts."""
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
-    streamlines = brain_streamlines(6_000)
+    streamlines = brain_streamlines(10_000)
     torus = pv.ParametricTorus(ringradius=45, crosssectionradius=20).translate((0, 0, 15))
     for index, title in enumerate(("a plane", "a box without a ball", "a torus", "a slab, with a volume's slice")):
         plotter.subplot(index // 2, index % 2)
@@ -47,9 +47,10 @@ def main(folder: Path) -> None:
         else:
             slab = plotter.fiblets.add_slab(actor, "y", origin=(0, -15, 0), thickness=6, volume=anatomy())
             slab.position = -18.0  # it may move at any time
-        plotter.add_text(title, font_size=10, color="white")
+        plotter.add_text(title, position=(12, 368), font_size=11, color="white")
         plotter.view_vector((1, -1.6, 0.8), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.3)
+        plotter.camera.zoom(1.9 if index == 2 else 1.6)
+        plotter.camera.SetWindowCenter(0.0, 0.08)  # room for the title
     plotter.show(auto_close=False)
     plotter.screenshot(folder / "cut.png")
     for actor in plotter.fiblets:

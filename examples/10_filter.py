@@ -29,7 +29,7 @@ def main(folder: Path) -> None:
         bar = {"color": "white", "vertical": True, "height": 0.8, "position_x": 0.89, "position_y": 0.05}
         actor = plotter.add_fiblets(fiblets, scalar_bar_args=bar)
         if index == 0:
-            title = "length 60 to 90 mm, curvature below 0.06 per mm"
+            title = "length 60 to 90 mm, curvature below 0.06 / mm"
             actor.criterion("length", (60, 90))
             actor.criterion("curvature", (0, 0.06))  # a number per point: parts of streamlines go
         elif index == 1:
@@ -48,9 +48,10 @@ def main(folder: Path) -> None:
             chosen[::50] = True
             actor.show_only(chosen)
             fiblets[chosen].save(folder / "chosen.trk")
-        plotter.add_text(title, font_size=9, color="white")
+        plotter.add_text(title, position=(12, 370), font_size=10, color="white")
         plotter.view_vector((-1, -1.2, 0.6), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.3)
+        plotter.camera.zoom(1.4 if index == 2 else 1.55)
+        plotter.camera.SetWindowCenter(0.2 if index == 2 else 0.0, 0.08)  # room for the legend and the title
         print(f"{title}: {actor.shown.sum():,} of {len(fiblets):,} streamlines")
     plotter.show(auto_close=False)
     plotter.screenshot(folder / "filter.png")

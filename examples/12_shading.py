@@ -43,7 +43,7 @@ def main(folder: Path) -> None:
             actor.subset(0.25)
             actor.line_width = 4
             actor.tube_shading = True
-        plotter.add_text(title, font_size=9, color="black")
+        plotter.add_text(title, position=(12, 370), font_size=11, color="black")
         plotter.view_vector((-1, -0.4, 0.4), viewup=(0, 0, 1))
         plotter.camera.zoom(1.45)
     plotter.show(auto_close=False)

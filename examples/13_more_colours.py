@@ -26,7 +26,8 @@ def main(folder: Path) -> None:
     lesion = regions.Sphere((30, 10, 25), 12)
     bar = {"color": "white", "title_font_size": 14, "label_font_size": 12, "n_labels": 2}
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
-    for index in range(4):
+    titles = "a volume", "the distance from a ball", "the coding error", "four layers of lines, and a ball"
+    for index, title in enumerate(titles):
         plotter.subplot(index // 2, index % 2)
         plotter.set_background("black")
         if index == 0:
@@ -39,8 +40,9 @@ def main(folder: Path) -> None:
         else:
             plotter.add_fiblets(streamlines, opacity=0.25, transparency="layers", line_width=2)
             plotter.add_mesh(pv.Sphere(radius=12, center=(30, 10, 25)), color="white")
+        plotter.add_text(title, position=(12, 368), font_size=11, color="white")
         plotter.view_vector((1, 0.9, 0.6), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.3)
+        plotter.camera.zoom(1.5)
     plotter.show(auto_close=False)
     plotter.screenshot(folder / "more_colours.png")
     plotter.close()

@@ -42,17 +42,19 @@ def draw_filtered(folder: Path, brain: Streamlines) -> None:
     """Draw all, then only where the FA is high, which shows what is inside; at last in colours by direction."""
     plotter = pv.Plotter(off_screen=True, window_size=(1400, 900), shape=(2, 2), border=False)
     plotter.set_background("white", all_renderers=True)
-    settings = (
-        {"threshold": None},
-        {"threshold": 0.45},
-        {"threshold": 0.62},
-        {"threshold": 0.62, "scalars": "orientation", "light_on_dark": True},
-    )
-    for index, setting in enumerate(settings):
+    settings = {
+        "all": {"threshold": None},
+        "FA of 0.45 and more": {"threshold": 0.45},
+        "FA of 0.62 and more": {"threshold": 0.62},
+        "the same, by direction": {"threshold": 0.62, "scalars": "orientation", "light_on_dark": True},
+    }
+    for index, (title, setting) in enumerate(settings.items()):
         plotter.subplot(*divmod(index, 2))
         plotter.add_halo_lines(brain, line_width=0.35, strip_width=1.4, filter_by="fa", **setting)
         plotter.view_vector((0.35, 1.0, 0.3), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.8)
+        plotter.camera.zoom(1.75)
+        plotter.camera.SetWindowCenter(0.0, 0.08)  # room for the title
+        plotter.add_text(title, position=(14, 416), font_size=11, color="white" if index == 3 else "black")
     plotter.set_background("black", all_renderers=False)
     plotter.screenshot(folder / "halos_filtered.png")
     plotter.close()
