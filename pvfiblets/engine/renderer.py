@@ -111,7 +111,8 @@ class FibletRenderer:
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
-        self._features: list[str] = []
+        self._features: frozenset[str] = frozenset()
+        self._features_of_layers: frozenset[str] = frozenset()
         self._values: ValueSources | None = None
         self._kept: Kept | None = None
         self._layers: Layers | None = None
@@ -174,16 +175,17 @@ class FibletRenderer:
         except EngineError:
             self._target = None  # its textures are given back
             raise
-        job = self._job(view, style, self._target)
-        self._features = job.features
-        self._passes.begin()
-        if self._occlusion is not None:
-            self._occlusion.outside = outside
-            with self._passes.timed("last picture") if self._target.generation else nullcontext():
-                self._occlusion.before(self._target, view, style)
-        pipeline.draw(job)
-        if self._occlusion is not None:
-            self._occlusion.after(self._target, view, style)
+        with self._programs.noting() as features:
+            job = self._job(view, style, self._target)
+            self._passes.begin()
+            if self._occlusion is not None:
+                self._occlusion.outside = outside
+                with self._passes.timed("last picture") if self._target.generation else nullcontext():
+                    self._occlusion.before(self._target, view, style)
+            pipeline.draw(job)
+            if self._occlusion is not None:
+                self._occlusion.after(self._target, view, style)
+        self._features, self._features_of_layers = frozenset(features), frozenset()
         self._generation += 1
         self._target.generation = self._generation
         if outside is None:
@@ -217,13 +219,17 @@ class FibletRenderer:
         nearest = self.render(view, style)
         if self._layers is None:
             self._layers = Layers(self._ctx, self._gl, self._programs, self._make_stage)
-        return self._layers.of(nearest, count, view, style, lambda: self._job(view, style, nearest))
+        with self._programs.noting() as features:
+            layers = self._layers.of(nearest, count, view, style, lambda: self._job(view, style, nearest))
+        self._features_of_layers |= features
+        return layers
 
     def drop_layers(self) -> None:
         """Give back what :meth:`render_layers` keeps; twice is harmless."""
         if self._layers is not None:
             self._layers.release()
             self._layers = None
+        self._features_of_layers = frozenset()
 
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
         # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
@@ -365,12 +371,13 @@ class FibletRenderer:
         Returns
         -------
         dict
-            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``fiblets_total``, ``share``; ``fiblets``:
-            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.census`), None where not known.
+            ``passes`` (name, ms); ``features``, which are on in the programs that ran, layers' included; ``buffers``
+            (name, bytes); ``fiblets_total``, ``share``; ``fiblets``: ``total``,
+            ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.census`), None where not known.
         """
         return {
             "passes": self._passes.report(),
-            "features": list(self._features),
+            "features": sorted(self._features | self._features_of_layers),
             "buffers": buffer_sizes(
                 {} if self._shared is None else self._shared.buffers,
                 self._chunks,

@@ -16,7 +16,8 @@ composed source with its line numbers.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -27,7 +28,7 @@ import moderngl
 from ..codec import layout
 from .errors import EngineError
 
-__all__ = ["BLOCKS", "EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader"]
+__all__ = ["BLOCKS", "EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
 
 FEATURES: dict[str, str] = {
     "ANCHORS_LOW": "anchors of 32 bits per axis",
@@ -130,6 +131,7 @@ _BINDING = re.compile(r",\s*binding\s*=\s*\d+")
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[ \t]*$', re.MULTILINE)
 _CONSTANT = re.compile(r"\{\{\s*(\w*)\s*\}\}")
 _FEATURE = re.compile(r"\bFEATURE_(\w+)")
+_SWITCHED_ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
 
 
 @cache
@@ -230,8 +232,15 @@ def assemble(
     return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
 
 
+def switched_on(*sources: str) -> frozenset[str]:
+    """Return the features that are on in what :func:`assemble` made."""
+    return frozenset(feature for source in sources for feature in _SWITCHED_ON.findall(source))
+
+
 class Programs:
     """Programs of one context, built when first asked for and kept.
+
+    Whoever draws asks for a program each time it runs, so that :meth:`noting` knows what a picture was made of.
 
     Parameters
     ----------
@@ -247,6 +256,26 @@ class Programs:
         self._requests: dict[tuple[str, frozenset[str]], moderngl.ComputeShader] = {}
         self._linked: dict[tuple[tuple[tuple[str, str], ...], frozenset[str]], moderngl.Program] = {}
         self._screens: dict[tuple[str, frozenset[str]], tuple[moderngl.Program, moderngl.VertexArray]] = {}
+        self._switches: dict[object, frozenset[str]] = {}
+        self._noted: list[set[str]] = []
+
+    @contextmanager
+    def noting(self) -> Iterator[set[str]]:
+        """Give a set to which the features of all programs are added that are asked for meanwhile.
+
+        They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
+        """
+        noted: set[str] = set()
+        self._noted.append(noted)
+        try:
+            yield noted
+        finally:
+            self._noted.pop()
+
+    def note(self, features: Iterable[str]) -> None:
+        """Add features of a program that somebody else made and is about to run."""
+        for noted in self._noted:
+            noted.update(features)
 
     def compute(self, name: str, features: Iterable[str] = ()) -> moderngl.ComputeShader:
         """Return the program of a stage with some features on.
@@ -260,6 +289,7 @@ class Programs:
         """
         request = name, frozenset(features)
         if request in self._requests:
+            self.note(self._switches[request])
             return self._requests[request]
         version = EXTENDED if "INT64_ATOMICS" in request[1] else NEWEST
         source = assemble(name, request[1], self._constants, version=version)
@@ -269,6 +299,8 @@ class Programs:
             except moderngl.Error as error:
                 raise EngineError(f"{name} does not compile: {error}\n{_numbered(source)}") from error
         self._requests[request] = self._programs[source]
+        self._switches[request] = switched_on(source)
+        self.note(self._switches[request])
         return self._programs[source]
 
     def screen(self, name: str, features: Iterable[str] = ()) -> tuple[moderngl.Program, moderngl.VertexArray]:
@@ -280,8 +312,8 @@ class Programs:
             If a stage does not compile; the message holds its source.
         """
         key = name, frozenset(features)
+        program = self.render({"vertex": "screen/triangle.vert", "fragment": name}, key[1])
         if key not in self._screens:
-            program = self.render({"vertex": "screen/triangle.vert", "fragment": name}, features)
             self._screens[key] = program, self._ctx.vertex_array(program, [])
         return self._screens[key]
 
@@ -319,6 +351,8 @@ class Programs:
                 if isinstance(member := program.get(block, None), moderngl.UniformBlock):
                     member.binding = binding
             self._linked[request] = program
+            self._switches[request] = switched_on(*sources.values())
+        self.note(self._switches[request])
         return self._linked[request]
 
     def release(self) -> None:
@@ -333,6 +367,7 @@ class Programs:
         self._programs.clear()
         self._requests.clear()
         self._linked.clear()
+        self._switches.clear()
 
 
 def _numbered(source: str) -> str:

@@ -74,6 +74,7 @@ class Questions:
                         if hasattr(kept, "explain"):
                             costs = kept.explain()
                             windows[-1]["passes"] += costs["passes"]
+                            windows[-1]["features"] = sorted({*windows[-1]["features"], *costs.get("features", ())})
                             textures += costs["buffers"]
             textures += [
                 {"name": name, "bytes": texture.width * texture.height * texture.components}

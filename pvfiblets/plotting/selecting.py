@@ -352,6 +352,7 @@ class Selecting(SelectionMeasures):
         return {
             "streamlines": len(self.selection),
             "passes": [] if apart is None else apart["passes"],
+            "features": [] if apart is None else apart["features"],
             "gpu_bytes": 0 if apart is None else apart["gpu_bytes"],
         }
 

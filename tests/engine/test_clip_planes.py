@@ -227,6 +227,7 @@ def test_fiblets_apart_from_the_planes_are_drawn_as_ever(gl, fabricate, random_l
     fiblets = fabricate(random_lines(150, seed=3), kind=2, per_fiblet=12)
     view = View(SIZE, camera(SIZE))
     renderer = FibletRenderer(gl, fiblets)
+    renderer.render(View(SIZE, camera(SIZE, near=10.0)), style)  # the first picture has none before it to cull by
     plain = read(renderer.render(view, style))
     features = renderer.explain()["features"]
     away = read(renderer.render(View(SIZE, camera(SIZE), [(1, 0, 0, 1e4), (0, 0, 0, 1)]), style))

@@ -179,15 +179,15 @@ def test_explain(renderer, tubes, view, camera, monkeypatch):
     assert said["primitives"] == 2 * tubes.n_segments
     assert (said["solver"], said["iterations"]) == ("illinois", SOLVERS["illinois"].iterations)
     assert said["culling"] is None
-    assert said["features"] == ["SPLINE_ILLINOIS"]
+    assert said["features"] == ["SPLINE_ILLINOIS", "TUBES"]
     # Planes cost nothing where they touch nothing, and only what cutting needs where they do.
     renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]))
-    assert renderer.explain()["features"] == ["SPLINE_ILLINOIS"]
+    assert renderer.explain()["features"] == ["SPLINE_ILLINOIS", "TUBES"]
     renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0.0]]))
-    assert renderer.explain()["features"] == ["CLIP_PLANES", "SPLINE_CHAIN", "SPLINE_ILLINOIS"]
+    assert renderer.explain()["features"] == ["CLIP_PLANES", "SPLINE_CHAIN", "SPLINE_ILLINOIS", "TUBES"]
     assert "clip_planes" in buffers(renderer)
     renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 59.0})))
-    assert renderer.explain()["features"] == ["SPLINE_CHAIN", "SPLINE_HOLLOW", "SPLINE_ILLINOIS"]
+    assert renderer.explain()["features"] == ["SPLINE_CHAIN", "SPLINE_HOLLOW", "SPLINE_ILLINOIS", "TUBES"]
     assert "clip_planes" not in buffers(renderer)
     renderer.render(view)
     assert renderer.explain()["features"] == said["features"]

@@ -61,6 +61,8 @@ def shots(fiblets):
             actor = plotter.add_fiblets(fiblets, pipeline=pipeline, show_scalar_bar=False)
             plotter.add_mesh(pv.Sphere(radius=12, center=(30, 0, 20)), color="white")
             plotter.show(auto_close=False)
+            plotter.camera.azimuth += 3.0
+            plotter.render()  # the first picture could not look at one before it
             before = actor.explain()
             for name in switch_on(actor):
                 plotter.camera.azimuth += 3.0

@@ -48,7 +48,7 @@ class Listing:
     cull : str
         The compute shader that lists them, an invocation each.
     features : sequence of str
-        Of that shader.
+        Of that shader; they may be others for each picture.
     shift : int
         Items are ``1 << shift`` quads each, and as much is a quad's number moved to the right to give its item's.
     """
@@ -65,7 +65,7 @@ class Listing:
         shift: int = 0,
     ) -> None:
         self._ctx, self._gl, self._programs, self._n = ctx, gl, programs, n_items
-        self._cull, self._features, self._shift = cull, list(features), shift
+        self._cull, self.features, self._shift = cull, list(features), shift
         self._pyramid = DepthPyramid(ctx, gl, programs)
         self._per_call = BATCH // _QUAD >> shift
         self._calls = -(-n_items // self._per_call)
@@ -149,7 +149,7 @@ class Listing:
         self.buffers["counts"].write(bytes(16))
         for binding, name in enumerate(("seen", "listed", "counts", "commands")):
             self.buffers[name].bind_to_storage_buffer(binding)
-        cull = self._programs.compute(self._cull, self._features)
+        cull = self._programs.compute(self._cull, self.features)
         prepare(cull)
         cull["second_round"] = int(second)
         if second:

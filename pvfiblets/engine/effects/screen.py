@@ -35,6 +35,7 @@ class ScreenEffect:
         self._queries: dict[str, moderngl.Query] = {}
         self._targets: dict[str, tuple[moderngl.Texture, moderngl.Framebuffer]] = {}
         self._made_of: tuple[object, ...] | None = None
+        self._features: frozenset[str] = frozenset()
 
     def _once(self, made_of: tuple[object, ...], draw: Callable[[], None]) -> None:
         """Draw, unless the last picture was made of the same."""
@@ -44,7 +45,9 @@ class ScreenEffect:
         with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
             self._ctx.scissor = None
             self._ctx.enable_only(moderngl.NOTHING)
-            draw()
+            with self._programs.noting() as features:
+                draw()
+        self._features = frozenset(features)
         self._made_of = made_of
 
     def _target(self, name: str, size: tuple[int, int], dtype: str) -> moderngl.Texture:
@@ -84,8 +87,15 @@ class ScreenEffect:
             self._targets[target][1].use()
             array.render(moderngl.TRIANGLES, vertices=3)
 
-    def explain(self) -> dict[str, list[dict[str, object]]]:
-        """Return ``passes``, name and ms of when it last drew, and ``buffers``, name and bytes of its textures."""
+    def explain(self) -> dict[str, list[Any]]:
+        """Say what it is made of.
+
+        Returns
+        -------
+        dict
+            ``passes``, name and ms of when it last drew; ``features``, which are on in its programs; ``buffers``, name
+            and bytes of its textures.
+        """
         sizes = {"f1": 1, "u1": 1, "f2": 2, "f4": 4, "u4": 4}
         buffers: list[dict[str, object]] = [
             {"name": f"{name} (effect)", "bytes": texture.width * texture.height * sizes[texture.dtype]}
@@ -94,7 +104,7 @@ class ScreenEffect:
         passes: list[dict[str, object]] = [
             {"name": f"{name} (effect)", "ms": query.elapsed / 1e6} for name, query in self._queries.items()
         ]
-        return {"passes": passes, "buffers": buffers}
+        return {"passes": passes, "features": sorted(self._features), "buffers": buffers}
 
     def _textures(self) -> dict[str, moderngl.Texture]:
         return {name: texture for name, (texture, _) in self._targets.items()}

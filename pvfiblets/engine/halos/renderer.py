@@ -104,7 +104,6 @@ class HaloRenderer:
                     self._programs,
                     -(-self._n >> ITEM_SHIFT),
                     cull="halos/cull.comp",
-                    features=[*self._kind, "HALO_CUE"],
                     shift=ITEM_SHIFT,
                 )
         except BaseException:
@@ -165,7 +164,6 @@ class HaloRenderer:
                 "CLIP_PLANES": planes,
             }
             features = [*self._kind, *(name for name, on in wanted.items() if on)]
-            self._features = sorted({*features, *([reads] if reads else [])})
             self._passes.begin()
             self._ctx.scissor = None
             vertices.bind()
@@ -173,8 +171,10 @@ class HaloRenderer:
             # their lines would then flicker.
             listing = self._listing if look.max_displacement > 0.0 else None
             self._listed = listing is not None
-            self._draw(target, shapes, listing, features)
-            self._attributes(target, shapes, [*self._kind, *([reads] if reads else [])])
+            with self._programs.noting() as noted:
+                self._draw(target, shapes, listing, features)
+                self._attributes(target, shapes, [*self._kind, *([reads] if reads else [])])
+            self._features = sorted(noted)
         self._generation += 1
         target.buffer.generation = self._generation
         self._made = (view, style)
@@ -191,6 +191,7 @@ class HaloRenderer:
     def _draw(self, target: HitTarget, shapes: PulledShapes, listing: Listing | None, features: list[str]) -> None:
         """Draw what the depth buffer keeps."""
         if listing is not None:
+            listing.features = [name for name in features if name in ("HALO_POINTS", "HALO_CUE")]
             with self._passes.timed("last picture"):
                 listing.before(target, target.hits)
         with self._passes.timed("clear"):
@@ -262,9 +263,9 @@ class HaloRenderer:
         Returns
         -------
         dict
-            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``points_total``, ``lines_total`` (0 of
-            points), ``primitives`` (triangles without culling), ``culling`` (as the last
-            picture was drawn).
+            ``passes`` (name, ms), ``features``, which are on in the programs that ran, ``buffers`` (name, bytes),
+            ``points_total``, ``lines_total`` (0 of points), ``primitives`` (triangles without culling), ``culling``
+            (as the last picture was drawn).
         """
         sizes: dict[str, int] = {}
         for holder in (self._vertices, self._blocks, self._shapes):

@@ -99,14 +99,6 @@ class Job:
             classes.append((3, (*common, "ONE_SEGMENT")))
         return classes
 
-    @property
-    def features(self) -> list[str]:
-        """All of them, for reports."""
-        clipping = ("CLIPPING", "CLIPPING_DEPTH") if self.clipping else ()
-        culling = (self.occlusion.feature,) if self.occlusion is not None else ()
-        every = (*self.decoding, *self.values, *self.wide, *self.detail, *clipping, *self.planes)
-        return [*every, *self.kept.culling, *culling]
-
 
 class Sized(Protocol):
     """Something on the GPU."""

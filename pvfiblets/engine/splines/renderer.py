@@ -159,8 +159,10 @@ class SplineRenderer:
         self._drawn = None
         shown = self._attribute(style)
         reads = nodes.show(shown)
-        with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
+        # One of our framebuffers must not stay bound when it is released.
+        with self._gl.framebuffers_kept(), self._programs.noting() as features:
             target = self._draw(view, reads, nodes, blocks, silhouettes)
+        self._features = sorted(features)
         self._generation += 1
         target.buffer.generation = self._generation
         self._drawn = (view, style)
@@ -188,8 +190,6 @@ class SplineRenderer:
         hollow = self._inside.touched(view, self._min_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
         rounds = self._rounds(common, cut=cut, hollow=hollow)
-        features = set().union(*(chosen for chosen, _ in rounds))
-        self._features = sorted({*features, *([reads] if reads else [])} - {"TUBES"})
         self._passes.begin()
         self._ctx.scissor = None
         nodes.bind()
@@ -283,8 +283,9 @@ class SplineRenderer:
         Returns
         -------
         dict
-            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``tubes_total``, ``segments_total``,
-            ``primitives`` (triangles without culling), ``culling``, ``solver``, ``iterations``.
+            ``passes`` (name, ms), ``features``, which are on in the programs that ran, ``buffers`` (name, bytes),
+            ``tubes_total``, ``segments_total``, ``primitives`` (triangles without culling), ``culling``, ``solver``,
+            ``iterations``.
         """
         sizes: dict[str, int] = {}
         for holder in (self._nodes, self._blocks, self._silhouettes):
