@@ -23,13 +23,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.query.shapes import LABELS, SURFACE
+from ..codec.query.shapes import SURFACE
+from .cut_planes import check_region
 from .errors import EngineError
 from .frame import Array, local_frame
 from .layer_stack import LayerStack, Rectangle, Squares
 from .opengl import OpenGL
 from .rays import Form, rays_block, to_unit, window_matrix
-from .shaders import NEWEST, Programs, assemble
+from .shaders import NEWEST, Programs, assemble, switched_on
 from .surface_layers import SurfaceLayers, rectangle_of
 from .view import View
 
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from ..codec.query.shapes import Region
     from ..codec.query.surfaces import Surface
 
-__all__ = ["BOUNDARIES_UNIT", "Cutter", "check_region"]
+__all__ = ["BOUNDARIES_UNIT", "Cutter"]
 
 BOUNDARIES_UNIT = 26
 """Texture unit of the boundaries."""
@@ -53,21 +54,6 @@ _FORMS = 8
 
 _LAYERS = 2
 """Of boundaries, before any pixel is known to have more than fit in."""
-
-
-def check_region(region: Region) -> None:
-    """Refuse what has no crossings along a ray.
-
-    Raises
-    ------
-    ValueError
-        If the region holds a label volume.
-    """
-    if any(leaf.kind == LABELS for leaf in region.leaves):
-        raise ValueError(
-            "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a "
-            "closed surface around the labels, e.g. pyvista's contour_labels()"
-        )
 
 
 class Cutter:
@@ -90,7 +76,7 @@ class Cutter:
         self._stack: LayerStack | None = None
         self._squares = Squares(ctx, gl, programs)
         self._surfaces: SurfaceLayers | None = None
-        self._forms: dict[tuple[Form, int], tuple[moderngl.Program, moderngl.VertexArray]] = {}
+        self._forms: dict[tuple[Form, int], tuple[moderngl.Program, moderngl.VertexArray, frozenset[str]]] = {}
         self._block: moderngl.Buffer | None = None
         self.layers = 0
 
@@ -246,7 +232,7 @@ class Cutter:
         key = form, outputs
         if key not in self._forms:
             while len(self._forms) >= _FORMS:
-                for thing in self._forms.pop(next(iter(self._forms)))[::-1]:
+                for thing in self._forms.pop(next(iter(self._forms)))[1::-1]:
                     thing.release()
             version = min(self._ctx.version_code, NEWEST)
             features = ["PEEL"] if SURFACE in form.kinds else []
@@ -261,8 +247,10 @@ class Cutter:
             block = program["Rays"]
             assert isinstance(block, moderngl.UniformBlock)
             block.binding = RAYS_BINDING
-            self._forms[key] = program, self._ctx.vertex_array(program, [])
-        return self._forms[key]
+            self._forms[key] = program, self._ctx.vertex_array(program, []), switched_on(fragment)
+        program, array, on = self._forms[key]
+        self._programs.note(on)
+        return program, array
 
     def _stack_of(self, size: tuple[int, int], layers: int) -> LayerStack:
         """Make room for layers of a size; what is there is lost where it grows."""
@@ -301,7 +289,7 @@ class Cutter:
             self._surfaces.release()
             self._surfaces = None
         self._squares.release()
-        for program, array in self._forms.values():
+        for program, array, _ in self._forms.values():
             array.release()
             program.release()
         self._forms.clear()

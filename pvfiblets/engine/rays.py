@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.query.shapes import AND, BOX, NOT, PLANE, SLAB, SPHERE, SURFACE
+from ..codec.query.shapes import AND, BOX, NOT, SPHERE, SURFACE
+from .cut_planes import SIDES
 from .frame import Array
 
 if TYPE_CHECKING:
@@ -22,13 +23,6 @@ __all__ = ["Form", "rays_block", "to_unit", "window_matrix"]
 
 _ROWS = 6
 _PLANES, _SPHERE, _SURFACE = range(3)
-
-# Planes of each kind, as rows over homogeneous unit coordinates (u, v, w, weight).
-_SIDES = {
-    PLANE: np.array([[0.0, 0, 1, 0]]),
-    SLAB: np.array([[0.0, 0, 1, 1], [0, 0, -1, 1]]),
-    BOX: np.array([[1.0, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1]]),
-}
 
 
 def to_unit(leaf: Shape, offset: Array) -> Array:
@@ -95,7 +89,7 @@ class Form:
         return {
             "leaves": len(kinds),
             "kinds": ", ".join(map(str, kinds)),
-            "planes": ", ".join(str(len(_SIDES.get(kind, ()))) for kind in self.kinds),
+            "planes": ", ".join(str(len(SIDES.get(kind, ()))) for kind in self.kinds),
             "expression": self.expression,
         }
 
@@ -168,7 +162,7 @@ def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, in
             continue
         about = _centre(window, np.append(leaf.centre - offset, 1.0), size)
         unit = _expanded(to_unit(leaf, offset) @ inverse, about)
-        rows = _quadric(unit, size) if leaf.kind == SPHERE else _scaled(_SIDES[leaf.kind] @ unit, size)
+        rows = _quadric(unit, size) if leaf.kind == SPHERE else _scaled(SIDES[leaf.kind] @ unit, size)
         block["rows"][k, : len(rows)] = rows
         block["centres"][k, :3] = about
     return block

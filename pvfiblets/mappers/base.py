@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, cast
 
+import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
-from pvfiblets.engine.view import Style, View
+from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
@@ -78,7 +79,6 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         self._active = ActiveRenderer()
         self._installed: tuple[resolve.Replacement, ...] = ()
         self._extras: dict[str, Extra] = {}
-        self._region: Any = None
         self._error: BaseException | None = None
         self._last_drawn: str | None = None
         self._colouring = colouring
@@ -239,8 +239,10 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
             program.SetUniform2i("fibletSize", (0, 0))
             return
         frame = frame_of(renderer, actor, viewport)
-        planes = frame.planes_in_data(world_planes(self))
-        view = View(viewport[2:], frame.model_view_projection, planes, frame.region_in_data(self._region))
+        planes, region = self._cuts()
+        view = View(
+            viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
+        )
         style = self._style(renderer, viewport)
         slot = context.slot(self)
         with context.foreign():
@@ -262,6 +264,10 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         self._last_drawn = renderer.GetAddressAsString("")
         slot.drawn.pop(self._last_drawn, None)
         slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
+
+    def _cuts(self) -> tuple[Any, Any]:
+        """Return what cuts in world mm: planes, and the region that is not planes."""
+        return world_planes(self), None
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
@@ -315,6 +321,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
 class CutMapper(EngineMapper):
     """Mapper of what a region can cut."""
 
+    _region: Any = None
+
     @property
     def region(self) -> Any:
         """`pvfiblets.regions.Region` in world mm outside of which nothing is drawn; None for none."""
@@ -324,6 +332,16 @@ class CutMapper(EngineMapper):
     def region(self, region: Any) -> None:
         self._region = region
         self._actor_modified()
+
+    def _cuts(self) -> tuple[Any, Any]:
+        """Return planes, VTK's own and what of the region is planes as far as there is room, and the rest of it."""
+        planes, region = super()._cuts()
+        if self._region is None:
+            return planes, region
+        from pvfiblets.engine.cut_planes import planes_of
+
+        more, region = planes_of(self._region, max(MAX_CLIP_PLANES - len(planes), 0))
+        return np.concatenate([planes, more]), region
 
 
 @calldata_type(VTK_OBJECT)

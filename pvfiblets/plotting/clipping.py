@@ -44,7 +44,7 @@ class Clipping:
         ValueError
             If a mesh is open, empty or inside-out, a number makes no sense, or it is of labels.
         """
-        from pvfiblets.engine.cutting import check_region
+        from pvfiblets.engine.cut_planes import check_region
 
         region = as_region(what)
         check_region(region)

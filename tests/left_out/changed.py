@@ -116,24 +116,34 @@ CHANGED = {
         """,
     ),
     "clip: plane": What(
-        ran="regions/combine.frag",
-        features="CLIP_REGION",
-        buffers="region, region shapes",
-        modules="""
-            codec.query.shapes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
-            engine.surface_layers, regions
-        """,
+        features="CLIP_PLANES",
+        buffers="clip_planes",
+        modules="codec.query.shapes, engine.cut_planes, regions",
     ),
     "clip: planes of VTK": What(
         features="CLIP_PLANES",
         buffers="clip_planes",
     ),
     "clip: box": What(
+        features="CLIP_PLANES",
+        buffers="clip_planes",
+        modules="codec.query.shapes, engine.cut_planes, regions",
+    ),
+    "clip: plane and ball": What(
+        ran="regions/combine.frag",
+        features="CLIP_PLANES, CLIP_REGION",
+        buffers="clip_planes, region, region shapes",
+        modules="""
+            codec.query.shapes, engine.cut_planes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
+            engine.surface_layers, regions
+        """,
+    ),
+    "clip: outside a box": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",
         buffers="region, region shapes",
         modules="""
-            codec.query.shapes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
+            codec.query.shapes, engine.cut_planes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
             engine.surface_layers, regions
         """,
     ),
@@ -144,8 +154,8 @@ CHANGED = {
         packages="numba",
         modules="""
             codec.jit, codec.query.field_kernels, codec.query.fields, codec.query.shapes,
-            codec.query.surface_kernels, codec.query.surfaces, engine.cutting, engine.layer_stack, engine.rays,
-            engine.regions, engine.surface_layers, regions
+            codec.query.surface_kernels, codec.query.surfaces, engine.cut_planes, engine.cutting,
+            engine.layer_stack, engine.rays, engine.regions, engine.surface_layers, regions
         """,
     ),
     "criterion: per streamline": What(
@@ -346,12 +356,15 @@ CHANGED = {
         passes="-rays, between, other rays, sparse rays",
         buffers="sparse",
     ),
+    "volume: cut by planes": What(
+        modules="codec.query.shapes, engine.cut_planes, regions",
+    ),
     "volume: cut": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",
         buffers="region",
         modules="""
-            codec.query.shapes, engine.cutting, engine.frame, engine.layer_stack, engine.rays,
+            codec.query.shapes, engine.cut_planes, engine.cutting, engine.frame, engine.layer_stack, engine.rays,
             engine.surface_layers, regions
         """,
     ),

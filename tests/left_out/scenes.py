@@ -106,6 +106,11 @@ def near_ball(scene):
     return regions.Sphere(middle(scene), 30.0)
 
 
+def plane_and_ball(scene):
+    scene.actor.clip(((1, 0, 0), middle(scene)))
+    scene.actor.clip(near_ball(scene))
+
+
 def setting(**wanted):
     """A scene of streamlines whose actor is given these properties."""
 
@@ -176,6 +181,8 @@ SCENES = {
     "clip: plane": doing(lambda s: s.actor.clip(((1, 0, 0), middle(s)))),
     "clip: planes of VTK": doing(lambda s: s.actor.mapper.AddClippingPlane(vtk_plane(middle(s)))),
     "clip: box": doing(lambda s: s.actor.clip(box(s))),
+    "clip: plane and ball": doing(plane_and_ball),
+    "clip: outside a box": doing(lambda s: s.actor.clip(box(s), inside=False)),
     "clip: mesh": doing(lambda s: s.actor.clip(ball(s))),
     "criterion: per streamline": doing(lambda s: s.actor.criterion("length", (20.0, 90.0))),
     "criterion: per point": doing(lambda s: s.actor.criterion("fa", (0.2, 0.8))),
@@ -212,7 +219,8 @@ SCENES = {
     "volume: jitter": made("volume", jitter=True),
     "volume: no octree": made("volume", octree=False),
     "volume: sparse": made("volume", sparse=4),
-    "volume: cut": doing(lambda s: s.actor.clip(box(s)), "volume"),
+    "volume: cut by planes": doing(lambda s: s.actor.clip(box(s)), "volume"),
+    "volume: cut": doing(lambda s: s.actor.clip(box(s), inside=False), "volume"),
     "volume: ray occlusion": made("volume", mode="isosurface", values=0.7, ray_occlusion=True),
 }
 
@@ -259,6 +267,7 @@ def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
         buffers += plotter.picture.explain()["buffers"]
     found |= {
         "told": report["features"],
+        "told apart": report.get("selection", {}).get("features", []),
         "passes": sorted({item["name"] for item in report["passes"]}),
         "buffers": {item["name"]: item["bytes"] for item in buffers},
         "selection": report.get("selection", {}).get("gpu_bytes", 0),

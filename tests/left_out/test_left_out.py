@@ -88,8 +88,8 @@ def test_all_memory_is_told_kept_and_given_back(seen, name):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_switches_that_are_told_were_on_or_are_of_a_class_that_may_be_empty(seen, name):
-    """``explain()`` names no switch of a feature that nobody asked for."""
-    told = set(seen[name]["told"]) & set(FEATURES)
-    # Whether a class of fiblets is drawn by programs of its own is the pipeline's choice.
-    assert told - {"CLIPPING", "CLIPPING_DEPTH"} <= set(seen[name]["features"])
+def test_all_switches_that_were_on_are_told_and_no_others(seen, name):
+    """``explain()`` of an actor names them; effects on whole pictures are no actor's."""
+    told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)
+    of_pictures = {switch for switch in FEATURES if switch.startswith(("PICTURE_", "TONE_"))}
+    assert told == set(seen[name]["features"]) - of_pictures

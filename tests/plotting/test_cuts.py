@@ -1,0 +1,156 @@
+"""Cuts that are planes are made as VTK's own clipping planes are: the same picture, and nothing for each pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
+
+from pvfiblets import compress, regions
+from pvfiblets.synthetic import brain_streamlines
+
+SIZE = (240, 200)
+SLAB = regions.Slab((0.2, 1.0, 0.0), (0.0, -10.0, 0.0), 12.0)
+BOX = (-40.0, 35.0, -60.0, 30.0, -30.0, 50.0)
+
+
+@pytest.fixture(scope="module")
+def brain():
+    return compress(brain_streamlines(250, seed=4))
+
+
+@pytest.fixture
+def scene():
+    """What makes a plotter that shows an actor, and is closed afterwards."""
+    made = []
+
+    def make(add):
+        plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+        made.append(plotter)
+        actor = add(plotter)
+        plotter.camera_position = [(150.0, -260.0, 120.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+        plotter.show(auto_close=False)
+        return plotter, actor
+
+    yield make
+    for plotter in made:
+        plotter.close()
+
+
+def lines(brain, **settings):
+    def add(plotter):
+        actor = plotter.add_fiblets(brain, show_scalar_bar=False)
+        for name, value in settings.items():
+            setattr(actor, name, value)
+        return actor
+
+    return add
+
+
+def ball(plotter):
+    axes = np.linspace(-1.0, 1.0, 24, dtype=np.float32)
+    field = 1.2 - np.sqrt(axes[:, None, None] ** 2 + axes[:, None] ** 2 + axes**2)
+    image = pv.ImageData(dimensions=(24, 24, 24), spacing=(6, 6, 6), origin=(-69, -69, -69))
+    image["field"] = field.ravel(order="F")
+    return plotter.add_raycast_volume(image, mode="isosurface", values=0.4, show_scalar_bar=False)
+
+
+def picture(plotter):
+    plotter.render()
+    return plotter.screenshot(return_img=True).astype(int)
+
+
+def vtk_planes(*cuts):
+    planes = []
+    for normal, origin in cuts:
+        plane = vtkPlane()
+        plane.SetNormal(normal)
+        plane.SetOrigin(origin)
+        planes.append(plane)
+    return planes
+
+
+def sides_of_box():
+    low, high = np.array(BOX[::2]), np.array(BOX[1::2])
+    return [(sign * axis, low if sign > 0 else high) for axis in np.eye(3) for sign in (1.0, -1.0)]
+
+
+UNIT = np.array([0.2, 1.0, 0.0]) / np.hypot(0.2, 1.0)
+SAME = {
+    "plane": (((1.0, 0.5, 0.0), (3.0, 0.0, 0.0)), [((1.0, 0.5, 0.0), (3.0, 0.0, 0.0))]),
+    "slab": (SLAB, [(UNIT, (0, -10, 0) - 6.0 * UNIT), (-UNIT, (0, -10, 0) + 6.0 * UNIT)]),
+    "box": (BOX, sides_of_box()),
+}
+LOOKS = {
+    "thin": {},
+    "wide": {"line_width": 4},
+    "tubes": {"tube_radius": 1.0},
+    "layers": {"opacity": 0.5, "transparency": 3},
+}
+
+
+@pytest.mark.parametrize("look", [*LOOKS, "volume"])
+@pytest.mark.parametrize("name", SAME)
+def test_a_cut_by_planes_is_one_by_planes_of_vtk(scene, brain, name, look):
+    what, planes = SAME[name]
+    plotter, actor = scene(ball if look == "volume" else lines(brain, **LOOKS[look]))
+    whole = picture(plotter)
+    actor.clip(what)
+    cut, told = picture(plotter), actor.explain()
+    assert (cut != whole).any()
+    assert "region" not in {buffer["name"] for buffer in told["buffers"]}
+    assert "CLIP_REGION" not in told["features"]
+    actor.unclip()
+    np.testing.assert_array_equal(picture(plotter), whole)
+    for plane in vtk_planes(*planes):
+        actor.mapper.AddClippingPlane(plane)
+    other = picture(plotter)
+    # The planes of both are told in float64, and differ in a last digit: a pixel on the very edge may.
+    assert (cut != other).any(axis=2).sum() <= 2
+    assert (other != whole).any()
+
+
+def test_a_cut_follows_where_the_actor_is(scene, brain):
+    """Cuts are in world coordinates, whatever the actor's placement."""
+    plotter, actor = scene(lines(brain, line_width=2))
+    turn = np.array([[0.0, -1.2, 0, 10], [1.2, 0.0, 0, -5], [0, 0, 1.2, 3], [0, 0, 0, 1]])
+    actor.user_matrix = turn
+    actor.clip(((0.0, 0.0, 1.0), (0.0, 0.0, 3.0)))
+    placed = picture(plotter)
+    actor.unclip()
+    actor.user_matrix = np.eye(4)
+    plotter.remove_actor(actor)
+    moved = plotter.add_fiblets(brain, show_scalar_bar=False, line_width=2, user_matrix=turn)
+    moved.mapper.AddClippingPlane(vtk_planes(((0.0, 0.0, 1.0), (0.0, 0.0, 3.0)))[0])
+    assert (placed != picture(plotter)).any(axis=2).sum() <= 2
+
+
+def test_planes_of_vtk_and_cuts_add_up_beyond_what_there_is_room_for(scene, brain):
+    """Eight planes there can be: of VTK's six and a box's six, those of the box are cut as a region, to the same."""
+    plotter, actor = scene(lines(brain))
+    actor.clip(BOX)
+    boxed = picture(plotter)
+    for plane in vtk_planes(*((normal, 5.0 * np.asarray(origin)) for normal, origin in sides_of_box())):
+        actor.mapper.AddClippingPlane(plane)  # nothing is out there to be cut
+    both = picture(plotter)
+    assert "CLIP_REGION" in actor.explain()["features"]
+    assert (boxed != both).any(axis=2).mean() < 0.02
+
+
+def test_tubes_end_in_closed_faces_where_planes_cut(scene, brain):
+    """A tube cut towards the eye shows a disc; its axis alone would leave it open."""
+    line = np.column_stack([np.linspace(-60.0, 60.0, 121), np.zeros(121), np.zeros(121)])
+    from pvfiblets import Streamlines
+
+    fiblets = compress(Streamlines(line.astype(np.float32), np.array([0, 121])))
+    plotter, actor = scene(lines(fiblets, tube_radius=20.0))
+    plotter.camera_position = [(300.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+    actor.clip(((-1.0, 0.0, 0.0), (10.0, 0.0, 0.0)))
+    by_plane = (picture(plotter) != 255).any(axis=2)
+    actor.unclip()
+    actor.clip(regions.Plane((-1.0, 0.0, 0.0), (10.0, 0.0, 0.0)) | regions.Sphere((0.0, 900.0, 0.0), 1.0))
+    by_region = (picture(plotter) != 255).any(axis=2)
+    radius = 20.0 / np.tan(np.radians(15.0)) / 290.0 * SIZE[1] / 2.0
+    assert by_plane.sum() == pytest.approx(np.pi * radius**2, rel=0.05)
+    assert by_region.sum() < 0.6 * by_plane.sum(), "a region keeps what of the surface is inside, and closes nothing"
