@@ -76,8 +76,8 @@ def make_parser() -> argparse.ArgumentParser:
         help="compress a tractogram, or write it in another format",
         description="Compress IN to a .fiblets file, or convert between any two formats; the suffixes say which.",
     )
-    convert.add_argument("source", metavar="IN")
-    convert.add_argument("target", metavar="OUT")
+    convert.add_argument("source", metavar="IN", help="a tractogram of any format")
+    convert.add_argument("target", metavar="OUT", help="what to write: .fiblets, .tck, .trk, .trx, .vtk or .vtp")
     convert.add_argument(
         "--step", type=positive, metavar="MM", help="resample to this distance between points (default: keep points)"
     )
@@ -100,8 +100,12 @@ def make_parser() -> argparse.ArgumentParser:
     _quiet_and_json(convert)
     convert.set_defaults(run="pvfiblets.cli_files:convert")
 
-    info = commands.add_parser("info", help="say what a file holds")
-    info.add_argument("path", metavar="FILE")
+    info = commands.add_parser(
+        "info",
+        help="say what a file holds",
+        description="Print size, counts, arrays, groups and affine of FILE; of a .fiblets file, step and promise too.",
+    )
+    info.add_argument("path", metavar="FILE", help="a tractogram of any format")
     _json(info)
     info.set_defaults(run="pvfiblets.cli_files:info")
 
@@ -111,19 +115,29 @@ def make_parser() -> argparse.ArgumentParser:
         description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL. "
         "Fails if the file is damaged or an error is greater than the file promises.",
     )
-    verify.add_argument("path", metavar="FILE")
-    verify.add_argument("original", metavar="ORIGINAL", nargs="?")
+    verify.add_argument("path", metavar="FILE", help="a .fiblets file")
+    verify.add_argument(
+        "original", metavar="ORIGINAL", nargs="?", help="what it was made from; without it, only checksums"
+    )
     _quiet_and_json(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
 
-    screenshot = commands.add_parser("screenshot", help="draw files into a PNG, without a display")
+    screenshot = commands.add_parser(
+        "screenshot",
+        help="draw files into a PNG, without a display",
+        description="Draw FILEs off screen, as one scene, and write the picture.",
+    )
     _scene(screenshot)
-    screenshot.add_argument("-o", "--output", required=True, metavar="PNG")
+    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="the picture to write")
     screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
     screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
     screenshot.set_defaults(run="pvfiblets.cli_pictures:screenshot")
 
-    show = commands.add_parser("show", help="open files in a window")
+    show = commands.add_parser(
+        "show",
+        help="open files in a window",
+        description="Draw FILEs in a window, as one scene: the left button turns it, the wheel zooms, q closes it.",
+    )
     _scene(show)
     show.set_defaults(run="pvfiblets.cli_pictures:show")
 
@@ -138,12 +152,14 @@ def make_parser() -> argparse.ArgumentParser:
     gl.set_defaults(run="pvfiblets.cli_gl:gl")
 
     demo = commands.add_parser(
-        "demo", help="make, compress and draw a whole-brain-like tractogram, and print size and error"
+        "demo",
+        help="make, compress and draw a whole-brain-like tractogram, and print size and error",
+        description="Make a tractogram like a whole brain's, compress it, draw it, and print its size and error.",
     )
-    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="default: %(default)s")
-    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="default: %(default)s")
-    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="default: %(default)s")
-    demo.add_argument("--seed", type=int, default=0)
+    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="for files (default: %(default)s)")
+    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="how many (default: %(default)s)")
+    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="between points (default: %(default)s)")
+    demo.add_argument("--seed", type=int, default=0, metavar="N", help="another, another brain (default: %(default)s)")
     _json(demo)
     demo.set_defaults(run="pvfiblets.cli_pictures:demo")
 
@@ -165,7 +181,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     report.add_argument("--seed", type=int, default=0, metavar="N", help="of all made-up data (default: 0)")
     report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
-    report.add_argument("-o", "--output", required=True, metavar="DIR")
+    report.add_argument("-o", "--output", required=True, metavar="DIR", help="the folder to write into")
     report.set_defaults(run="pvfiblets.cli_report:report")
     return parser
 
@@ -225,9 +241,9 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--color", help="one colour for all, such as white or #ff8800")
     parser.add_argument("--cmap", help="colour map, such as viridis")
     parser.add_argument("--clim", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colour map")
-    parser.add_argument("--line-width", type=positive, metavar="PIXELS")
-    parser.add_argument("--opacity", type=float, default=1.0)
-    parser.add_argument("--background", default="black", metavar="COLOR")
+    parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="of lines (default: 1)")
+    parser.add_argument("--opacity", type=float, default=1.0, metavar="SHARE", help="0 to 1 (default: %(default)s)")
+    parser.add_argument("--background", default="black", metavar="COLOR", help="behind it all (default: %(default)s)")
     parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
@@ -13,7 +14,7 @@ import pytest
 from PIL import Image
 
 from pvfiblets import formats
-from pvfiblets.cli import main
+from pvfiblets.cli import main, make_parser
 from pvfiblets.synthetic import brain_streamlines
 
 CONVERT_KEYS = {
@@ -196,6 +197,14 @@ def test_wrong_usage_is_exit_code_2(arguments, capsys):
         main(arguments)
     assert exit_.value.code == 2
     assert "usage:" in capsys.readouterr().err
+
+
+def test_every_command_and_each_of_its_arguments_says_what_it_does():
+    commands = next(action for action in make_parser()._actions if isinstance(action, argparse._SubParsersAction))
+    for name, command in commands.choices.items():
+        assert command.description, name
+        silent = [action.dest for action in command._actions if not action.help]
+        assert not silent, name
 
 
 def test_help_and_version_are_exit_code_0(capsys):

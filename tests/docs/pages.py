@@ -47,6 +47,9 @@ ids = [1, 2, 3]
     "docs/index.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
+    "docs/reference/commands.md": BRAIN + """
+pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
+""",
     "docs/effects.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",
