@@ -196,7 +196,7 @@ def test_memory_is_given_back(scene):
     front()
     actor.deselect()
     front()
-    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "gpu_bytes": 0}
+    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "features": [], "gpu_bytes": 0}
 
 
 @pytest.mark.parametrize("style", [{"as_tubes": True, "radius": 2.0}, {"as_tubes": False, "width": 16}])
