@@ -166,7 +166,8 @@ def _column(
         return None
     if one.named:
         # Names stand apart by what they need, and out of the colours if those are shorter.
-        label_font = next((f for f in range(font, SMALLEST_NAMES - 1, -1) if 1.25 * f * scale * len(one.labels) <= long), 0)
+        line = long / (1.25 * scale * max(len(one.labels), 1))  # the size of letters with which lines fill it
+        label_font = min(font, int(line)) if line >= SMALLEST_NAMES else 0
         if not label_font:
             return None
         names = max((measure(name, label_font) for name in one.labels), default=0.0)

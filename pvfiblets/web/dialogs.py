@@ -43,7 +43,12 @@ def build(app: Any) -> None:
     _end()
     _progress(app)
     with v3.VSnackbar(
-        v_model=("toast_open", False), timeout=8000, color=("toast_kind",), location="bottom", id="toast"
+        v_model=("toast_open", False),
+        timeout=8000,
+        color=("toast_kind",),
+        location="bottom",
+        id="toast",
+        style=("job.text || uploading ? 'margin-bottom: 100px' : ''",),  # above how far things are
     ):
         html.Span("{{ toast }}", data_toast=True)
         with v3.Template(v_slot_actions=True):
@@ -156,21 +161,26 @@ def _end() -> None:
 
 def _progress(app: Any) -> None:
     with v3.VCard(
-        v_if="job.text", elevation=8, width=340, id="busy",
-        style="position: fixed; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400",
+        v_if="job.text", elevation=8, width=340, id="busy", classes="pv-progress",
     ):  # fmt: skip
         with html.Div(classes="pa-3"):
             with html.Div(classes="pv-pair mb-2"):
-                html.Span("{{ job.text }}", style="flex: 1; font-size: 13px", classes="text-truncate")
+                html.Span(
+                    "{{ job.text }}", style="flex: 1; font-size: 13px", classes="text-truncate", title=("job.text",)
+                )
                 v3.VBtn("Cancel", v_if="job.cancellable", size="x-small", variant="tonal", classes="text-none",
                         click=app.files.cancel, data_action="cancel")  # fmt: skip
             v3.VProgressLinear(model_value=("job.share",), indeterminate=("job.share < 0",), color="primary")
     with v3.VCard(
-        v_if="uploading", elevation=8, width=340, id="uploading",
-        style="position: fixed; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400",
+        v_if="uploading && !job.text", elevation=8, width=340, id="uploading", classes="pv-progress",
     ):  # fmt: skip
         with html.Div(classes="pa-3"):
             with html.Div(classes="pv-pair mb-2"):
-                html.Span("Uploading {{ uploading }}", style="flex: 1; font-size: 13px", classes="text-truncate")
+                html.Span(
+                    "Uploading {{ uploading }}",
+                    style="flex: 1; font-size: 13px",
+                    classes="text-truncate",
+                    title=("uploading",),
+                )
                 v3.VBtn("Cancel", size="x-small", variant="tonal", classes="text-none", data_action="cancel-upload")
             v3.VProgressLinear(model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary")

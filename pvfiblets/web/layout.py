@@ -31,7 +31,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
-.pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000; text-shadow: 0 0 3px #fff, 0 0 3px #fff }
+.pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;
+  text-shadow: 0 0 3px #fff, 0 0 3px #fff }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
 @media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
@@ -42,13 +43,23 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   flex-direction: column; align-items: end; gap: 4px; text-align: right; font: 12px Roboto, sans-serif; color: #fff;
   text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
 .pv-notes .v-btn { pointer-events: auto }
-.pv-scroll { overflow-y: auto; min-height: 0 }
+.pv-bar { flex: 1 1 auto; min-width: 0; display: flex; align-items: center; overflow-x: auto; scrollbar-width: none }
+.pv-bar > * { flex: none } .pv-bar > .v-spacer { flex: 1 0 0 }
+@media (max-width: 760px) { .pv-bar { padding-right: 24px;
+  mask-image: linear-gradient(to right, #000 calc(100% - 24px), transparent) } } /* there is more to the right */
+.pv-progress { position: fixed !important; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400;
+  max-width: calc(100vw - 16px) }
+.pv-bar .v-btn { margin-inline: 0 !important }
+.v-layout { overflow: clip !important } /* not even the focus moves it */
+.v-snackbar__wrapper { min-width: 0 !important; max-width: min(672px, calc(100vw - 16px)) !important }
+.v-snackbar__content { overflow-wrap: anywhere }
+.pv-scroll { overflow: hidden auto; min-height: 0 }
 .pv-row { display: grid; grid-template-columns: 104px 1fr; align-items: center; gap: 8px; padding: 3px 12px }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
 .pv-value { font-size: 13px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .pv-head { font-size: 11px; letter-spacing: .08em; text-transform: uppercase; opacity: .6; padding: 10px 12px 2px }
 .pv-name { font-size: 13px; font-weight: 600; padding: 10px 12px 0 }
-.pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; color: inherit; background: transparent;
+.pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; color: inherit; background: transparent; min-width: 0;
   border: 1px solid rgba(128,128,128,.5); border-radius: 4px; padding: 3px 6px }
 .pv-num:focus { outline: 2px solid rgb(var(--v-theme-primary)); outline-offset: -1px }
 .pv-colour { width: 44px; height: 26px; padding: 0; border: 1px solid rgba(128,128,128,.5); border-radius: 4px;
@@ -105,37 +116,38 @@ def build(app: Any) -> Any:
 def _bar(app: Any) -> None:
     with v3.VAppBar(density="compact", height=44, flat=True, border="b"):
         _icon("mdi-dock-left", "Layers and properties ([)", click="left_open = !left_open")
-        _icon("mdi-folder-open-outline", "Open a file (O)", click=(app.files.browse, "['']"), name="open")
-        _icon("mdi-content-save-outline", "Save or load a session (S)", click="dialog = 'session'", name="session")
-        _icon("mdi-undo", "Undo {{ undo_label }} (Ctrl+Z)", click=app.undo, disabled=("!undo_label",), name="undo")
-        _icon("mdi-redo", "Redo {{ redo_label }} (Ctrl+Y)", click=app.redo, disabled=("!redo_label",), name="redo")
-        v3.VDivider(vertical=True, classes="mx-1")
-        for name, title, hint in VIEWS:
-            with v3.VBtn(
-                title, size="small", variant="text", classes="px-2 text-none", click=(app.camera.view, f"['{name}']"),
-                data_view=name,
-            ):  # fmt: skip
-                v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
-        _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
-        _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
-        _icon(
-            "mdi-perspective-less", "Parallel or perspective (5)", click=app.camera.toggle_parallel, name="parallel",
-            color=("parallel ? 'primary' : ''",),
-        )  # fmt: skip
-        with html.Label(classes="px-1", title="Background"):
-            html.Input(
-                type="color", classes="pv-colour", value=("background",), aria_label="Background",
-                change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
+        with html.Div(classes="pv-bar"):
+            _icon("mdi-folder-open-outline", "Open a file (O)", click=(app.files.browse, "['']"), name="open")
+            _icon("mdi-content-save-outline", "Save or load a session (S)", click="dialog = 'session'", name="session")
+            _icon("mdi-undo", "Undo {{ undo_label }} (Ctrl+Z)", click=app.undo, disabled=("!undo_label",), name="undo")
+            _icon("mdi-redo", "Redo {{ redo_label }} (Ctrl+Y)", click=app.redo, disabled=("!redo_label",), name="redo")
+            v3.VDivider(vertical=True, classes="mx-1")
+            for name, title, hint in VIEWS:
+                with v3.VBtn(
+                    title, size="small", variant="text", classes="px-2 text-none", data_view=name,
+                    click=(app.camera.view, f"['{name}']"),
+                ):  # fmt: skip
+                    v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+            _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
+            _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
+            _icon(
+                "mdi-perspective-less", "Parallel or perspective (5)", name="parallel",
+                click=app.camera.toggle_parallel, color=("parallel ? 'primary' : ''",),
             )  # fmt: skip
-        _icon(
-            "mdi-camera-outline", "Save the picture (C)", name="screenshot",
-            click="utils.download('picture.png', trigger('picture'), 'image/png')",
-        )  # fmt: skip
-        v3.VSpacer()
-        _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
-        _icon("mdi-keyboard-outline", "Keys (?)", click="dialog = 'help'", name="help")
-        _icon("mdi-theme-light-dark", "Light or dark (T)", click="dark = !dark", name="theme")
-        _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
+            with html.Label(classes="px-1", title="Background"):
+                html.Input(
+                    type="color", classes="pv-colour", value=("background",), aria_label="Background",
+                    change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
+                )  # fmt: skip
+            _icon(
+                "mdi-camera-outline", "Save the picture (C)", name="screenshot",
+                click="utils.download('picture.png', trigger('picture'), 'image/png')",
+            )  # fmt: skip
+            v3.VSpacer()
+            _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
+            _icon("mdi-keyboard-outline", "Keys (?)", click="dialog = 'help'", name="help")
+            _icon("mdi-theme-light-dark", "Light or dark (T)", click="dark = !dark", name="theme")
+            _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
         _icon("mdi-dock-right", "Clip, filter, selection, information (])", click="right_open = !right_open")
 
 

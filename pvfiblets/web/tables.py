@@ -136,11 +136,12 @@ TRACTOGRAM: tuple[Property, ...] = (
     Property("selection_as_tubes", "bool", "As tubes", "Draw what is selected as tubes.", "Selection", False),
     Property("selection_radius", "number", "Radius", "Of these tubes, mm.", "Selection", 0.5, limits=(1e-6, 1e6),
              matters=lambda s: s["selection_as_tubes"]),
-    Property("culling", "choice", "Culling", "How lines behind others are found out and left out.", "Drawing",
-             "two-phase", choices=[("two-phase", "two-phase: same picture"), ("coverage", "coverage: the paper's"),
+    Property("culling", "choice", "Culling",
+             "How hidden lines are left out. Two-phase: same picture; coverage: as in the paper.", "Drawing",
+             "two-phase", choices=[("two-phase", "two-phase"), ("coverage", "coverage"),
                                    (None, "none")]),
     Property("fit", "choice", "Too large", "What to do where GPU memory does not suffice for all.", "Drawing", None,
-             choices=[(None, "say so"), ("sample", "draw a share of the streamlines")]),
+             choices=[(None, "say so"), ("sample", "draw a share")]),
     Property("share", "text", "Drawn", "How many of the streamlines that are shown fit the GPU's memory.", "Drawing",
              read_only=True, read=lambda actor: "" if actor.share is None else f"{actor.share:.1%}"),
     Property("promise", "text", "Error promise", "No point is drawn farther than this from where it was.", "Drawing",
@@ -160,8 +161,8 @@ TUBES: tuple[Property, ...] = (
              limits=(0.0, 16.0)),
     Property("solver", "choice", "Solver", "How rays find the surface.", "Drawing", "auto",
              choices=_named("auto", "illinois", "newton", "itp", "bisection")),
-    Property("culling", "choice", "Culling", "How segments behind others are found out.", "Drawing", "two-phase",
-             choices=[("two-phase", "two-phase: same picture"), (None, "none")]),
+    Property("culling", "choice", "Culling", "How hidden segments are left out. Two-phase: same picture.", "Drawing",
+             "two-phase", choices=[("two-phase", "two-phase"), (None, "none")]),
 )  # fmt: skip
 
 

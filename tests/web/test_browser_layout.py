@@ -1,72 +1,154 @@
-"""What lies where on a page of 1280 by 720 pixels, in a real browser."""
+"""What lies where on a page, in a real browser: nothing is cut off, over something else, or out of reach."""
 
 from __future__ import annotations
 
-import itertools
+from pathlib import Path
 
 import pytest
 
-CUT_OFF = """() => {
-    const found = [];
-    for (const root of document.querySelectorAll('header, #left, #right, .v-dialog .v-card, #busy')) {
-        const inside = root.getBoundingClientRect();
-        if (!inside.width) continue;
-        if (root.scrollWidth > root.clientWidth + 1) found.push(`${root.id || root.tagName} scrolls sideways`);
-        for (const part of root.querySelectorAll('button, input, label, .v-field, .v-slider, .pv-value, td, th')) {
-            const box = part.getBoundingClientRect();
-            if (!box.width || part.closest('[hidden]')) continue;
-            if (box.left < inside.left - 1 || box.right > inside.right + 1)
-                found.push(`${part.outerHTML.slice(0, 90)} sticks out of ${root.id || root.tagName}`);
-            if (part.matches('label, .v-btn, .pv-value') && part.scrollWidth > part.clientWidth + 1)
-                found.push(`${part.innerText} is cut off in ${root.id || root.tagName}`);
-        }
-    }
-    if (document.documentElement.scrollWidth > innerWidth) found.push('the page scrolls sideways');
-    if (document.documentElement.scrollHeight > innerHeight) found.push('the page scrolls');
-    return found;
-}"""
+FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
+SIZES = [(1280, 720), (800, 600), (320, 640)]
+DIALOGS = ("open", "session", "script", "help", "rename", "end")
+LONG = "a_tractogram_of_a_study_with_a_very_long_name_that_nobody_wants_to_read.trk"
 
 
-def overlap(one, other):
-    across = min(one["x"] + one["width"], other["x"] + other["width"]) - max(one["x"], other["x"])
-    down = min(one["y"] + one["height"], other["y"] + other["height"]) - max(one["y"], other["y"])
-    return across > 1 and down > 1
+def faults(here, *parts):
+    return here.page.evaluate(f"({FAULTS})({list(parts)})")
 
 
-def boxes(here, selector):
-    found = here.page.locator(selector).all()
-    return [box for part in found if part.is_visible() and (box := part.bounding_box()) is not None]
+def resize(here, size, *, left, right):
+    """Make the page of a size, with some of its panels open."""
+    here.page.set_viewport_size({"width": size[0], "height": size[1]})
+    wanted = {"left": left, "right": right}
+    for panels in (dict.fromkeys(wanted, False), wanted):  # what a narrower page closes by itself is closed by then
+        here.page.wait_for_timeout(300)
+        for side, opened in panels.items():
+            here.page.evaluate("([name, value]) => window.trame.state.set(name, value)", [f"{side}_open", opened])
+
+    def stand_still():
+        at = [here.page.locator(f"#{side}").bounding_box() for side in wanted]
+        shown = [box is not None and box["x"] < size[0] - 1 and box["x"] + box["width"] > 1 for box in at]
+        here.page.wait_for_timeout(100)
+        return shown == [left, right] and at == [here.page.locator(f"#{side}").bounding_box() for side in wanted]
+
+    here.wait(stand_still, "the panels")
 
 
-def fits(here):
-    assert here.page.evaluate(CUT_OFF) == []
-    for place in ("header .v-btn, header label", ".pv-tools .v-btn, .pv-edge, .pv-status"):
-        found = boxes(here, place)
-        assert len(found) > 3
-        assert not any(overlap(one, other) for one, other in itertools.combinations(found, 2))
+def pick(here, title, layer):
+    here.page.click(f"[data-layer]:has-text('{layer}')")
+    here.wait(lambda: here.state("chosen_name") == layer, title)
 
 
-@pytest.mark.parametrize("width", [1280, 820])
-def test_nothing_overlaps_or_is_cut_off(visit, width):
-    here = visit("lines.fiblets", "--volume", "head.nii.gz", width=width, height=720)
-    here.wait(lambda: here.layers() == 2, "the volume")
-    here.rests()
-    if width < 1100:
-        here.wait(lambda: not here.state("right_open"), "the panels to close")
-        fits(here)
-        here.press("[")
-        here.page.wait_for_timeout(500)  # they slide
-        fits(here)
-        return
-    for key in ("1", "4"):
-        here.press(key)
-        here.rests()
-        fits(here)
-    here.page.click("[data-layer] .v-list-item-title >> nth=0")
+@pytest.fixture(scope="module")
+def pages(browser, served):
+    """Return a page with layers of three kinds, cuts, filters, a selection and an export: all panels are full."""
+    from tests.web.browsing import Visit
+
+    here = Visit(browser, served("lines.fiblets", "--volume", "head.nii.gz", "--mesh", "ball.ply"))
+    here.open()
+    here.wait(lambda: here.layers() == 3, "all layers")
+    pick(here, "the lines", "lines.fiblets")
     here.choose("scalars", "fa")
-    here.page.fill("[data-property=tube_radius] input", "0.5")
-    here.press("Tab")
+    here.page.click("[data-view=axial]")
+    here.page.click("[data-tool-button=box]")
+    here.page.wait_for_selector("#pv-over[data-tool=box]")
+    here.trace([(0.98, 0.98), (0.1, 0.02)])
+    here.wait(lambda: here.state("selection")["count"] > 5, "a selection")
+    here.page.click("[data-tool-button=rotate]")
+    here.page.click("[data-action=export]")
+    here.page.click("[data-export='.trk']")
+    here.wait(lambda: here.state("download"), "an export")
+    here.tab("clip")
     for kind in ("plane", "slab", "box", "sphere"):
         here.page.click(f"[data-cut={kind}]")
     here.wait(lambda: len(here.state("clips")) == 4, "four cuts")
-    fits(here)
+    here.page.evaluate("window.trame.trigger('browse', ['', 'clip'])")
+    here.page.click("[data-entry='ball.ply']")
+    here.wait(lambda: len(here.state("clips")) == 5, "a cut by a mesh")
+    here.tab("filter")
+    for name in ("length", "weight"):
+        here.page.click("#tab-filter .v-select:has(#add-criterion) .v-field")
+        here.page.click(f".v-overlay--active .v-list-item:has-text('{name}')")
+        here.page.wait_for_selector(f"[data-criterion={name}]")
+    for kind in ("sphere", "box"):
+        here.page.click(f"[data-region={kind}]")
+    here.page.click("[data-region=file]")
+    here.page.click("[data-entry='atlas.nii.gz']")
+    here.wait(lambda: len(here.state("filters")["regions"]) == 3, "three regions")
+    here.page.click("#tab-filter .v-btn-toggle button:has-text('any')")
+    yield here
+    errors = list(here.errors)
+    here.close()
+    assert not errors
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_panels_are_whole(pages, size):
+    here = pages
+    resize(here, size, left=True, right=False)
+    wrong = faults(here, "header")
+    for name in ("lines.fiblets", "head.nii.gz", "ball.ply"):
+        pick(here, "a layer", name)
+        wrong += faults(here, "#left")
+    pick(here, "the lines", "lines.fiblets")
+    resize(here, size, left=size[0] > 1100, right=True)
+    for name in ("clip", "filter", "selection", "info"):
+        here.tab(name)
+        here.page.wait_for_timeout(200)
+        wrong += [f"{name}: {fault}" for fault in faults(here, "#right")]
+    assert "\n".join(wrong) == ""
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_dialogs_are_whole(pages, size):
+    here = pages
+    resize(here, size, left=False, right=False)
+    here.page.evaluate("window.trame.trigger('browse', [''])")
+    here.wait(lambda: here.state("entries"), "the files")
+    wrong = []
+    for name in DIALOGS:
+        here.page.evaluate(f"window.trame.state.set('dialog', '{name}')")
+        here.page.wait_for_selector(f"#dialog-{name}")
+        here.page.wait_for_timeout(350)  # it grows
+        wrong += faults(here, f"#dialog-{name}")
+        here.press("Escape")
+        here.wait(lambda name=name: not here.page.locator(f"#dialog-{name}").is_visible(), "the dialog to close")
+    here.page.evaluate(f"window.trame.state.update({{uploading: '{LONG}', uploaded: 40}})")
+    here.page.evaluate(f"window.trame.state.update({{toast: '{LONG} was not opened. ' + 'It is damaged. '.repeat(9)}})")
+    here.page.evaluate("window.trame.state.update({toast_open: true})")
+    here.page.wait_for_selector("#uploading")
+    here.page.wait_for_timeout(350)
+    wrong += faults(here, "#uploading", ".v-snackbar__wrapper")
+    here.page.evaluate("window.trame.state.update({uploading: '', toast_open: false})")
+    here.page.wait_for_timeout(350)
+    assert "\n".join(wrong) == ""
+
+
+@pytest.mark.parametrize("size", [*SIZES, (320, 320)], ids=lambda size: f"{size[0]}x{size[1]}")
+def test_what_lies_over_the_picture_is_apart(pages, size):
+    here = pages
+    resize(here, size, left=size[0] > 1100, right=size[0] > 1100)
+    for key in ("1", "4"):
+        here.press(key)
+        here.rests()
+        over = ".pv-tools .v-btn, .pv-edge, .pv-status, .pv-notes > *"
+        boxes = here.page.evaluate(
+            f"[...document.querySelectorAll('{over}')].map(p => p.getBoundingClientRect()).filter(b => b.width)"
+            ".map(b => [b.left, b.right, b.top, b.bottom])"
+        )
+        assert len(boxes) > 8
+        for k, one in enumerate(boxes):
+            assert one[0] >= 0
+            assert one[1] <= size[0]
+            assert one[2] >= 0
+            assert one[3] <= size[1]
+            for other in boxes[:k]:
+                across = min(one[1], other[1]) - max(one[0], other[0])
+                down = min(one[3], other[3]) - max(one[2], other[2])
+                assert across <= 1 or down <= 1, (one, other)
+
+
+def test_a_narrow_page_begins_with_the_picture(visit):
+    here = visit("lines.fiblets", width=820, height=720)
+    here.wait(lambda: not here.state("right_open"), "the panels to close")
+    assert "\n".join(faults(here, "header")) == ""

@@ -94,9 +94,11 @@ def volumes(scene):
 
 @pytest.mark.parametrize("fill", [tracts, anatomy, volumes])
 def test_a_script_makes_the_same_picture(scene, folder, fill):
+    scene.plotter.window_size = 420, 360
     fill(scene)
     scene.screenshot()
     picture = scene.screenshot()
+    assert fill is anatomy or any(bar.GetVisibility() for bar in scene.plotter.scalar_bars.values())
     script = as_script(scene, "again.png")
     assert str(folder) not in script
     assert "trame" not in script
@@ -106,7 +108,7 @@ def test_a_script_makes_the_same_picture(scene, folder, fill):
         [sys.executable, "again.py"], cwd=folder, capture_output=True, text=True, timeout=120, check=False
     )
     assert done.returncode == 0, done.stderr + script
-    again = np.asarray(pv.read(folder / "again.png").active_scalars).reshape(160, 200, -1)[::-1]
+    again = np.asarray(pv.read(folder / "again.png").active_scalars).reshape(360, 420, -1)[::-1]
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
     differ = (again != picture).any(axis=-1)
     assert differ.sum() == 0, f"{differ.sum()} of {differ.size} pixels differ"

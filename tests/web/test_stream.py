@@ -46,6 +46,16 @@ def test_pictures_of_every_codec_are_pictures(plotter, codec):
     assert abs(found - pixels)[2:18].max() <= (0 if codec == "png" else 12)
 
 
+def test_letters_are_as_large_on_screens_with_small_pixels(plotter):
+    stream = PictureStream(plotter, "view")
+    usual = plotter.render_window.GetDPI()
+    for ratio in (2.0, 1.5, 1.0):
+        stream.update_size("", {"w": 200, "h": 120, "p": ratio})
+        assert plotter.render_window.GetDPI() == ratio * usual
+        stream.picture()
+        assert plotter.render_window.GetSize() == (200 * ratio, 120 * ratio)
+
+
 def slow_stream(plotter, seconds=1.0, **settings):
     """Return a stream whose frames seem to take some time."""
     stream = PictureStream(plotter, "view", **settings)
