@@ -29,7 +29,12 @@ def main(folder: Path) -> None:
     panels = {
         "orientation": {},
         "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": bar},
-        "FA in each point": {"scalars": "fa", "cmap": "viridis", "clim": (0.1, 0.7), "scalar_bar_args": bar},
+        "FA in each point": {
+            "scalars": "fa",
+            "cmap": "viridis",
+            "clim": (0.1, 0.7),
+            "scalar_bar_args": {**bar, "title": "FA"},
+        },
         "bundles": {"scalars": palette[fiblets.per_streamline["bundle"]]},
     }
     for index, (title, colours) in enumerate(panels.items()):
@@ -37,7 +42,9 @@ def main(folder: Path) -> None:
         plotter.add_fiblets(fiblets, **colours)
         plotter.add_text(title, font_size=12, color="white")
         plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.4)
+        plotter.camera.zoom(1.5)
+    for scalar_bar in plotter.scalar_bars.values():
+        scalar_bar.SetVerticalTitleSeparation(14)  # a title does not stand on the first number
     plotter.screenshot(folder / "colours.png")
     plotter.close()
 

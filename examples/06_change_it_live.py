@@ -29,6 +29,7 @@ def main(folder: Path) -> None:
     actor.scalars = "curvature"
     actor.cmap = "inferno"
     actor.clim = (0.0, 0.2)
+    plotter.scalar_bars["curvature [1/mm]"].SetVerticalTitleSeparation(12)  # off the first number
     plotter.render()
     plotter.screenshot(folder / "live_2_curvature.png")
 

@@ -116,6 +116,7 @@ def main(folder: Path) -> None:
     draw_cut(plotter, tree, tree.points[branches[0, -1]])
     plotter.subplot(1, 2)
     draw_inside(plotter, tree, branches[1, 1:])
+    plotter.scalar_bars["radius (mm)"].SetVerticalTitleSeparation(12)  # off the first number
     plotter.screenshot(folder / "vessels.png")
     plotter.close()
 
