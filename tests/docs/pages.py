@@ -62,6 +62,8 @@ pvfiblets.compress_file("big.tck", "brain.fiblets")
 image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
 """,
 }  # fmt: skip
+# Pictures that are to have many colours where the lines are: a range of other numbers would leave one.
+COLOURED = {"docs/tutorial.md": {"first.png", "length.png", "fa.png", "some.png"}}
 # Pages whose commands are no program of this kind, and what runs them.
 RUN_ELSEWHERE = {
     "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",

@@ -9,7 +9,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 
 def _pages():
@@ -38,6 +40,10 @@ def test_a_page_runs(page, tmp_path):
     assert done.returncode == 0, done.stderr
     named = set(re.findall(r'screenshot\("([^"]+)"', pages.program(page)))
     assert named <= {path.name for path in tmp_path.iterdir()}
+    for name in pages.COLOURED.get(page, ()):
+        with Image.open(tmp_path / name) as picture:
+            lines = np.asarray(picture.convert("RGB"))[: picture.height * 4 // 5]  # without the scalar bar
+        assert len(np.unique(lines.reshape(-1, 3), axis=0)) > 100, f"{name} of {page} has hardly any colours"
 
 
 def test_every_page_with_something_to_run_is_run():
