@@ -27,6 +27,7 @@ from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.picks import SelectionActions
 from pvfiblets.web.scene import Scene
+from pvfiblets.web.scratch import Notes
 from pvfiblets.web.sliding import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
@@ -45,13 +46,15 @@ class Explorer(TrameApp):
     ----------
     options : Options
         What it opens with, and the root that it is confined to.
+    notes : Notes
+        Where it notes what it writes outside of its temporary folder.
     """
 
-    def __init__(self, options: Options) -> None:
+    def __init__(self, options: Options, notes: Notes) -> None:
         super().__init__("pvfiblets")
         import pyvista
 
-        self.options = options
+        self.options, self.notes = options, notes
         self.confined = Confined(options.root)
         self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640))
         self.plotter.set_background("black")

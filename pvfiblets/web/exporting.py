@@ -16,12 +16,12 @@ from typing import Any
 
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.document import LINES
+from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.options import MEBIBYTE
-from pvfiblets.web.selecting import write
+from pvfiblets.web.selecting import EXPORTS, write
 
-__all__ = ["EXPORTS", "ExportActions"]
+__all__ = ["ExportActions"]
 
-EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".fiblets")
 PLACES = ("folder", "computer")
 KEPT = 4  # files that can be fetched; older ones are forgotten, and those of no folder removed
 LARGEST = 2048 * MEBIBYTE
@@ -66,13 +66,21 @@ class ExportActions(Actions):
         app = self._app
         target = self._temporary(suffix) if temporary else self._free(stem, suffix)
         name = stem + suffix if temporary else target.name
-        try:
-            done = await app.files.beside(name, lambda *_: write(fiblets, ids, target), "writing", cancellable=False)
+        with app.notes.private(target.parent) as home:
+            part = home / target.name
+            try:
+                done = await app.files.beside(
+                    name, lambda progress, cancel: write(fiblets, ids, part, progress, cancel), "writing"
+                )
+            except Cancelled:
+                app.say(f"{name} was not written: cancelled.")
+                return
             if temporary and done["bytes"] > LARGEST:
                 raise ValueError(f"{name} has {done['bytes']:,} bytes, too many to fetch; save it in the served folder")
-        except BaseException:
-            target.unlink(missing_ok=True)
-            raise
+            if target.exists():  # since its name was found to be free
+                target = self._free(stem, suffix)
+                name = target.name
+            part.rename(target)
         number = secrets.token_urlsafe(24)
         self._offer(number, _File(target, name, temporary))
         lost = f"; {suffix} cannot hold: {', '.join(map(str, done['lost']))}" if done["lost"] else ""

@@ -18,7 +18,9 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
+from pvfiblets.web import scratch
 from pvfiblets.web.options import Options
 
 logger = logging.getLogger("pvfiblets.web")
@@ -45,6 +47,8 @@ class Session:
         Why it ended, if it was not asked to.
     connections : int
         Browsers (or tabs) that are connected now.
+    folder : Path or None
+        Of its temporary files; it goes with the process.
     """
 
     id: str
@@ -57,6 +61,7 @@ class Session:
     tasks: list[asyncio.Task[None]] = field(default_factory=list)
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     ended: bool = False
+    folder: Path | None = None
 
     @property
     def short(self) -> str:
@@ -85,9 +90,11 @@ class Launcher:
         self._failed: deque[Session] = deque(maxlen=32)
         self._spare: Session | None = None
         self._reaper: asyncio.Task[None] | None = None
+        self._scratch: scratch.Scratch | None = None
 
     async def start(self) -> None:
         """Begin to watch, and prepare the first session before its browser comes."""
+        self._scratch = await asyncio.to_thread(scratch.Scratch)
         self._reaper = asyncio.create_task(self._reap())
         self._spare = await self._launch(SHARED if self._options.shared else secrets.token_urlsafe(24))
 
@@ -120,7 +127,7 @@ class Launcher:
         return session
 
     async def _launch(self, identifier: str) -> Session:
-        session = Session(identifier)
+        session = Session(identifier, folder=self._scratch and self._scratch.session())
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
         process = await asyncio.create_subprocess_exec(
@@ -134,7 +141,8 @@ class Launcher:
         assert process.stdin is not None
         # By standard input: command lines and environments can be read by others.
         told = self._options.as_dict() | {"token": None, "host": "127.0.0.1", "port": 0}
-        process.stdin.write((json.dumps({"options": told, "key": session.key}) + "\n").encode())
+        more = {"key": session.key, "folder": session.folder and str(session.folder)}
+        process.stdin.write((json.dumps({"options": told, **more}) + "\n").encode())
         with contextlib.suppress(ConnectionError):
             await process.stdin.drain()
         session.tasks = [asyncio.create_task(self._watch(session))]
@@ -161,6 +169,8 @@ class Launcher:
                 said = str(told["failure"])
         code = await process.wait()
         await errors
+        if session.folder is not None:
+            await asyncio.to_thread(scratch.remove, session.folder)
         if not session.ended:
             session.failure = said or "its process ended unexpectedly"
             logger.error("session %s: %s (exit code %s)", session.short, session.failure, code)
@@ -227,3 +237,5 @@ class Launcher:
             self._reaper.cancel()
             await asyncio.gather(self._reaper, return_exceptions=True)
         await asyncio.gather(*(self.end(session) for session in list(self.sessions.values())))
+        if self._scratch is not None:
+            await asyncio.to_thread(self._scratch.close)

@@ -59,7 +59,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-value { font-size: 13px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .pv-head { font-size: 11px; letter-spacing: .08em; text-transform: uppercase; opacity: .6; padding: 10px 12px 2px }
 .pv-name { font-size: 13px; font-weight: 600; padding: 10px 12px 0 }
-.pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; color: inherit; background: transparent; min-width: 0;
+.pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; min-width: 0; color: inherit;
+  background: transparent;
   border: 1px solid rgba(128,128,128,.5); border-radius: 4px; padding: 3px 6px }
 .pv-num:focus { outline: 2px solid rgb(var(--v-theme-primary)); outline-offset: -1px }
 .pv-colour { width: 44px; height: 26px; padding: 0; border: 1px solid rgba(128,128,128,.5); border-radius: 4px;

@@ -19,7 +19,7 @@ from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
 
-__all__ = ["MESHES", "Cancelled", "Files", "Loaded", "kind_of"]
+__all__ = ["MESHES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf")
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
@@ -175,7 +175,7 @@ class Files:
         FormatError, ValueError, OSError
             If the file is damaged, of another kind, outside of the root or not there.
         """
-        watch = _Watch(progress, cancel)
+        watch = Watch(progress, cancel)
         watch("reading", 0.0)
         if source.demo is not None:
             return _demo(source, kind)
@@ -205,7 +205,7 @@ class Files:
         watch("reading", 1.0)
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
 
-    def _lines(self, place: Path, source: Source, name: str, watch: _Watch) -> Loaded:
+    def _lines(self, place: Path, source: Source, name: str, watch: Watch) -> Loaded:
         from pvfiblets.codec.convert import compress_file
         from pvfiblets.codec.fibletset import FibletSet
 
@@ -237,20 +237,26 @@ class Files:
             self._folder = None
 
 
-class _Watch:
-    """Passes progress on, and stops where that is wanted."""
+class Watch:
+    """Passes progress on, and stops where that is wanted.
+
+    Parameters
+    ----------
+    progress, cancel : callable, optional
+        See :meth:`Files.load`.
+    """
 
     def __init__(self, progress: Progress | None, cancel: Cancel | None) -> None:
         self._progress, self._cancel = progress, cancel
 
     def __call__(self, what: str, share: float) -> None:
         if self._cancel is not None and self._cancel():
-            raise Cancelled("stopped; nothing was opened")
+            raise Cancelled("stopped; all is as it was")
         if self._progress is not None:
             self._progress(what, min(max(share, 0.0), 1.0))
 
 
-def _tubes(place: Path, source: Source, name: str, watch: _Watch) -> Loaded:
+def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
     from pvfiblets.plotting.spline_scalars import as_tubes
 
     if place.suffix.lower() not in _EITHER:

@@ -43,6 +43,7 @@ class FileActions(Actions):
     def __init__(self, app: Any) -> None:
         super().__init__(app)
         self._stop = threading.Event()
+        self._doing = ""  # what is done beside, for people
         self._working = asyncio.Lock()
         self._for = ""  # what the file that is chosen next is for, of PURPOSES
 
@@ -115,8 +116,11 @@ class FileActions(Actions):
         app = self._app
         loop = asyncio.get_running_loop()
         reported = 0.0
+        stop = threading.Event()
 
         def show(what: str, share: float) -> None:
+            if stop.is_set():
+                return
             with app.state:
                 app.page.job = {"text": f"{name}: {what}", "share": 100.0 * share, "cancellable": cancellable}
 
@@ -127,7 +131,8 @@ class FileActions(Actions):
                 loop.call_soon_threadsafe(show, what, share)
 
         async with self._working:
-            stop = self._stop = threading.Event()
+            self._stop = stop
+            self._doing = name
             show(what, 0.0 if cancellable else -1.0)
             try:
                 return await asyncio.to_thread(work, progress, stop.is_set)
@@ -137,8 +142,10 @@ class FileActions(Actions):
                     app.page.job = {}
 
     def cancel(self) -> None:
-        """Stop what is being opened."""
+        """Stop what is being opened or written, as soon as it asks."""
         self._stop.set()
+        if self._app.page.job:
+            self._app.page.job = {"text": f"{self._doing}: stopping", "share": -1.0, "cancellable": False}
 
     # The file browser
 

@@ -12,8 +12,10 @@ import json
 import logging
 import os
 import sys
+import tempfile
 import threading
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
@@ -42,11 +44,13 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
     from pvfiblets.web.options import Options
 
     options = Options.from_dict(told["options"])
+    folder = Path(told["folder"])
+    tempfile.tempdir = str(folder)  # of all that runs here: the gate takes it away where this process cannot
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # VTK need not try X and complain
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
-    app = make_app(options)
+    app = make_app(options, folder)
     server = app.server
 
     def bind(web_server: Any) -> None:
@@ -74,11 +78,12 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
     app.close()
 
 
-def make_app(options: Options) -> Any:
+def make_app(options: Options, folder: Path) -> Any:
     """Return the application of a session."""
     from pvfiblets.web.app import Explorer
+    from pvfiblets.web.scratch import Notes
 
-    return Explorer(options)
+    return Explorer(options, Notes(folder))
 
 
 def key_check(key: str) -> Callable[..., Awaitable[Any]]:

@@ -13,6 +13,7 @@ from pvfiblets.web.filtering import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
+from pvfiblets.web.scratch import Notes
 from pvfiblets.web.state import Page
 
 
@@ -24,6 +25,7 @@ class Desk:
         self.options = Options(root=str(folder), **options)
         self.confined = Confined(folder)
         self.history = History(scene)
+        self.notes = Notes(None)
         self.page = Page()
         self.state = contextlib.nullcontext()
         size = tuple(scene.plotter.window_size)

@@ -33,6 +33,8 @@ async def main(told):
     if (failure := Path(told["options"]["root"]) / "fail").exists():
         print(json.dumps({"failure": failure.read_text()}), flush=True)
         sys.exit(1)
+    (Path(told["folder"]) / "session.tmp").write_text(str(os.getpid()))
+    (Path(told["folder"]) / "notes").write_text(str(Path(told["options"]["root"]) / ".pvfiblets-part"))
     app = web.Application(middlewares=[key_check(told["key"])], client_max_size=2**30)
     app.router.add_get("/ws", socket)
     app.router.add_post("/upload", upload)

@@ -13,7 +13,9 @@ from aiohttp import web
 
 import pvfiblets
 from pvfiblets.web import exporting
-from pvfiblets.web.exporting import EXPORTS, ExportActions
+from pvfiblets.web.exporting import ExportActions
+from pvfiblets.web.loading import Cancelled
+from pvfiblets.web.selecting import EXPORTS, write
 from tests.web.desk import Desk
 
 
@@ -126,8 +128,54 @@ def test_nothing_selected_or_no_tractogram_is_said(desk, scene):
 
 def test_files_are_written_beside_the_page(desk, monkeypatch):
     threads = []
-    write = exporting.write
+    assert exporting.write is write
     monkeypatch.setattr(exporting, "write", lambda *a: threads.append(threading.current_thread()) or write(*a))
     export(desk, ".trx")
     assert threads[0] is not threading.main_thread()
     assert desk.page.job == {}
+
+
+@pytest.mark.parametrize("to", ["folder", "computer"])
+@pytest.mark.parametrize("suffix", EXPORTS)
+def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to):
+    before = sorted(folder.iterdir())
+    jobs = []
+
+    def cancelled(fiblets, ids, target, progress, cancel):
+        desk.files.cancel()  # as from the page while the file is written
+        jobs.append(dict(desk.page.job))
+        return write(fiblets, ids, target, progress, cancel)
+
+    monkeypatch.setattr(exporting, "write", cancelled)
+    desk.page.export_what, desk.page.export_to = "shown", to
+
+    async def test():
+        desk.exports.export(suffix)
+        await desk.done()
+
+    asyncio.run(test())
+    assert jobs == [{"text": f"lines_shown{suffix}: stopping", "share": -1.0, "cancellable": False}]
+    assert desk.said == [("info", f"lines_shown{suffix} was not written: cancelled.")]
+    assert (desk.page.download, desk.page.job) == ({}, {})
+    assert sorted(folder.iterdir()) == before
+    if to == "computer":
+        assert list(Path(desk.exports._folder.name).iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", EXPORTS)
+def test_whenever_writing_is_stopped_no_file_is_left(desk, tmp_path, suffix):
+    home = tmp_path / "apart"
+    home.mkdir()
+    fiblets, ids = desk.scene.chosen(desk.page.chosen, "shown")
+    asked = []
+    write(fiblets, ids, home / f"whole{suffix}", None, lambda: asked.append(1))
+    (whole,) = home.iterdir()
+    size = whole.stat().st_size
+    whole.unlink()
+    assert len(asked) >= 3
+    for last in range(len(asked)):
+        answers = iter([False] * last + [True])
+        with pytest.raises(Cancelled):
+            write(fiblets, ids, home / f"part{suffix}", None, lambda answers=answers: next(answers))
+        assert list(home.iterdir()) == []
+    assert write(fiblets, ids, home / f"again{suffix}")["bytes"] == size

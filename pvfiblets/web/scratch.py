@@ -1,0 +1,122 @@
+"""Temporary files of sessions: where they are, and how they go when a session did not take them away itself.
+
+The gate has a folder, and each session's process a folder in it, which is the temporary folder of all that runs there.
+A process that is killed cleans nothing up, so the gate does when it has ended; what a gate left that was killed itself,
+the next one takes away. What a session writes elsewhere until it is whole, it notes before.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+try:
+    import fcntl
+except ImportError:  # Windows, where folders of dead gates stay until its own clean-up
+    fcntl = None  # type: ignore[assignment]
+
+__all__ = ["PRIVATE", "Notes", "Scratch", "remove_abandoned"]
+
+PREFIX = "pvfiblets-serve-"
+PRIVATE = ".pvfiblets-"
+"""How names begin of what sessions note: nothing else is ever removed."""
+_LOCK, _NOTES = "lock", "notes"
+
+
+class Scratch:
+    """The gate's folder: the sessions' folders are in it."""
+
+    def __init__(self) -> None:
+        remove_abandoned()
+        self.folder = Path(tempfile.mkdtemp(prefix=PREFIX))
+        # As long as this process lives: the system lets go of it, however the process ends.
+        self._lock: IO[str] | None = (self.folder / _LOCK).open("w")
+        if fcntl is not None and not (_locked(self._lock) and (self.folder / _LOCK).exists()):
+            self._lock.close()
+            raise OSError(f"{self.folder}: another server took this folder for an abandoned one; start again")
+
+    def session(self) -> Path:
+        """Make a folder for a session."""
+        return Path(tempfile.mkdtemp(dir=self.folder))
+
+    def close(self) -> None:
+        """Remove everything; twice is harmless."""
+        if self._lock is not None:
+            self._lock.close()
+            self._lock = None
+        for folder in self.folder.glob("*/"):
+            remove(folder)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class Notes:
+    """What a session writes outside of its folder until it is whole.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        The session's; without, nothing is noted.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self._file = None if folder is None else folder / _NOTES
+        self._open: list[Path] = []
+
+    @contextlib.contextmanager
+    def private(self, beside: Path) -> Iterator[Path]:
+        """Give a hidden folder in another, which is gone afterwards, whatever happens."""
+        found = Path(tempfile.mkdtemp(prefix=PRIVATE, dir=beside))
+        self._open.append(found)
+        self._write()
+        try:
+            yield found
+        finally:
+            shutil.rmtree(found, ignore_errors=True)
+            self._open.remove(found)
+            self._write()
+
+    def _write(self) -> None:
+        if self._file is not None:
+            self._file.write_text("\n".join(map(str, self._open)), encoding="utf-8")
+
+
+def remove(folder: Path) -> None:
+    """Remove a session's folder, and what it noted."""
+    notes = folder / _NOTES
+    for line in notes.read_text(encoding="utf-8").splitlines() if notes.is_file() else ():
+        noted = Path(line)
+        if noted.name.startswith(PRIVATE) and not noted.is_symlink():
+            shutil.rmtree(noted, ignore_errors=True)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_abandoned() -> None:
+    """Remove the folders of this user's gates that live no more."""
+    if fcntl is None:
+        return
+    for folder in Path(tempfile.gettempdir()).glob(PREFIX + "*"):
+        with contextlib.suppress(OSError):
+            if folder.is_symlink() or folder.stat().st_uid != os.getuid():
+                continue
+            with (folder / _LOCK).open("r+") as lock:
+                if not _locked(lock):
+                    continue
+                for part in folder.glob("*/"):
+                    remove(part)
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _locked(file: IO[str]) -> bool:
+    """Take a lock if nobody has it; whether it is ours now."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
