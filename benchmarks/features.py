@@ -118,6 +118,7 @@ def features(fiblets) -> dict[str, tuple[Step, Callable[[Any], Any]]]:
         "halos": set_to("halos"),
         "lines of 3 pixels, shaded as tubes": (wide_tubes, thin),
         "layers: four, blended": (layers, opaque),
+        "colours: one": set_to("color", "red", None),
         "colours: a volume": (volume, lambda actor: setattr(actor, "scalars", None)),
         "colours: arc length": colour("arc_length"),
     }

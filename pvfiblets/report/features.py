@@ -38,7 +38,7 @@ class FeatureStudy:
         "Nothing: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A feature "
         "that is off is not there: no code, no buffer, no pass."
     )
-    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB"),)
+    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", rivals=False),)
     notes = (
         "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
         "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
@@ -47,9 +47,10 @@ class FeatureStudy:
         "less to draw. The camera turns 1.14° a frame, and the frames of all features take turns.",
         "Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the processor "
         "time of all its threads; on a graphics card they are elapsed. What is measured or compiled once, when a "
-        "feature is set, is not in them. Colours, depth cueing and illuminated lines are written by VTK's own shader, "
-        "and effects on whole pictures work in VTK's framebuffers: they are not here, but in "
-        "`benchmarks/features.py`.",
+        "feature is set, is not in them.",
+        "Effects on a whole *picture* are given the scene's depths and made-up colours of one sample a pixel, where "
+        "VTK's picture would be; that is not counted, what they keep is. Colours, depth cueing and illuminated lines "
+        "are written by VTK's own shader: they are not here, but in `benchmarks/features.py`, which draws in a window.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.engine.filtering import Filter
-from pvfiblets.engine.view import Style, View
+from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
 from pvfiblets.engine.volumes import VolumeSource
 
 from .cameras import Camera, orbit
+from .features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture, lens_of
 
 __all__ = ["PLAIN", "Drawn", "Feature", "Subject", "brain_subject", "halo_subject", "tube_subject", "volume_subject"]
 
@@ -144,13 +145,6 @@ class Drawn:
         self.renderer.release()
 
 
-def lens_of(camera: Camera) -> Any:
-    """Return what effects in screen space must know of a camera."""
-    from pvfiblets.engine.effects import Lens
-
-    return Lens(camera.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
-
-
 def _ambient_occlusion(radius: float, surface: bool = False) -> dict[str, Any]:
     from pvfiblets.engine.effects import AmbientOcclusionPass
 
@@ -180,6 +174,13 @@ def _outline(chosen: Any) -> dict[str, Any]:
         drawn.passes.draw(buffer, chosen, width=2.0)
 
     return {"effect": effect, "passes": OutlinePass}
+
+
+def _whole_picture(wanted: PictureEffect) -> dict[str, Any]:
+    def effect(drawn: Drawn, buffer: Any, camera: Camera, _view: View) -> None:
+        drawn.passes.draw(buffer, camera)
+
+    return {"effect": effect, "passes": lambda ctx: WholePicture(ctx, wanted)}
 
 
 def _layers(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
@@ -218,7 +219,8 @@ def brain_subject(fiblets: Any) -> Subject:
         Feature("values", "curvature", style={"values": "curvature"}),
         Feature("values", "a volume", style={"values": volume}),
         Feature("cut", "plane", view={"clip_planes": plane}),
-        Feature("cut", "box", view={"region": regions.Box(inner)}),
+        Feature("cut", "box", view=by_planes(regions.Box(inner))),
+        Feature("cut", "outside a box", view={"region": ~regions.Box(inner)}),
         Feature("cut", "sphere", view={"region": regions.Sphere(middle, 0.3 * float(sides.min()))}),
         Feature("cut", "mesh", view={"region": torus(middle, 0.35 * float(sides.min()))}),
         Feature("filter", "half of the streamlines", prepare=keeping(Filter(streamlines=half))),
@@ -226,6 +228,7 @@ def brain_subject(fiblets: Any) -> Subject:
         Feature("effects", "ambient occlusion", **_ambient_occlusion(diagonal / 20.0)),
         Feature("effects", "halos", **_halos(diagonal / 250.0, diagonal / 20.0)),
         Feature("effects", "outline of some", **_outline(few)),
+        *(Feature("picture", wanted.name, **_whole_picture(wanted)) for wanted in PICTURE_EFFECTS),
         Feature("culling", "none", options={"culling": None}),
         Feature("culling", "coverage", options={"culling": "coverage"}),
         Feature("pipeline", "geometry", options={"pipeline": "geometry"}),
@@ -236,6 +239,14 @@ def brain_subject(fiblets: Any) -> Subject:
         return FibletRenderer(ctx, fiblets, **options)
 
     return Subject("streamlines", make, Style(), fiblets.bounds, features)
+
+
+def by_planes(region: Any) -> dict[str, Any]:
+    """Return the fields of a view that is cut as an actor is: by planes, as far as the region is made of them."""
+    from pvfiblets.engine.cut_planes import planes_of
+
+    planes, rest = planes_of(region, MAX_CLIP_PLANES)
+    return {"clip_planes": planes, "region": rest}
 
 
 def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Any:
@@ -331,7 +342,8 @@ def volume_subject(volume: Any) -> Subject:
         Feature("rays", "jitter", style=casting(jitter=True)),
         Feature("rays", "every fourth first", style=casting(sparse=4)),
         Feature("rays", "no octree", style=casting(octree=False)),
-        Feature("cut", "box", view={"region": regions.Box(inner)}),
+        Feature("cut", "box", view=by_planes(regions.Box(inner))),
+        Feature("cut", "outside a box", view={"region": ~regions.Box(inner)}),
     ]
 
     def make(ctx: Any, **options: Any) -> Any:

@@ -43,7 +43,7 @@ def mark_fronts(records: Iterable[Record], axes: Iterable[Axes]) -> None:
     for record in records:
         record.front = []
         sets.setdefault((record.data, record.machine), []).append(record)
-    chosen = [pair for pair in axes if not pair.series]
+    chosen = [pair for pair in axes if pair.has_front]
     for members in sets.values():
         for pair in chosen:
             on = pareto([(record.value(pair.x), record.value(pair.y)) for record in members])

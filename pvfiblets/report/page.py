@@ -6,9 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .record import FRAME, CaseResult, Record, Report, StudyResult, Timing
+from .record import FRAME, CaseResult, LeftOut, Record, Report, StudyResult, Timing
 
 __all__ = ["page"]
+
+MANY = 6
+"""Rows that a table has for one reason."""
+
+_WHAT = (
+    "What pvfiblets approximates, how far each approximation is from the exact answer, and what it costs, beside other "
+    "ways to do the same. A study compares ways on several data sets; the program's own default is **bold**. Plots "
+    "show cost to the right and error upwards, so that good ways are at the lower left."
+)
 
 Pictures = Mapping[str, Sequence[tuple[str, str]]]
 
@@ -26,7 +35,7 @@ def page(report: Report, pictures: Pictures) -> str:
     -------
     str
     """
-    lines = ["# Error against run time", "", *_about(report.about), "", *_overview(report.studies)]
+    lines = ["# Error against run time", "", _WHAT, "", *_about(report.about), "", *_overview(report.studies)]
     for study in report.studies:
         if not study.unavailable:
             lines += ["", *_study(study, pictures.get(study.name, ()))]
@@ -54,13 +63,13 @@ def _about(about: Mapping[str, Any]) -> list[str]:
 
 
 def _overview(studies: Sequence[StudyResult]) -> list[str]:
-    lines = ["| study | measured | |", "|---|---|---|"]
+    lines = ["| study | measured | left out |", "|---|---|---|"]
     for study in studies:
         if study.unavailable:
             lines.append(f"| {study.name} | not available | {_cell(study.unavailable)} |")
             continue
         found = f"{_found(study)}, {study.seconds:.0f} s"
-        more = f"{len(study.left_out)} left out, named below" if study.left_out else ""
+        more = f"{len(study.left_out)}, named there" if study.left_out else ""
         lines.append(f"| [{study.name}](#{_anchor(study.title)}) | {found} | {more} |")
     return lines
 
@@ -68,20 +77,24 @@ def _overview(studies: Sequence[StudyResult]) -> list[str]:
 def _found(study: StudyResult) -> str:
     if study.cases:
         return f"{sum(case.held for case in study.cases)} of {len(study.cases)} extreme cases hold"
-    return f"{len(study.records)} records on {len({record.data for record in study.records})} data sets"
+    sets = len({record.data for record in study.records})
+    return f"{_count(len(study.records), 'record')} on {_count(sets, 'data set')}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]:
     lines = [f"## {study.title}", "", study.approximates]
     for note in study.notes:
         lines += ["", note]
-    if any(record.default for record in study.records):
+    if any(record.default for record in study.records) and any(pair.has_front for pair in study.axes):
         lines += ["", "### The default", "", *_defaults(study)]
     for name, shows in pictures:
         lines += ["", f"![{shows}]({name})"]
     if study.left_out:
-        lines += ["", "### Left out", "", "| what | why |", "|---|---|"]
-        lines += [f"| {_cell(item.what)} | {_cell(item.reason)} |" for item in study.left_out]
+        lines += ["", "### Left out", "", *_left_out(study.left_out)]
     lines += _cases(study.cases)
     if not study.records:
         return lines
@@ -92,9 +105,25 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
     return lines
 
 
+def _left_out(items: Sequence[LeftOut]) -> list[str]:
+    """A table of what was left out and why; what many things have in common is told once, with them folded below."""
+    by_reason: dict[str, list[str]] = {}
+    for item in items:
+        by_reason.setdefault(item.reason, []).append(item.what)
+    lines, folded = ["| what | why |", "|---|---|"], []
+    for reason, whats in by_reason.items():
+        if len(whats) <= MANY:
+            lines += [f"| {_cell(what)} | {_cell(reason)} |" for what in whats]
+            continue
+        lines.append(f"| {len(whats)} ways, listed below | {_cell(reason)} |")
+        folded += ["", "<details>", f"<summary>{len(whats)} left out: {reason}</summary>", ""]
+        folded += [*(f"- {' '.join(what.split())}" for what in whats), "", "</details>"]
+    return lines + folded
+
+
 def _defaults(study: StudyResult) -> list[str]:
     """The default on every data set that is drawn, and what beats it."""
-    pairs = [pair for pair in study.axes if not pair.series]
+    pairs = [pair for pair in study.axes if pair.has_front]
     heads = [f"{pair.y_label} / {pair.x_label}" for pair in pairs]
     shown = [record for record in study.records if record.group]
     labels = dict.fromkeys(record.label for record in study.records if record.default)
@@ -166,7 +195,8 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
         item = next(record.times[name].item for record in records if name in record.times)
         head = f"{name}, ms per frame" if item == FRAME else f"{name}, M {item}s/s"
         heads += [head, "× default"] if default else [head]
-    heads.append("front")
+    fronts = any(pair.has_front for pair in study.axes)
+    heads += ["front"] if fronts else []
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     for record in records:
         bold = "**" if record.default else ""
@@ -179,7 +209,7 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
             if default:
                 base = default.times.get(name)
                 cells.append(_number(_ratio(timing, base)) if timing and base else "")
-        cells.append(", ".join(record.front))
+        cells += [", ".join(record.front)] if fronts else []
         lines.append("| " + " | ".join(map(_cell, cells)) + " |")
     return lines
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +12,18 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .record import Axes, Record, Report, StudyResult
+from .rows import in_rows
 
 __all__ = ["draw"]
 
 COLUMNS = 3
+LONGEST_TITLE = 54  # letters that a panel is wide
 # Told apart by those who see no red and green as well (Okabe and Ito), then some more.
 COLOURS = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
     "#8c564b", "#7f7f7f", "#999933", "#882255", "#44aa99",
 )  # fmt: skip
-MARKERS = "osD^vP*X<>ph8"
+MARKERS = "os^DvP*X<>dph"  # unlike ones first: few pictures have more than six
 ZERO_BELOW = 10.0  # errors of 0 are drawn so far under the least other one
 
 
@@ -42,14 +44,21 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
     made: dict[str, list[tuple[str, str]]] = {}
     for study in report.studies:
         shown = [record for record in study.records if record.group]
+        colours = _told_apart([record.way for record in study.records], COLOURS)
         for pair in study.axes:
             for group in dict.fromkeys(record.group for record in shown):
                 records = [record for record in shown if record.group == group and _points(record, pair)]
                 name = f"{study.name}-{pair.key}-{group}.png"
                 if not records:
                     continue
-                _picture(study, records, pair).savefig(folder / name, dpi=90)
-                made.setdefault(study.name, []).append((name, f"{pair.y_label} against {pair.x_label}: {group}"))
+                if pair.rivals:
+                    shows = f"{pair.y_label} against {pair.x_label}: {group}"
+                    picture = _picture(study, records, pair, colours)
+                else:
+                    shows = f"{pair.x_label} and {pair.y_label} of each: {group}"
+                    picture = in_rows(study, records, pair, _told_apart([record.way for record in records], COLOURS))
+                picture.savefig(folder / name, dpi=90)
+                made.setdefault(study.name, []).append((name, shows))
     return made
 
 
@@ -63,12 +72,19 @@ def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
     return [(x, y)] if math.isfinite(x) and math.isfinite(y) and x > 0.0 else []
 
 
-def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
+def _told_apart(names: Iterable[str], looks: Sequence[str]) -> dict[str, str]:
+    """Give every name a look; some share one where there are more names than looks."""
+    return {name: looks[i % len(looks)] for i, name in enumerate(dict.fromkeys(names))}
+
+
+def _picture(study: StudyResult, records: list[Record], pair: Axes, colours: dict[str, str]) -> Any:
     sets = list(dict.fromkeys(record.data for record in records))
     ways = list(dict.fromkeys(record.way for record in study.records))
     settings = list(dict.fromkeys(record.setting for record in study.records))
-    colours = {way: COLOURS[i % len(COLOURS)] for i, way in enumerate(ways)}
-    markers = {setting: MARKERS[i % len(MARKERS)] for i, setting in enumerate(settings)}
+    # A way has one colour in all pictures of a study, if there are enough of them; else one that is its own in each.
+    if len(ways) > len(COLOURS):
+        colours = _told_apart([way for way in ways if any(record.way == way for record in records)], COLOURS)
+    markers = _told_apart([s for s in settings if any(record.setting == s for record in records)], MARKERS)
     rows = -(-len(sets) // COLUMNS)
     here = {record.way for record in records}, {record.setting for record in records}
     handles = _legend([w for w in ways if w in here[0]], [s for s in settings if s in here[1]], colours, markers, pair)
@@ -92,7 +108,7 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes) -> Any:
                 (x, max(y, floor)) for record in members if pair.key in record.front for x, y in _points(record, pair)
             )
             panel.plot(*zip(*front, strict=True), color="black", lw=1.0, zorder=1) if front else None
-        panel.set_title(name, fontsize=9)
+        panel.set_title(name, fontsize=min(9.0, 9.0 * LONGEST_TITLE / len(name)))
         panel.set_xscale("log")
         panel.set_yscale("log")
         panel.grid(color="#e0e0e0", lw=0.5)
@@ -114,7 +130,7 @@ def _mark(panel: Any, record: Record, pair: Axes, colour: str, marker: str, floo
     places = [(x, max(y, floor)) for x, y in _points(record, pair)]
     if not places:
         return
-    size = 9.0 if record.default else 6.5 if record.ours else 5.5
+    size = 9.0 if record.default else 6.5 if record.ours else 6.0
     panel.plot(
         *zip(*places, strict=True),
         color=colour,
@@ -122,6 +138,7 @@ def _mark(panel: Any, record: Record, pair: Axes, colour: str, marker: str, floo
         markersize=size,
         markerfacecolor=colour if record.ours else "white",
         markeredgecolor="black" if record.default else colour,
+        markeredgewidth=1.3,
         ls="-" if pair.series else "none",
         lw=1.4 if record.ours else 0.7,
         zorder=4 if record.default else 3 if record.ours else 2,

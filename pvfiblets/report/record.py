@@ -160,6 +160,9 @@ class Axes:
     series : bool
         A line for each way instead: ``y`` is how the names of several errors begin, which end in the numbers that they
         are drawn at; ``x`` is empty, and there is no front.
+    rivals : bool
+        Whether one takes this way or that, so that one may be better. Where each adds something else there is no
+        front, nothing beats the default, and all are drawn in rows beside it.
     """
 
     key: str
@@ -168,6 +171,12 @@ class Axes:
     x_label: str
     y_label: str
     series: bool = False
+    rivals: bool = True
+
+    @property
+    def has_front(self) -> bool:
+        """Whether some records beat others."""
+        return self.rivals and not self.series
 
 
 @dataclass(frozen=True)

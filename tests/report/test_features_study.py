@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from pvfiblets import regions
+from pvfiblets import compress, regions
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.report import features
-from pvfiblets.report.features_scenes import PLAIN, torus
+from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
+from pvfiblets.report.features_scenes import PLAIN, Drawn, brain_subject, torus
+from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.synthetic import brain_streamlines
 
 from .little import little
 
@@ -69,10 +73,52 @@ def test_bytes_are_those_that_a_feature_asks_for(measured):
     assert more(measured, "streamlines", "cut", "plane") == pytest.approx(272)  # eight planes and how many, std140
     # Two textures of a byte for each pixel.
     assert more(measured, "streamlines", "effects", "ambient occlusion") == pytest.approx(2 * PIXELS)
+    # A copy of colours and, for the focus, of depths; of each pixel its disc, and what reaches squares of 8 pixels.
+    copy, squares = 4 * PIXELS, (SIZE[0] // 8) * (SIZE[1] // 8)
+    for name in ("film tones", "brightness and contrast", "gamma"):
+        assert more(measured, "streamlines", "picture", name) == pytest.approx(copy)
+    focused = more(measured, "streamlines", "picture", "depth of field")
+    assert copy + (4 + 16) * PIXELS + (4 + 4 + 16) * squares <= focused < 1.1 * (copy + 20 * PIXELS + 24 * squares)
+    assert more(measured, "streamlines", "picture", "depth of field and film tones") == pytest.approx(focused)
+    # Planes alone, or a layer of 16 bytes a pixel, and the shapes.
+    for subject in ("streamlines", "volume"):
+        assert more(measured, subject, "cut", "box") <= 272
+        assert 16 * PIXELS < more(measured, subject, "cut", "outside a box") < 17 * PIXELS + 20_000
     assert more(measured, "streamlines", "culling", "none") < 0
     assert more(measured, "volume", "mode", "surface") == pytest.approx(4 * PIXELS)  # normals
     assert more(measured, "volume", "rays", "tricubic") == 0
     assert more(measured, "lines-with-halos", "look", "thinner far away") == 0
+
+
+def test_features_are_no_rivals(measured):
+    """None is better than another for being cheaper."""
+    mark_fronts(measured.values(), features.STUDY.axes)
+    assert not any(record.front for record in measured.values())
+
+
+@pytest.mark.parametrize("wanted", PICTURE_EFFECTS, ids=lambda wanted: wanted.name)
+def test_whole_pictures_are_changed(gl, wanted):
+    """The plain scene's picture, by each effect; focus spreads light, and loses none."""
+    made = brain_streamlines(60, seed=3)
+    made.per_point = {"height": made.points[:, 2].copy()}
+    subject = brain_subject(compress(made, per_point=("height",)))
+    feature = next(item for item in subject.features if item.name == wanted.name)
+    drawn = Drawn(gl, subject, feature, subject.path(2, (384, 256)))
+    try:
+        shown = drawn.passes.shown()[..., :3].astype(int)
+        plain = Drawn(gl, subject, replace(feature, passes=lambda ctx: WholePicture(ctx, PictureEffect("none"))),
+                      subject.path(2, (384, 256)))  # fmt: skip
+        before = plain.passes.shown()[..., :3].astype(int)
+        plain.release()
+        assert (before != 255).any(axis=-1).sum() > 100
+        assert (np.abs(shown - before).max(axis=-1) > 3).sum() > 50
+        if wanted.focused and not wanted.tone.changes:
+            assert np.abs(shown.mean(axis=(0, 1)) - before.mean(axis=(0, 1))).max() < 3.0  # light is spread, not lost
+        drawn()
+        assert not np.array_equal(drawn.passes.shown()[..., :3], shown), "the camera has moved"
+    finally:
+        drawn.release()
+        drawn.release()
 
 
 def test_time_that_is_used_up_is_told(gl, small):

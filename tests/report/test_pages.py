@@ -14,6 +14,7 @@ from pvfiblets.report import plots, studies
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+from pvfiblets.report.rows import in_rows
 
 ABOUT = {
     "name": "m", "processor": "Some CPU", "cores": 2, "system": "Linux", "python": "3.11", "driver": "none",
@@ -143,6 +144,92 @@ def test_pictures_are_told_in_milliseconds_per_frame():
     assert "| brain | 0.5 / 25: rival |" in text
     assert records[0].shown("times/draw") == 25.0
     assert records[0].shown("errors/wrong") == 0.5
+
+
+def each_adds():
+    """What costs what, beside a plain way: nothing of it is a rival."""
+    axes = [Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory, MB", rivals=False)]
+    records = [
+        Record("scene", "s", "nothing", way, setting, {}, {"memory": Figure(memory, "MB")},
+               {"draw": Timing(seconds, seconds, seconds, 3, 1, "frame", "cpu")}, ours=True, default=way == "plain")
+        for way, setting, memory, seconds in (
+            ("plain", "", 5.0, 0.02), ("lines", "wide", 5.0, 0.04), ("cut", "mesh", 20.0, 0.03),
+            ("cut", "ball", 4.0, 0.01),
+        )
+    ]  # fmt: skip
+    mark_fronts(records, axes)
+    return StudyResult("features", "Costs", "", [], axes, records)
+
+
+def test_where_nothing_is_a_rival_there_is_no_front_and_nothing_beats_the_default(tmp_path):
+    study = each_adds()
+    assert not any(record.front for record in study.records)
+    text = page(Report(dict(ABOUT), [study]), {}).split("## Costs")[1]
+    assert "### The default" not in text
+    assert "front" not in text
+    assert "| way | setting | memory, MB | draw, ms per frame | × default |" in text
+    assert "| cut | mesh | 20 | 30 (30–30) | 1.5 |" in text
+    made = plots.draw(Report(dict(ABOUT), [study, *made_up_rivals()]), tmp_path)
+    assert made["features"] == [("features-cost-s.png", "ms per frame and memory, MB of each: s")]
+    assert made["codec"][0][1] == "largest error, mm against bytes per point: g"
+    kept = Report.from_json(Report(dict(ABOUT), [study]).to_json()).studies[0]
+    assert kept.axes == study.axes
+
+
+def made_up_rivals():
+    return made().studies[:1]
+
+
+def test_rows_show_each_figure_from_the_plain_one_on():
+    study = each_adds()
+    picture = in_rows(study, study.records, study.axes[0], dict.fromkeys(("plain", "lines", "cut"), "#0072b2"))
+    times, memory = picture.axes
+    assert [label.get_text() for label in times.get_yticklabels()] == ["plain", "lines: wide", "cut: mesh", "cut: ball"]
+    for panel, figures in ((times, [20.0, 40.0, 30.0, 10.0]), (memory, [5.0, 5.0, 20.0, 4.0])):
+        drawn = [line.get_xydata().tolist() for line in panel.get_lines()]
+        for row, value in enumerate(figures):
+            assert [[figures[0], row], [value, row]] in drawn
+            assert [[value, row]] in drawn
+        assert len(panel.get_xticks()) >= 3
+    assert (times.get_xlabel(), memory.get_xlabel()) == ("ms per frame", "memory, MB")
+
+
+def test_no_two_ways_of_a_picture_have_one_colour_and_its_titles_fit():
+    """However many ways other pictures of the study show, and however long the name of a file is."""
+    name = "a_name_of_a_file_that_somebody_thought_about_for_long.trk.gz, 3,379 of 20,505 streamlines"
+    records = [
+        Record(name if k < 12 else "other", "g" if k < 12 else "h", "", f"way {k % 24}", f"setting {k}",
+               {"max": Figure(0.5 + k, "mm")}, {"size": Figure(2.0 + k, "bytes")})
+        for k in (*range(12, 30), *range(12))
+    ]  # fmt: skip
+    pair = Axes("a", "costs/size", "errors/max", "bytes", "mm")
+    study = StudyResult("x", "X", "", [], [pair], records)
+    picture = plots._picture(study, records[18:], pair, dict.fromkeys((f"way {k}" for k in range(24)), "black"))
+    marks = [line for line in picture.axes[0].get_lines() if len(line.get_xdata()) == 1]
+    looks = {(line.get_color(), line.get_marker()) for line in marks}
+    assert len({colour for colour, _ in looks}) == len({marker for _, marker in looks}) == 12
+    picture.canvas.draw()
+    title, whole = picture.axes[0].title.get_window_extent(), picture.bbox
+    assert whole.x0 <= title.x0
+    assert title.x1 <= whole.x1
+
+
+def test_what_many_things_were_left_out_for_is_told_once():
+    left = [LeftOut(f"way {k}", "no time | left") for k in range(9)] + [LeftOut("x.tck", "empty")]
+    text = page(Report(dict(ABOUT), [StudyResult("x", "X", "", left_out=left)]), {})
+    assert "| 9 ways, listed below | no time \\| left |" in text
+    assert "| x.tck | empty |" in text
+    assert text.count("no time") == 2
+    assert all(f"- way {k}\n" in text for k in range(9))
+    assert text.index("| x.tck") < text.index("<details>") < text.index("- way 0") < text.index("</details>")
+
+
+def test_numbers_of_one_are_singular():
+    axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm")]
+    one = Record("points", "g", "", "ours", "", {"max": Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")})
+    other = Record("more", "g", "", "ours", "", {"max": Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")})
+    for records, told in (([one], "1 record on 1 data set,"), ([one, other], "2 records on 2 data sets,")):
+        assert told in page(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), {})
 
 
 def test_measuring_needs_no_vtk_and_no_matplotlib():
