@@ -253,7 +253,14 @@ class FibletSet:
     __iter__ = None  # indices would make it a sequence; iter_chunks() goes through the streamlines
 
     def extract(self, ids: npt.ArrayLike | slice) -> FibletSet:
-        """Some streamlines as a set of their own, renumbered; see :func:`pvfiblets.codec.extract.extract`."""
+        """Take some streamlines as a set of their own, without coding them again.
+
+        Parameters
+        ----------
+        ids : array_like or slice
+            As for :meth:`decompress`. They become streamlines 0, 1, ... of the new set; one that is named again is
+            taken once.
+        """
         from .extract import extract
 
         return extract(self, ids)
@@ -319,7 +326,7 @@ class FibletSet:
         return int(self.pages[fiblet >> PAGE_BITS, 0]) + int(unpack("rank", self.anchors[fiblet]))
 
     def iter_chunks(self, max_points: int = 2_000_000) -> Iterator[Streamlines]:
-        """Decode consecutive streamlines in bounded memory; see :func:`pvfiblets.codec.decompress.iter_chunks`."""
+        """Decode consecutive streamlines, at most `max_points` points at a time but for a single streamline of more."""
         from .decompress import iter_chunks
 
         return iter_chunks(self, max_points)
@@ -362,7 +369,13 @@ class FibletSet:
 
     @classmethod
     def open(cls, path: str | PathLike[str]) -> FibletSet:
-        """Map a ``.fiblets`` file into memory; see :func:`pvfiblets.codec.storage.open_fiblets`."""
+        """Map a ``.fiblets`` file into memory: nothing is read before it is needed.
+
+        Raises
+        ------
+        FormatError
+            If the file at `path` is damaged, or of another version.
+        """
         from .storage import open_fiblets
 
         return open_fiblets(path)

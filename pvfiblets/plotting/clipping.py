@@ -74,7 +74,7 @@ class Clipping:
         return self.clip(slab(normal, origin, thickness), name=name)
 
     def unclip(self, name: str | None = None) -> None:
-        """Take a cut back, or all of them."""
+        """Take a cut back by its `name`, or all of them."""
         self._cut(without(self._cuts, name, "cut"))
 
     @property

@@ -105,7 +105,7 @@ class Filtering(Clipping):
         return name
 
     def remove_criterion(self, name: str | None = None) -> None:
-        """Take a criterion back, or all of them."""
+        """Take a criterion back by its `name`, or all of them."""
         self._choose(criteria=without(self._choices.criteria, name, "criterion"))
 
     # Regions ------------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ class Filtering(Clipping):
         return self._add_condition(as_predicate(condition, as_region), name, "include")
 
     def exclude(self, condition: Any, *, name: str | None = None) -> str:
-        """Hide streamlines for which a condition holds; see :meth:`include`."""
+        """Hide streamlines for which a condition holds; parameters and result as for :meth:`include`."""
         return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
 
     @property
@@ -139,7 +139,7 @@ class Filtering(Clipping):
         return MappingProxyType({n: c.predicate for n, c in self._choices.conditions.items()})
 
     def remove_condition(self, name: str | None = None) -> None:
-        """Take a condition back, or all of them."""
+        """Take a condition back by its `name`, or all of them."""
         self._choose(conditions=without(self._choices.conditions, name, "condition"))
 
     def streamlines_where(self, condition: Any) -> np.ndarray:
@@ -192,7 +192,7 @@ class Filtering(Clipping):
         self._choose(groups=wanted)
 
     def show_only(self, ids: Any) -> None:
-        """Show these streamlines only: numbers, a mask or a slice; None for all."""
+        """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
         mask = None
         if ids is not None:
             from pvfiblets.codec.decompress import select_streamlines
