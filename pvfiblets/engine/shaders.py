@@ -91,6 +91,8 @@ FEATURES: dict[str, str] = {
     "RAYCAST_SIMPSON": "light by Simpson's rule",
     "RAYCAST_ROMBERG": "light by Romberg's rule of three levels",
     "RAYCAST_RK4": "light by Runge and Kutta's method of order four",
+    "RAYCAST_WHOLE": "rays that skip nothing",
+    "RAYCAST_FINER": "light of shorter steps where values bend",
     "RAYCAST_HOMOGENEOUS": "light through nodes of hardly any change at once",
     "RAYCAST_JITTER": "rays that start at places of their own",
     "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",

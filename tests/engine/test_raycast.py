@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError, Style, View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
+from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle, nodes
 from pvfiblets.raycast import reference
 from pvfiblets.raycast.casting import Casting
 from pvfiblets.raycast.transfer import Transfer
@@ -145,6 +147,28 @@ def test_light(cast, matrix, integrator, bound):
     assert np.abs(shown.light - wanted).max() < bound
 
 
+@pytest.mark.parametrize("mode", ["isosurface", "composite", "mip", "local-mip"])
+def test_without_skipping_there_is_no_octree(cast, matrix, monkeypatch, mode):
+    made = []
+    build = nodes.build_octree
+    monkeypatch.setattr(nodes, "build_octree", lambda *given: made.append(given) or build(*given))
+    volume = blobs()
+    given = {"values": (0.5 * top(volume),), "transfer": Transfer(np.eye(4)[[3, 0]], (0.0, 1.0)), "threshold": 0.1}
+    casting = Casting(mode, **given, octree=False)
+    _, renderer = cast(volume, casting, matrix)
+    assert not made
+    told = renderer.explain()
+    assert told["octree"] == {"bytes": 0, "share": 0.0, "ms": 0.0}
+    assert (told["nodes"], told["skipped"]) == (0, 0.0)
+    assert not {"nodes", "means"} & {buffer["name"] for buffer in told["buffers"]}
+    view = View(SIZE, matrix)
+    renderer.render(view, RaycastStyle(casting=replace(casting, octree=True)))
+    assert len(made) == 1
+    assert renderer.explain()["octree"]["bytes"] > 0
+    renderer.render(view, RaycastStyle(casting=casting))  # and what is no longer asked for is given back
+    assert renderer.explain()["octree"]["bytes"] == 0
+
+
 @pytest.mark.parametrize(
     "casting",
     [
@@ -158,8 +182,6 @@ def test_light(cast, matrix, integrator, bound):
     ids=lambda casting: f"{casting.mode}-{casting.filter}-{casting.integrator}",
 )
 def test_the_octree_changes_no_pixel(cast, matrix, casting):
-    from dataclasses import replace
-
     volume = blobs((61, 35, 47))
     quick, renderer = cast(volume, casting, matrix)
     plain, _ = cast(volume, replace(casting, octree=False), matrix)

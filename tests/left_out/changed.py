@@ -350,7 +350,10 @@ CHANGED = {
     "volume: jitter": What(
         features="RAYCAST_JITTER",
     ),
-    "volume: no octree": What(),
+    "volume: no octree": What(
+        features="RAYCAST_WHOLE",
+        buffers="-nodes",
+    ),
     "volume: sparse": What(
         ran="raycast/fill.frag",
         passes="-rays, between, other rays, sparse rays",

@@ -36,7 +36,8 @@ class NodeList:
     skipped : float
         Share of the leaves in which there is nothing to see; 0 of peaks, for which it depends on the ray.
     octree : dict
-        What the octree costs: its ``bytes``, their ``share`` of the volume's, and ``ms`` that building it took.
+        What the octree costs: its ``bytes``, their ``share`` of the volume's, and ``ms`` that building it took. All are
+        0 while rays skip nothing: then there is none, neither here nor on the GPU.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: OpenGL, volume: RaycastVolume) -> None:
@@ -63,6 +64,13 @@ class NodeList:
         )  # fmt: skip
         if self._made_for == key:
             return
+        self.release()
+        if not casting.octree:
+            self._octrees.clear()
+            self.octree = {"bytes": 0, "share": 0.0, "ms": 0.0}
+            self.levels, self.skipped = np.zeros((0, 4), np.int64), 0.0
+            self._made_for = key
+            return
         margin = 2 if casting.filter == "tricubic" else 1
         if margin not in self._octrees:
             start = time.perf_counter()
@@ -74,9 +82,8 @@ class NodeList:
         numbers = _numbers(octree, casting)
         starts = np.cumsum([0, *(level.size for level in numbers)])[:-1]
         self.levels = np.array([[*of.shape, start] for of, start in zip(numbers, starts, strict=True)], np.int64)
-        looked_into = casting.octree and casting.mode in ("isosurface", "composite")
+        looked_into = casting.mode in ("isosurface", "composite")
         self.skipped = float(np.mean(numbers[0] == SKIP)) if looked_into else 0.0
-        self.release()
         self._put("nodes", numbers)
         if takes_means(casting):
             self._put("means", [level.mean for level in octree.levels])
@@ -114,8 +121,6 @@ class NodeList:
 def _numbers(octree: Octree, casting: Casting) -> list[npt.NDArray[Any]]:
     """Return a number for each node: 0 where there is nothing to see, of peaks the greatest value."""
     low, high = casting.low, casting.high
-    if not casting.octree:
-        return [np.full(level.least.shape, np.inf if _peaks(casting) else 1.0) for level in octree.levels]
     if _peaks(casting):
         return [
             np.where((level.greatest >= low) & (level.least <= high), level.greatest.astype(np.float64), -np.inf)

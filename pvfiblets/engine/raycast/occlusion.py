@@ -147,7 +147,8 @@ class RayOcclusionPass(ScreenEffect):
 
         def rays() -> None:
             cut = [] if view.region is None else ["CLIP_REGION"]
-            features = [*FEATURES_OF_FILTER[casting.filter], *cut]
+            whole = [] if casting.octree else ["RAYCAST_WHOLE"]
+            features = [*FEATURES_OF_FILTER[casting.filter], *whole, *cut]
             program, array = self._programs.screen("raycast/occlusion.frag", features)
             renderer.bind_field(program)
             if cut:

@@ -228,7 +228,7 @@ class RaycastRenderer:
         return self._volume
 
     def bind_field(self, program: moderngl.Program) -> None:
-        """Bind the volume, its octree, its cuts and the rays of the last picture for another pass over that picture."""
+        """Bind the volume, its octree if it has one, its cuts and the rays of the last picture for another pass over that picture."""
         self._cuts.bind(program)
         voxels, block = self._alive()
         block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
@@ -248,6 +248,7 @@ class RaycastRenderer:
         if casting.mode == "composite":
             features += ["RAYCAST_ADAPTIVE"] if self._tables.steep else _OF_INTEGRATOR[casting.integrator]
             features += ["RAYCAST_HOMOGENEOUS"] if takes_means(casting) else []
+        features += [] if casting.octree else ["RAYCAST_WHOLE"]
         return [*features, *(["RAYCAST_JITTER"] if casting.jitter else []), *(["OUTSIDE"] if outside else [])]
 
     def _fitting(self, picture: Picture | None, size: tuple[int, int], casting: Casting, *, marked: bool) -> Picture:
@@ -277,7 +278,7 @@ class RaycastRenderer:
         dict
             ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``voxels_total``, ``nodes`` of the octree,
             ``skipped``: share of its leaves in which there is nothing to see, ``octree``: what it costs, ``bytes``,
-            their ``share`` of the volume's, and ``ms`` that building it took.
+            their ``share`` of the volume's, and ``ms`` that building it took, all 0 while there is none.
         """
         sizes = {} if self._voxels is None else {"voxels": self._voxels.nbytes}
         if self._block is not None:
