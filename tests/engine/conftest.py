@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pvfiblets.report.stability import seen
+
 _spec = importlib.util.spec_from_file_location("fabricate", Path(__file__).with_name("fabricate.py"))
 _module = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_module)
@@ -38,27 +40,5 @@ def random_lines():
 
 @pytest.fixture(scope="session")
 def camera():
-    """Return a maker of model-view-projection matrices, perspective or parallel."""
-
-    def make(size, *, eye=(0, -260, 60), target=(0, 0, 0), up=(0, 0, 1), near=20.0, far=600.0, angle=40.0, height=None):
-        eye, target = np.asarray(eye, float), np.asarray(target, float)
-        z = (eye - target) / np.linalg.norm(eye - target)
-        x = np.cross(up, z)
-        x /= np.linalg.norm(x)
-        view = np.eye(4)
-        view[:3, :3] = x, np.cross(z, x), z
-        view[:3, 3] = -view[:3, :3] @ eye
-        aspect = size[0] / size[1]
-        projection = np.zeros((4, 4))
-        if height is None:
-            t = 1.0 / np.tan(np.radians(angle) / 2)
-            projection[0, 0], projection[1, 1] = t / aspect, t
-            projection[2, 2:] = -(far + near) / (far - near), -2 * far * near / (far - near)
-            projection[3, 2] = -1.0
-        else:
-            projection[0, 0], projection[1, 1] = 2 / (height * aspect), 2 / height
-            projection[2, 2:] = -2 / (far - near), -(far + near) / (far - near)
-            projection[3, 3] = 1.0
-        return projection @ view
-
-    return make
+    """Return a maker of model-view-projection matrices, perspective or parallel: that of the study of extreme cases."""
+    return seen.camera
