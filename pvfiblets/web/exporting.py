@@ -18,7 +18,7 @@ from pvfiblets.web.actions import Actions
 from pvfiblets.web.document import LINES
 from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.options import MEBIBYTE
-from pvfiblets.web.selecting import EXPORTS, write
+from pvfiblets.web.writing import EXPORTS, write
 
 __all__ = ["ExportActions"]
 

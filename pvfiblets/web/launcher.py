@@ -127,7 +127,7 @@ class Launcher:
         return session
 
     async def _launch(self, identifier: str) -> Session:
-        session = Session(identifier, folder=self._scratch and self._scratch.session())
+        session = Session(identifier, folder=None if self._scratch is None else self._scratch.session())
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
         process = await asyncio.create_subprocess_exec(
@@ -141,7 +141,7 @@ class Launcher:
         assert process.stdin is not None
         # By standard input: command lines and environments can be read by others.
         told = self._options.as_dict() | {"token": None, "host": "127.0.0.1", "port": 0}
-        more = {"key": session.key, "folder": session.folder and str(session.folder)}
+        more = {"key": session.key, "folder": None if session.folder is None else str(session.folder)}
         process.stdin.write((json.dumps({"options": told, **more}) + "\n").encode())
         with contextlib.suppress(ConnectionError):
             await process.stdin.drain()

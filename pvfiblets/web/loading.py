@@ -250,6 +250,7 @@ class Watch:
         self._progress, self._cancel = progress, cancel
 
     def __call__(self, what: str, share: float) -> None:
+        """Say what is being done; :class:`Cancelled` if it is to stop."""
         if self._cancel is not None and self._cancel():
             raise Cancelled("stopped; all is as it was")
         if self._progress is not None:

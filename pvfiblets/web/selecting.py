@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.web.document import LINES, Ids, Layer, State
-from pvfiblets.web.loading import Watch
 from pvfiblets.web.sampling import sampled
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
+from pvfiblets.web.writing import EXPORTS, write
 
 if TYPE_CHECKING:
-    from pvfiblets.web.loading import Cancel, Files, Progress
+    from pvfiblets.web.loading import Files
 
-__all__ = ["EXPORTS", "MODES", "Selecting", "write"]
+__all__ = ["MODES", "Selecting"]
 
 MODES = ("replace", "add", "remove", "toggle")
-EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".vtk", ".fiblets")
-"""Suffixes of files that streamlines can be written to, everywhere on the page."""
 _LONGEST_LASSO = 4096
 _LONGEST_TABLE = 5000
 
@@ -301,63 +298,6 @@ class Selecting:
         taken = [(layer, chosen(layer)) for layer in self.state.layers]
         layers = tuple(layer if ids == layer.selected else replace(layer, selected=ids) for layer, ids in taken)
         self.become(replace(self.state, layers=layers), what)
-
-
-def write(
-    fiblets: Any, ids: np.ndarray, target: Path, progress: Progress | None = None, cancel: Cancel | None = None
-) -> dict[str, Any]:
-    """Write some streamlines of a set to a file; may run in a thread of its own.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    ids : ndarray of int
-    target : Path
-        Its suffix says the format.
-    progress, cancel : callable, optional
-        See :meth:`.Files.load`. It is asked between pieces, and last when the file is written.
-
-    Returns
-    -------
-    dict
-        ``streamlines``, ``bytes``, and ``lost``: what the format cannot hold.
-
-    Raises
-    ------
-    Cancelled
-        If `cancel` said so; there is no file then.
-    """
-    watch = Watch(progress, cancel)
-    watch("choosing", 0.0)
-    part = fiblets if len(ids) == fiblets.n_streamlines else fiblets.extract(ids)
-    watch("writing", 0.0)
-    try:
-        lost = _write_whole(part, target, watch)
-        watch("writing", 1.0)
-    except BaseException:
-        target.unlink(missing_ok=True)
-        raise
-    return {"streamlines": len(ids), "bytes": target.stat().st_size, "lost": list(lost)}
-
-
-def _write_whole(part: Any, target: Path, watch: Watch) -> list[str]:
-    """Write a set, as its own ``save`` does; other formats' points are decoded first, which is a part of the time."""
-    from pvfiblets import formats
-    from pvfiblets.formats.spool import gathered
-
-    if formats.registry.suffix_of(target) == ".fiblets" or not len(part):
-        return list(part.save(target))
-
-    def pieces() -> Iterator[Any]:
-        done = 0
-        for piece in part.iter_chunks():
-            yield piece
-            done += piece.n_points
-            watch("decoding", 0.7 * done / max(part.n_points, 1))
-
-    with gathered(pieces(), target.parent) as streamlines:
-        watch("writing", 0.7)
-        return formats.write(target, streamlines)
 
 
 def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pvfiblets.web.elements import html, v3
-from pvfiblets.web.selecting import EXPORTS
+from pvfiblets.web.writing import EXPORTS
 
 TABS = (("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("info", "Info"))
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))

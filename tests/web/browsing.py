@@ -101,9 +101,11 @@ class Visit:
     def wait(self, until, what):
         """Wait until a function says so."""
         end = time.monotonic() + PATIENCE / 1000.0
+        pause = 10  # ms: most of what is waited for comes soon
         while not (found := until()):
             assert time.monotonic() < end, f"waited in vain for {what}; the server said:\n{self.served.log.read_text()}"
-            self.page.wait_for_timeout(100)
+            self.page.wait_for_timeout(pause)
+            pause = min(2 * pause, 100)
         return found
 
     def picture(self):

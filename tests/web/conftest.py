@@ -88,17 +88,31 @@ def scene(plotter, folder):
     scene.close()
 
 
+def look_down(scene, at, per_pixel):
+    """Look along z from above at a place, with so many mm a pixel, and draw."""
+    x, y, z = at
+    scene.set_camera(
+        {"position": [x, y, z + 300], "focal_point": [x, y, z], "up": [0, 1, 0], "view_angle": 30.0,
+         "parallel": True, "parallel_scale": per_pixel * scene.plotter.window_size[1] / 2}
+    )  # fmt: skip
+    scene.screenshot()
+
+
 @pytest.fixture
 def flat(scene):
     """Return the scene with the sixty lines seen along z from above, 0.5 mm a pixel, without light or a bar."""
     layer = scene.open("lines.trk")
     scene.set(layer.id, "scalars", None)
     scene.set(layer.id, "lighting", False)
-    scene.set_camera(
-        {"position": [30, 18, 300], "focal_point": [30, 18, 0], "up": [0, 1, 0], "view_angle": 30.0,
-         "parallel": True, "parallel_scale": 40.0}
-    )  # fmt: skip
-    scene.screenshot()
+    look_down(scene, (30, 18, 0), 0.5)
+    return scene
+
+
+@pytest.fixture
+def ball(scene):
+    """Return the scene with a ball of 8 mm around (20, 18, 10), from above at a quarter of a millimetre a pixel."""
+    scene.open("ball.ply")
+    look_down(scene, (20, 18, 10), 0.25)
     return scene
 
 

@@ -148,6 +148,14 @@ def test_what_lies_over_the_picture_is_apart(pages, size):
                 assert across <= 1 or down <= 1, (one, other)
 
 
+def test_bars_that_find_no_room_are_named(pages):
+    here = pages
+    resize(here, (320, 200), left=False, right=False)
+    here.wait(lambda: here.page.locator("[data-value=no-room]:has-text('fa')").count(), "what is not shown")
+    resize(here, (800, 600), left=False, right=False)
+    here.wait(lambda: not here.state("no_room"), "room for all")
+
+
 def test_a_narrow_page_begins_with_the_picture(visit):
     here = visit("lines.fiblets", width=820, height=720)
     here.wait(lambda: not here.state("right_open"), "the panels to close")

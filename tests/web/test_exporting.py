@@ -15,7 +15,7 @@ import pvfiblets
 from pvfiblets.web import exporting
 from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.loading import Cancelled
-from pvfiblets.web.selecting import EXPORTS, write
+from pvfiblets.web.writing import EXPORTS, write
 from tests.web.desk import Desk
 
 

@@ -10,15 +10,9 @@ from tests.web.desk import Desk
 
 
 @pytest.fixture
-def desk(scene, folder):
-    """A ball of 8 mm around (20, 18, 10), from above at a quarter of a millimetre a pixel."""
-    scene.open("ball.ply")
-    scene.set_camera(
-        {"position": [20, 18, 100], "focal_point": [20, 18, 10], "up": [0, 1, 0], "view_angle": 30.0,
-         "parallel": True, "parallel_scale": 20.0}
-    )  # fmt: skip
-    scene.screenshot()
-    desk = Desk(scene, folder)
+def desk(ball, folder):
+    """What the tools act on: the ball from above."""
+    desk = Desk(ball, folder)
     desk.selecting = SelectionActions(desk)
     return desk
 

@@ -334,14 +334,8 @@ def test_only_pictures_render_and_views_show_what_is_visible(scene):
     assert scene.usual_shape("plane")["origin"] == pytest.approx([20, 18, 10], abs=0.1)
 
 
-def test_distances_are_between_what_pixels_show(scene):
-    """A ball of 8 mm around (20, 18, 10), from above at a quarter of a millimetre a pixel."""
-    scene.open("ball.ply")
-    scene.set_camera(
-        {"position": [20, 18, 100], "focal_point": [20, 18, 10], "up": [0, 1, 0], "view_angle": 30.0,
-         "parallel": True, "parallel_scale": 20.0}
-    )  # fmt: skip
-    scene.screenshot()
+def test_distances_are_between_what_pixels_show(ball):
+    scene = ball
     np.testing.assert_allclose(scene.place_at(100, 80), [20.125, 18.125, 18.0], atol=0.1)
     found = scene.measure(100 - 16, 80, 100 + 16, 80)
     assert found["mm"] == pytest.approx(8.0, abs=0.1)

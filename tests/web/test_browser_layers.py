@@ -1,0 +1,111 @@
+"""Volumes and meshes as layers of a page, in a real browser: opened, shown, changed, cut and removed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+
+def lit(picture):
+    """Return how many pixels something is drawn in."""
+    return int((picture.max(axis=2) > 40).sum())
+
+
+def same(one, other):
+    return one.shape == other.shape and np.abs(one - other).mean() < 0.5
+
+
+def type_(here, name, text):
+    here.page.fill(f"[data-property={name}] input.pv-num", text)
+    here.press("Tab")
+
+
+def colour(here, name, value):
+    control = here.page.locator(f"[data-property={name}] input[type=color]")
+    control.fill(value)
+    control.dispatch_event("change")
+
+
+def add(here, file, kind, before):
+    """Open a file of the served folder as one more layer, and return the picture then."""
+    count = here.layers()
+    here.press("o")
+    here.page.click(f"[data-entry='{file}']")
+    here.wait(lambda: here.layers() == count + 1, f"the layer of {file}")
+    assert here.state("layers")[-1]["kind"] == kind
+    here.wait(lambda: here.state("chosen_name") == file, "its properties")
+    return here.changed(before)
+
+
+def hide_and_remove(here, before, shown):
+    """Hide the chosen layer, show it again, and take it away; each is seen."""
+    here.press("v")
+    assert same(here.changed(shown), before)
+    here.press("v")
+    assert same(here.changed(before), shown)
+    here.page.locator("[data-action=more]").last.click()
+    here.page.click(".v-overlay--active .v-list-item:has-text('Remove')")
+    here.wait(lambda: here.layers() == 1, "the layer to go")
+    assert same(here.changed(shown), before)
+    here.press("Control+z")
+    here.wait(lambda: here.layers() == 2, "the layer again")
+    assert same(here.changed(before), shown)
+
+
+@pytest.fixture
+def here(visit):
+    """A page of the lines, seen from the front."""
+    found = visit("lines.fiblets")
+    found.press("2")
+    found.wait(lambda: found.state("edges").get("top") == "S", "the view")
+    found.rests()
+    return found
+
+
+def test_a_volume_is_a_layer(here):
+    before = here.rests()
+    shown = add(here, "head.nii.gz", "volume", before)
+    assert lit(shown) > lit(before) + 2000  # a surface, where lines leave gaps
+    colour(here, "color", "#ff2000")
+    red = here.changed(shown)
+    more = (np.abs(red - before).max(axis=2) > 24) & (red.max(axis=2) > 40)
+    assert more.sum() > 2000
+    assert (red[more][:, 0] > 2 * red[more][:, 2]).mean() > 0.95
+    here.press("Control+z")
+    assert same(here.changed(red), shown)
+    # The volume's values fall from 1 in the middle.
+    type_(here, "values", "0.6")
+    small = here.changed(shown)
+    assert lit(before) < lit(small) < lit(shown) - 500
+    here.press("Control+z")
+    here.changed(small)
+    here.choose("mode", "greatest value")
+    projected = here.changed(shown)
+    assert len(np.unique(projected.reshape(-1, 3), axis=0)) > 30
+    here.press("Control+z")
+    assert same(here.changed(projected), shown)
+    hide_and_remove(here, before, shown)
+
+
+def test_a_mesh_is_a_layer(here):
+    before = here.rests()
+    shown = add(here, "ball.ply", "mesh", before)
+    assert lit(shown) > lit(before) + 200
+    colour(here, "color", "#20ff00")
+    green = here.changed(shown)
+    ball = np.abs(green - before).max(axis=2) > 24
+    assert ball.sum() > 200
+    # Round: as wide as high, and as full as a circle.
+    rows, columns = np.flatnonzero(ball.any(axis=1)), np.flatnonzero(ball.any(axis=0))
+    high, wide = np.ptp(rows) + 1, np.ptp(columns) + 1
+    assert high / wide == pytest.approx(1.0, abs=0.1)
+    assert ball.sum() / (high * wide) == pytest.approx(np.pi / 4, abs=0.12)
+    assert (green[ball][:, 1] > green[ball][:, 2]).mean() > 0.9
+    type_(here, "opacity", "0.3")
+    thin = here.changed(green)
+    assert thin[ball].mean() < 0.8 * green[ball].mean()
+    here.press("Control+z")
+    here.changed(thin)
+    here.press("Control+z")
+    assert same(here.changed(green), shown)
+    hide_and_remove(here, before, shown)
