@@ -71,7 +71,7 @@ def _panel(panel: Any, records: Sequence[Record], path: str, colours: Mapping[st
     low, high = min(known, default=1.0), max(known, default=1.0)
     panel.set_xlim(low / 1.3, high * 1.3)
     narrow = high < 4.0 * low
-    subs = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0) if narrow else (1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)
+    subs = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0) if narrow else (1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)
     panel.xaxis.set_major_locator(LogLocator(subs=subs))
     panel.xaxis.set_minor_locator(NullLocator())
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
