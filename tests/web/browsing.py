@@ -145,6 +145,22 @@ class Visit:
     def state(self, name):
         return self.page.evaluate(f"window.trame.state.get('{name}')")
 
+    def remember(self):
+        """Keep the session as it is now, for :meth:`begin_again`."""
+        self.begun = self.page.evaluate("window.trame.trigger('save_session')")
+        return self
+
+    def begin_again(self):
+        """Have the session as it was remembered, without another process for it; what can be undone stays."""
+        self.page.evaluate(
+            "window.trame.state.update({tool: 'rotate', tab: 'clip', dialog: '', left_open: true, right_open: true})"
+        )
+        self.page.evaluate("(text) => window.trame.trigger('load_session', [text])", self.begun)
+        now = "window.trame.trigger('save_session')"
+        self.wait(lambda: self.page.evaluate(now) == self.begun, "the session as it was")
+        self.rests()
+        return self
+
     def layers(self):
         return self.page.locator("[data-layer]").count()
 

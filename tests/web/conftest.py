@@ -156,6 +156,31 @@ def served(tmp_path_factory, _files):
         server.stop()
 
 
+@pytest.fixture(scope="module")
+def _pages(browser, served):
+    pages = {}
+    yield pages
+    for found in pages.values():
+        found.close()
+
+
+@pytest.fixture
+def revisit(_pages, browser, served):
+    """Return a function that opens a page that tests of a module share; each finds it as the first one did."""
+    from tests.web.browsing import Visit
+
+    def open_page(*arguments):
+        if arguments in _pages:
+            return _pages[arguments].begin_again()
+        found = _pages[arguments] = Visit(browser, served(*arguments))
+        return found.open().remember()
+
+    yield open_page
+    for found in _pages.values():
+        errors, found.errors[:] = list(found.errors), []
+        assert not errors
+
+
 @pytest.fixture
 def visit(browser, served):
     """Return a function that opens a page of a server; errors on its console fail the test."""

@@ -53,9 +53,9 @@ def hide_and_remove(here, before, shown):
 
 
 @pytest.fixture
-def here(visit):
+def here(revisit):
     """A page of the lines, seen from the front."""
-    found = visit("lines.fiblets")
+    found = revisit("lines.fiblets")
     found.press("2")
     found.wait(lambda: found.state("edges").get("top") == "S", "the view")
     found.rests()

@@ -27,8 +27,8 @@ def picked(here, count):
     return {int(text) for text in here.page.locator("#picked tbody tr td:first-child").all_inner_texts()}
 
 
-def test_lassos_and_boxes_take_what_lies_in_them(visit):
-    here = visit("lines.fiblets")
+def test_lassos_and_boxes_take_what_lies_in_them(revisit):
+    here = revisit("lines.fiblets")
     from_above(here)
     front, back = set(range(55, 60)), set(range(50, 55))  # the picture's middle is at y = 18 mm
     here.press("l")
@@ -51,12 +51,12 @@ def test_lassos_and_boxes_take_what_lies_in_them(visit):
     here.wait(lambda: here.state("selection")["count"] == 0, "nothing selected")
 
 
-def test_a_distance_is_measured_in_millimetres(visit):
-    here = visit("lines.fiblets")
+def test_a_distance_is_measured_in_millimetres(revisit):
+    here = revisit("lines.fiblets")
     from_above(here)
     here.page.fill("[data-property=line_width] input.pv-num", "6")
     here.press("Tab")
-    here.wait(lambda: here.state("undo_label"), "wide lines")
+    here.wait(lambda: "line_width" in here.state("undo_label"), "wide lines")
     lit = here.rests().max(axis=2) > 60
     # From above, lines 50 to 59 are nearest; the longest spans 69 mm from left to right.
     rows = np.flatnonzero(lit.any(axis=1))
@@ -72,10 +72,12 @@ def test_a_distance_is_measured_in_millimetres(visit):
     here.wait(lambda: here.state("measured"), "a distance")
     assert "mm" in here.page.inner_text("[data-action=clear-distance]")
     assert abs(float(here.state("measured").split()[0]) - 40.0) < 1.0
+    here.page.click("[data-action=clear-distance]")
+    here.wait(lambda: not here.state("measured"), "no distance")
 
 
-def test_keys_are_listed_and_do_what_the_list_says(visit):
-    here = visit("lines.fiblets")
+def test_keys_are_listed_and_do_what_the_list_says(revisit):
+    here = revisit("lines.fiblets")
     before = here.rests()
     here.press("?")
     listed = here.page.locator("#dialog-help").inner_text()
@@ -115,10 +117,10 @@ def test_keys_are_listed_and_do_what_the_list_says(visit):
     assert download.value.path().read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_script_of_a_page_makes_its_picture(visit):
+def test_the_script_of_a_page_makes_its_picture(revisit):
     from PIL import Image
 
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     before = here.rests()
     here.choose("scalars", "length")
     coloured = here.changed(before)
@@ -148,8 +150,8 @@ def test_the_script_of_a_page_makes_its_picture(visit):
     script.unlink()
 
 
-def test_groups_shares_and_regions_choose_streamlines(visit):
-    here = visit("lines.fiblets")
+def test_groups_shares_and_regions_choose_streamlines(revisit):
+    here = revisit("lines.fiblets")
     counted = here.page.locator("[data-value=counted]")
 
     def left(count):
