@@ -48,6 +48,7 @@ html_theme_options = {
     "show_toc_level": 2,
     "header_links_before_dropdown": 6,
 }
+html_sidebars = {page: [] for page in ("tutorial", "contributing")}  # single pages, with none beside them
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False

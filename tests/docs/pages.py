@@ -68,7 +68,6 @@ COLOURED = {"docs/tutorial.md": {"first.png", "length.png", "fa.png", "some.png"
 RUN_ELSEWHERE = {
     "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",
     "docs/reference/fiblets-files.md": "test_fiblets_files.py runs the reader that it prints",
-    "CONTRIBUTING.md": "make and pytest themselves, which continuous integration runs",
 }
 # A smaller brain, and windows that stay open for what a page says after it has shown them.
 INSTEAD = {
