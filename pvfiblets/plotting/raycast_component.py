@@ -146,7 +146,8 @@ class RaycastVolumesComponent(Keeping["RaycastActor"]):
         integrator : {"adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4"}
             How light is added up over a step. ``"adaptive"``, the default, is within a hundredth
             of the exact light however dense and steep opacities are: it is ``"preintegrated"``
-            where that suffices, and else takes several times as long.
+            where that suffices, takes steps in parts at edges from voxel to voxel, and is
+            several times as slow where opacities are steep.
         jitter : bool, default: False
             Have each ray start at a place of its own in the first step: noise in place of rings.
         octree : bool, default: True

@@ -63,8 +63,9 @@ class Casting:
     iterations : int
         Steps of the refinement, 1 to 64.
     integrator : str
-        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` where one look-up a step is enough
-        (:func:`pvfiblets.raycast.steepness.is_steep`), and else halves steps until their halves agree.
+        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` where one look-up a step is enough, takes steps in parts
+        over which values bend, as at edges from voxel to voxel, and halves them until their halves agree where colours
+        are steep or dense (:mod:`pvfiblets.raycast.steepness`).
     octree : bool
         Whether nodes in which there is nothing to see are skipped. It changes no pixel.
     homogeneous : float

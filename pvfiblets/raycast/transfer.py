@@ -39,8 +39,8 @@ EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
 PLACES = 4080
 """Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
 
-KEPT = 4
-"""Pre-integrated tables that are kept, for whoever comes back to one: each takes a moment to make."""
+KEPT = 8
+"""Pre-integrated tables that are kept, for whoever comes back: each takes a moment, and some colours need two."""
 
 ALLOWED = 1e-3
 """Difference of light between a stretch and its halves up to which ``'adaptive'`` does not halve it again."""
@@ -149,6 +149,19 @@ class Transfer:
         between = n[np.floor(last).astype(np.int64) + 1] > n[np.ceil(first).astype(np.int64)]
         seen: npt.NDArray[np.bool_] = between | self._opaque_at(first) | self._opaque_at(last)
         return seen
+
+    @cached_property
+    def opaque_range(self) -> tuple[float, float]:
+        """Values between which all opacities above 0 lie; infinite where the first or the last entry has one."""
+        entries = np.flatnonzero(self.table[:, 3] > 0.0)
+        if not entries.size:
+            return np.inf, -np.inf
+        low, high = self.clim
+        ends = low + (high - low) * np.array([entries[0] - 1.0, entries[-1] + 1.0]) / (len(self.table) - 1)
+        return (
+            float(ends[0]) if entries[0] > 0 else -np.inf,
+            float(ends[1]) if entries[-1] < len(self.table) - 1 else np.inf,
+        )
 
     def even_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Return whether between two values neither colours nor extinction change by more than rounding does.

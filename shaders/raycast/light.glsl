@@ -14,8 +14,6 @@
 uniform sampler2D colours;
 #if FEATURE_RAYCAST_ADAPTIVE
 #include "raycast/adaptive.glsl"
-#elif FEATURE_RAYCAST_PREINTEGRATED
-uniform sampler2D segments;
 #endif
 
 float place_of(float value) { return clamp((value - ray_table.x) / max(ray_table.y - ray_table.x, 1e-30), 0.0, 1.0); }
@@ -26,6 +24,9 @@ vec4 medium_at(float value) {
     return textureLod(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5), 0.0);
 }
 
+#if FEATURE_RAYCAST_PREINTEGRATED
+#include "raycast/preintegrated.glsl"
+#else
 #if FEATURE_RAYCAST_ADAPTIVE
 #define WHOLE(mm) (mm)      // nodes end where cells do
 #define Before Look
@@ -34,7 +35,7 @@ Look before_at(Ray ray, float t) { return look_along(ray, t); }
 #define WHOLE(mm) (floor((mm) / step) * step)
 #define Before float
 float before_at(Ray ray, float t) {
-#if FEATURE_RAYCAST_PREINTEGRATED || FEATURE_RAYCAST_SIMPSON || FEATURE_RAYCAST_ROMBERG || FEATURE_RAYCAST_RK4
+#if FEATURE_RAYCAST_SIMPSON || FEATURE_RAYCAST_ROMBERG || FEATURE_RAYCAST_RK4
     return value_at(at(ray, t));
 #else
     return 0.0;
@@ -45,17 +46,7 @@ float before_at(Ray ray, float t) {
 // Premultiplied colour and opacity of a stretch of some mm.
 #if !FEATURE_RAYCAST_ADAPTIVE
 vec4 stretch(Ray ray, float t, float mm, float step, inout float before) {
-#if FEATURE_RAYCAST_PREINTEGRATED
-    float after = value_at(at(ray, t + mm)), size = float(textureSize(segments, 0).x);
-    vec2 place = (vec2(place_of(before), place_of(after)) * (size - 1.0) + 0.5) / size;
-    vec4 whole = textureLod(segments, place, 0.0);
-    float middle = 0.5 * (before + after);
-    before = after;
-    if (!(middle >= ray_values.z && middle <= ray_values.w)) return vec4(0.0);
-    if (mm == step || whole.a <= 0.0) return whole;
-    float a = 1.0 - pow(1.0 - min(whole.a, 0.9999999), mm / step);
-    return whole * (a / whole.a);
-#elif FEATURE_RAYCAST_RIEMANN
+#if FEATURE_RAYCAST_RIEMANN
     vec4 m = medium_at(value_at(at(ray, t + 0.5 * mm)));
     float a = min(m.a * mm, 1.0);
     return vec4(m.rgb * a, a);
@@ -135,3 +126,4 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
     if (light.a >= ray_high.w) light /= light.a;      // what is behind would not be seen
     return light.a > 0.0;
 }
+#endif

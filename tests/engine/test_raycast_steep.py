@@ -9,7 +9,7 @@ from pvfiblets.engine import View
 from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
 from pvfiblets.raycast import reference
 from pvfiblets.raycast.casting import Casting
-from pvfiblets.raycast.steepness import is_steep, typical_bend
+from pvfiblets.raycast.steepness import OFF, allowed_bend, is_steep, largest_bend, typical_bend
 from pvfiblets.raycast.transfer import Transfer
 from pvfiblets.raycast.volume import RaycastVolume
 
@@ -40,6 +40,14 @@ def field(name, n=16):
         values = 0.5 + 0.5 * at @ [0.6, 0.3, 0.1]
     elif name == "ball":
         values = np.clip(1 - far / 1.2, 0, 1)
+    elif name == "mask":
+        values = far < 0.6
+    elif name == "sheets":
+        values = np.zeros((n, n, n))
+        values[:, :, n // 2] = values[n // 3, :, :] = 1.0
+    elif name == "tubes":  # thin ones, that fade
+        values = np.exp(-(((at[..., 0] - 0.3 * at[..., 1]) * n / 3) ** 2)) + np.exp(-(((far - 0.7) * n / 3) ** 2))
+        values /= values.max()
     else:
         values = np.random.default_rng(0).random((n, n, n))
     return RaycastVolume(values.astype(np.float32), np.eye(4))
@@ -93,6 +101,73 @@ def test_the_same_of_noise_but_for_few_pixels(gl, camera):
     renderer.release()
 
 
+@pytest.mark.parametrize("name", ["mask", "sheets", "noise"])
+@pytest.mark.parametrize("kappa_step", [0.1, 1.0])
+def test_light_is_within_a_hundredth_at_edges_from_voxel_to_voxel(gl, camera, name, kappa_step):
+    volume = field(name)
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    transfer = steep_transfer("ramp", kappa_step)
+    found = light(renderer, matrix, Casting("composite", transfer=transfer, step=STEP, stop=0.9999))
+    right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume)).reshape(found.shape)
+    assert np.abs(found - right).max() < 1.05e-2
+    assert {"RAYCAST_FINER", "RAYCAST_PREINTEGRATED"} <= set(renderer.explain()["features"])
+    # Once, not in parts, it would not be.
+    once = light(renderer, matrix, Casting("composite", transfer=transfer, integrator="preintegrated", stop=0.9999))
+    assert np.abs(once - right).max() > 1.1e-2 or name == "noise"
+    renderer.release()
+
+
+@pytest.mark.parametrize(("filter", "most"), [("tricubic", 0.01), ("nearest", 0.2)])
+def test_the_same_of_other_fields(gl, camera, filter, most):  # noqa: A002
+    """That of nearest voxels jumps, within parts as well: what a ray passes of a corner may not be seen at all."""
+    volume = field("mask", 12)
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    transfer = steep_transfer("ramp", 0.3)
+    right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume), filter=filter)
+    off = []
+    for integrator in ("adaptive", "preintegrated"):
+        casting = Casting("composite", transfer=transfer, filter=filter, integrator=integrator, stop=0.9999)
+        off.append(light(renderer, matrix, casting) - right.reshape(*SIZE[::-1], 4))
+    assert np.abs(off[0]).max() < most
+    assert np.square(off[0]).mean() < 0.5 * np.square(off[1]).mean()
+    renderer.release()
+
+
+def test_edges_where_a_step_ends_a_ray_or_lies_beside_what_was_skipped(gl, camera):
+    """A slab that reaches to the volume's border and lies across the borders of the octree's nodes."""
+    values = np.zeros((40, 17, 17), np.float32)
+    values[24:, 3:, :] = 1.0
+    volume = RaycastVolume(values, np.eye(4))
+    middle = (np.array(volume.shape) - 1) / 2
+    renderer = RaycastRenderer(gl, volume)
+    transfer = steep_transfer("ramp", 0.5)
+    for eye in ([50, -27, 15], [-60, 9, 4], [3, 8, 70]):
+        matrix = camera(SIZE, eye=middle + eye, target=middle, near=3, far=160)
+        right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume)).reshape(*SIZE[::-1], 4)
+        for octree in (True, False):
+            found = light(renderer, matrix, Casting("composite", transfer=transfer, octree=octree, stop=0.9999))
+            assert np.abs(found - right).max() < 1e-2
+    renderer.release()
+
+
+def test_lines_between_samples_are_the_nearest_ones(gl, camera):
+    """Of thin things in gentle colours, at no sample more, light is as right as by samples in the middles of steps."""
+    volume = field("tubes", 32)
+    matrix = matrix_of(camera, volume)
+    renderer = RaycastRenderer(gl, volume)
+    transfer = Transfer(table(ORANGE, np.clip((X - 0.1) / 0.9, 0, 1) * 0.5), (0.0, 1.0))
+    right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume)).reshape(*SIZE[::-1], 4)
+    off = {}
+    for integrator in ("preintegrated", "exponential", "adaptive"):
+        found = light(renderer, matrix, Casting("composite", transfer=transfer, integrator=integrator, stop=0.9999))
+        off[integrator] = float(np.sqrt(((found - right) ** 2).mean()))
+    assert off["preintegrated"] < 1.1 * off["exponential"]
+    assert off["adaptive"] < 1.1 * off["preintegrated"]
+    renderer.release()
+
+
 def test_values_beyond_thresholds_are_left_out_exactly(gl, camera):
     volume = field("slope")
     matrix = matrix_of(camera, volume)
@@ -117,13 +192,16 @@ def test_the_octree_changes_no_pixel_of_it(gl, camera):
 
 
 def test_only_what_is_steep_pays_for_it(gl, camera):
-    volume = field("ball")
+    volume = field("slope")
     matrix = matrix_of(camera, volume)
     renderer = RaycastRenderer(gl, volume)
     gentle = Transfer(np.linspace(0, 1, 256)[:, None] * np.ones(4), (0, 1), 1.0)
     light(renderer, matrix, Casting("composite", transfer=gentle))
     assert "RAYCAST_PREINTEGRATED" in renderer.explain()["features"]
-    assert "media" not in {buffer["name"] for buffer in renderer.explain()["buffers"]}
+    assert "RAYCAST_FINER" not in renderer.explain()["features"]
+    sizes = {buffer["name"]: buffer["bytes"] for buffer in renderer.explain()["buffers"]}
+    assert "media" not in sizes
+    assert sizes["segments"] == 256 * 256 * 16
     light(renderer, matrix, Casting("composite", transfer=steep_transfer("peak", 1.0)))
     assert "RAYCAST_ADAPTIVE" in renderer.explain()["features"]
     light(renderer, matrix, Casting("composite", transfer=steep_transfer("peak", 1.0), integrator="preintegrated"))
@@ -152,13 +230,43 @@ def test_what_is_steep():
     assert is_steep(steep_transfer("ramp", 9.5), STEP)  # and light where the ball begins would be off by more than OFF
     assert is_steep(steep_transfer("ramp", 1.0), STEP, low=0.5)
     assert not is_steep(steep_transfer("ramp", 1.0), STEP, low=-1.0)
-    assert is_steep(steep_transfer("ramp", 1.0), STEP, chord=0.1)
+    assert is_steep(steep_transfer("ramp", 3.0), STEP, chord=0.1)
+    assert not is_steep(steep_transfer("ramp", 1.0), STEP, chord=0.1)  # parts of steps do
 
 
 def test_the_typical_bend():
     assert typical_bend(field("slope")) < 1e-6
     assert 0.3 < typical_bend(field("noise")) < 0.6
     assert typical_bend(RaycastVolume(np.arange(8.0, dtype=np.float32).reshape(2, 2, 2) ** 2, np.eye(4))) == 0.0
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int16, np.float32])
+def test_the_largest_bend(dtype):
+    values = (np.random.default_rng(1).random((7, 5, 2)) * 200).astype(dtype)
+    bends = [np.abs(np.diff(values.astype(float), 2, axis=axis)).max(initial=0.0) for axis in range(3)]
+    for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
+        for turned in (values.transpose(order), np.asfortranarray(values.transpose(order))):
+            assert largest_bend(RaycastVolume(turned)) == pytest.approx(max(bends), rel=1e-6)
+    assert largest_bend(field("slope")) < 1e-6
+
+
+def test_the_bend_that_is_allowed():
+    """Of a table whose opacity rises evenly: light of a step through values that much apart differs by `OFF`."""
+    thin = Transfer(np.linspace(0, 1, 256)[:, None] * [0, 0, 0, 1e-3], (-3.0, 5.0))
+    assert allowed_bend(thin, 1.0) == 8.0  # nothing is too much
+    gentle = Transfer(np.linspace(0, 1, 256)[:, None] * [0, 0, 0, 0.2], (-3.0, 5.0))
+    assert allowed_bend(gentle, 1.0) == pytest.approx(OFF / 0.2 * 8.0, rel=1e-3)
+    assert allowed_bend(gentle, 0.5) == pytest.approx(OFF / (0.5 * 0.2 / np.sqrt(0.8)) * 8.0, rel=1e-2)
+
+
+def test_between_which_values_anything_is_opaque():
+    def ends(*opacities):
+        return Transfer(np.array(opacities)[:, None] * [0, 0, 0, 1], (10.0, 14.0)).opaque_range
+
+    assert ends(0, 0, 1, 0, 0) == (11.0, 13.0)
+    assert ends(0, 0, 0, 0, 1) == (13.0, np.inf)
+    assert ends(1, 0, 0, 0, 0) == (-np.inf, 11.0)
+    assert ends(0, 0, 0, 0, 0) == (np.inf, -np.inf)
 
 
 @pytest.mark.parametrize("integrator", ["adaptive", "exponential"])

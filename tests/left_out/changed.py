@@ -334,8 +334,15 @@ CHANGED = {
         features="RAYCAST_SURFACE",
         resolve="tube_normal",
     ),
-    "volume: light": What(
+    "volume: gentle light": What(
         features="RAYCAST_LIGHT, RAYCAST_PREINTEGRATED",
+        resolve="-colour_point_value, colour_point",
+        buffers="-fibletTable, colours, segments",
+        packages="numba",
+        modules="codec.jit, raycast.preintegration",
+    ),
+    "volume: light": What(
+        features="RAYCAST_FINER, RAYCAST_LIGHT, RAYCAST_PREINTEGRATED",
         resolve="-colour_point_value, colour_point",
         buffers="-fibletTable, colours, segments",
         packages="numba",

@@ -213,6 +213,7 @@ SCENES = {
     "volume: mip": made("volume"),
     "volume: local mip": made("volume", mode="local-mip", peak=0.5),
     "volume: surface": made("volume", mode="isosurface", values=0.7),
+    "volume: gentle light": made("volume", mode="composite", opacity=[0, 0.05]),
     "volume: light": made("volume", mode="composite"),
     "volume: nearest": made("volume", filter="nearest"),
     "volume: tricubic": made("volume", filter="tricubic"),

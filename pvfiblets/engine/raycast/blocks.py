@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...raycast.casting import MAX_VALUES, Casting
+from ...raycast.steepness import PARTS
 from ...raycast.transfer import ALLOWED, FINEST
 from ...raycast.volume import RaycastVolume
 from ..errors import EngineError
@@ -25,6 +26,7 @@ CONSTANTS: dict[str, Any] = {
     "max_levels": MAX_LEVELS,
     "adaptive_error": ALLOWED,
     "finest": FINEST,
+    "parts": PARTS,
 }
 """Of the shaders."""
 

@@ -228,7 +228,7 @@ class RaycastRenderer:
         return self._volume
 
     def bind_field(self, program: moderngl.Program) -> None:
-        """Bind the volume, its octree if it has one, its cuts and the rays of the last picture for another pass over that picture."""
+        """Bind the volume, its octree if there is one, its cuts and the rays of the last picture for another pass."""
         self._cuts.bind(program)
         voxels, block = self._alive()
         block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
@@ -247,6 +247,7 @@ class RaycastRenderer:
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
             features += ["RAYCAST_ADAPTIVE"] if self._tables.steep else _OF_INTEGRATOR[casting.integrator]
+            features += ["RAYCAST_FINER"] if self._tables.finer else []
             features += ["RAYCAST_HOMOGENEOUS"] if takes_means(casting) else []
         features += [] if casting.octree else ["RAYCAST_WHOLE"]
         return [*features, *(["RAYCAST_JITTER"] if casting.jitter else []), *(["OUTSIDE"] if outside else [])]

@@ -8,7 +8,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...raycast.steepness import is_steep, typical_bend
+from ...raycast.casting import LARGEST
+from ...raycast.steepness import KINKS, PARTS, allowed_bend, is_steep, largest_bend, typical_bend
 
 if TYPE_CHECKING:
     from ...raycast.casting import Casting
@@ -34,15 +35,17 @@ class Tables:
     ----------
     steep : bool
         Whether stretches must be halved where they are steep, for one look-up a step would not do.
+    finer : bool
+        Whether steps are taken in parts where values bend.
     """
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         self._ctx, self._volume = ctx, volume
-        self._bend: float | None = None
+        self._bends: dict[str, float] = {}
         self._made_for: object = None
         self._textures: dict[str, moderngl.Texture] = {}
-        self._numbers: dict[str, float] = {}
-        self.steep = False
+        self._numbers: dict[str, float | tuple[float, float]] = {}
+        self.steep = self.finer = False
 
     def make(self, casting: Casting, step: float) -> None:
         """Bring them up to date for steps of some mm."""
@@ -57,9 +60,15 @@ class Tables:
             values = np.linspace(*transfer.clim, max(SIZE, len(transfer.table)))
             medium = np.concatenate([transfer.colour(values), transfer.extinction(values)[:, None]], axis=1)
             self._textures["colours"] = self._texture(medium[None])
-            if beforehand is not None:
-                self._textures["segments"] = self._texture(transfer.preintegrated(beforehand).transpose(1, 0, 2))
             self.steep = adaptive and is_steep(transfer, step, casting.low, casting.high, self._chord(casting))
+            self.finer = adaptive and not self.steep and self._bends_in(step) > KINKS * allowed_bend(transfer, step)
+            if beforehand is not None:
+                lengths = [beforehand, *([beforehand / PARTS] if self.finer else [])]
+                rows = [transfer.preintegrated(length).transpose(1, 0, 2) for length in lengths]
+                self._textures["segments"] = self._texture(np.concatenate(rows))
+            if self.finer:
+                ends = np.clip(transfer.opaque_range, -LARGEST, LARGEST).tolist()
+                self._numbers = {"allowed_bend": allowed_bend(transfer, step), "opaque_values": (ends[0], ends[1])}
             if self.steep:
                 media, places = transfer.media()
                 self._numbers = {"places_per_entry": float(places), "opacity_unit": transfer.unit}
@@ -68,9 +77,15 @@ class Tables:
 
     def _chord(self, casting: Casting) -> float:
         """Return how far values within a step typically are from its chord."""
-        if self._bend is None:
-            self._bend = typical_bend(self._volume)
-        return 0.25 * min(casting.step, 1.0) * self._bend
+        if "typical" not in self._bends:
+            self._bends["typical"] = typical_bend(self._volume)
+        return 0.25 * min(casting.step, 1.0) * self._bends["typical"]
+
+    def _bends_in(self, step: float) -> float:
+        """Return by how much, at the most, the change of values changes from one step to the next, across an edge."""
+        if "largest" not in self._bends:
+            self._bends["largest"] = largest_bend(self._volume)
+        return step / float(self._volume.spacing.min()) * self._bends["largest"]
 
     def _texture(self, rows: npt.NDArray[Any]) -> moderngl.Texture:
         height, width = rows.shape[:2]

@@ -164,8 +164,6 @@ def _noise(setting: Setting) -> Outcome:
     "edges within a volume",
     "voxels of 0 and 1 alone, a ramp, κΔ of 0.1 and 1",
     "light within a hundredth of the integral in float64, in every pixel",
-    known="at edges one look-up a step is off by up to 0.06; 'adaptive' looks for steep tables, not for steep voxels, "
-    "whose finer steps would take ten times as long",
 )
 def _edges(setting: Setting) -> Outcome:
     volume = RaycastVolume((np.asarray(ball().values) > 0.5).astype(np.float32), np.eye(4))
