@@ -51,10 +51,13 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     shown = {
         (record.data, record.way, record.setting): record.errors for record in records if record.group == "pictures"
     }
-    finer, coarser = (
-        shown["24³ vessels, composite", "step", f"{step} voxels"]["colour rms"].value for step in (0.25, 1)
-    )
-    assert finer < 0.5 * coarser
+    of_step = {
+        mode: [shown[f"24³ vessels, {mode}", "step", f"{step} voxels"]["colour rms"].value for step in (0.25, 1)]
+        for mode in ("composite", "mip")
+    }
+    assert of_step["mip"][0] < 0.5 * of_step["mip"][1]
+    # Light takes long steps in parts where they are wrong: all that is left is what 8 bits of colours make up.
+    assert of_step["composite"][0] < of_step["composite"][1] < 1e-3
     plain = shown["24³ vessels, composite", "default", ""]["colour rms"].value
     assert shown["24³ vessels, composite", "no octree", ""]["colour rms"].value == pytest.approx(plain, rel=1e-6)
     surface = "24³ vessels, isosurface"
