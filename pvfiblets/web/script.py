@@ -35,7 +35,7 @@ _UNSAID: dict[str, dict[str, Any]] = {
     "volume": {
         "mode": "composite", "values": None, "color": None, "clim": None, "thresholds": None,
         "opacity_unit_distance": None, "peak": None, "smooth": None, "step": 0.5, "filter": "trilinear",
-        "refine": "regula-falsi", "integrator": "preintegrated", "jitter": False, "ambient_occlusion": False,
+        "refine": "regula-falsi", "integrator": "adaptive", "jitter": False, "ambient_occlusion": False,
         "depth_cue": False,
     },
     "mesh": {

@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web.script import as_script
+from pvfiblets.raycast import RaycastVolume
+from pvfiblets.raycast.casting import INTEGRATORS
+from pvfiblets.web import layers
+from pvfiblets.web.script import _UNSAID, as_script
 
 
 def tracts(scene):
@@ -136,3 +139,25 @@ def test_demos_are_made_in_a_script(scene):
     assert "brain_streamlines(50, 0.5)" in script
     assert "brain_like(8)" in script
     compile(script, "script", "exec")
+
+
+@pytest.mark.parametrize(
+    ("kind", "method", "what"),
+    [
+        ("tractogram", "add_fiblets", [np.arange(12.0).reshape(4, 3)]),
+        ("tubes", "add_spline_tubes", [np.arange(12.0).reshape(4, 3)]),
+        ("volume", "add_raycast_volume", RaycastVolume(np.arange(64.0).reshape(4, 4, 4))),
+    ],
+)
+def test_what_is_not_said_is_so_anyhow(kind, method, what):
+    plotter = pv.Plotter(off_screen=True)
+    actor = getattr(plotter, method)(what)
+    unsaid = {name: value for name, value in _UNSAID[kind].items() if hasattr(actor, name) and value is not None}
+    unsaid.pop("scalars", None)  # None of an actor, whose colours are then by orientation
+    assert {name: getattr(actor, name) for name in unsaid} == unsaid
+    plotter.close()
+
+
+def test_all_integrators_can_be_chosen():
+    (prop,) = (prop for prop in layers.TABLES["volume"] if prop.name == "integrator")
+    assert [value for value, _ in prop.choices] == list(INTEGRATORS)
