@@ -136,9 +136,14 @@ def _read_npy(path: str) -> Array:
     magic = file.bytes(0, min(6, file.size), "the magic")
     if magic != b"\x93NUMPY":
         raise FormatError(path, 0, repr(magic), "the magic b'\\x93NUMPY'")
+    wide = file.bytes(6, 1, "the version of its format")[0] > 1
+    length = int.from_bytes(file.bytes(8, 4 if wide else 2, "the size of its header"), "little")
+    file.check(12 if wide else 10, length, "its header")
     try:
-        # Mapping checks the shape against the file's size before memory is spent.
-        values = np.load(path, mmap_mode="r", allow_pickle=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of headers as Python 2 wrote them
+            # Mapping checks the shape against the file's size before memory is spent.
+            values = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, OSError, OverflowError, TypeError, SyntaxError, tokenize.TokenError) as error:
         raise FormatError(path, 6, f"a damaged header ({error})", "an array of numbers") from error
     return _as_numbers(path, np.array(values))

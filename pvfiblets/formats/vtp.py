@@ -33,9 +33,9 @@ _CELLS = ("Verts", "Lines", "Polys", "Strips")
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a vtp file (see :func:`pvfiblets.formats.read`)."""
     file = XmlFile(path)
-    field, text = _arrays(file, file.poly_data.child("FieldData"), None)
+    field, text = _arrays(file, file.content.child("FieldData"), None)
     parts = []
-    for piece in file.poly_data.children("Piece"):
+    for piece in file.content.children("Piece"):
         streamlines, more_text = _piece(file, piece)
         parts.append(streamlines)
         text += more_text
@@ -76,13 +76,14 @@ def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
             points = points.astype(np.float64)
     counts = {kind: piece.count(f"NumberOf{kind}") for kind in _CELLS}
     n, first = counts["Lines"], counts["Verts"]
-    offsets, ids = np.zeros(n + 1, np.int64), np.zeros(0, np.int64)
+    offsets, ids = np.zeros(1, np.int64), np.zeros(0, np.int64)
     if n:
         lines = piece.child("Lines")
         named = {a.attributes.get("Name"): a for a in lines.children("DataArray")} if lines else {}
         if not {"offsets", "connectivity"} <= set(named):
             raise FormatError(file.path, piece.position, f"arrays {list(named)}", "offsets and connectivity")
-        offsets[1:] = file.values(named["offsets"], n)
+        # Read before memory is taken for as many as are promised.
+        offsets = np.concatenate([offsets, file.values(named["offsets"], n)])
         if (np.diff(offsets) < 0).any():
             raise FormatError(file.path, named["offsets"].position, "offsets that decrease", "ascending offsets")
         ids = file.values(named["connectivity"], int(offsets[-1])).astype(np.int64)

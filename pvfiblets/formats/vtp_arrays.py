@@ -26,6 +26,9 @@ _TYPES = {
     "Float32": "f4",
     "Float64": "f8",
 }
+MOST_TIMES = 10_000
+"""What a file can hold, in its own size: no compressor of VTK's packs more densely, but for nothing but zeros."""
+
 _COMPRESSORS = {"": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma"}
 
 
@@ -56,15 +59,22 @@ class Element:
 
 
 class XmlFile:
-    """A VTK XML file of poly data.
+    """A VTK XML file.
+
+    Parameters
+    ----------
+    path : path-like
+    kind : {"PolyData", "ImageData"}
+        What it must hold.
 
     Attributes
     ----------
     path : str
-    poly_data : Element
+    content : Element
+        Of that kind.
     """
 
-    def __init__(self, path: str | PathLike[str]) -> None:
+    def __init__(self, path: str | PathLike[str], kind: str = "PolyData") -> None:
         self.file = MappedFile(path)
         self.path = self.file.path
         head = self.file.bytes(0, min(self.file.size, 4096), "the XML header")
@@ -78,29 +88,26 @@ class XmlFile:
         if match is not None and not tail.rstrip().endswith(b"</VTKFile>"):
             raise FormatError(self.path, self.file.size, repr(tail[-20:]), "</VTKFile>: the file is truncated")
         root = self._parse(self.file.size if match is None else match.start(), match is None)
-        kind = root.attributes.get("type", "")
-        poly_data = root.child("PolyData")
-        if root.tag != "VTKFile" or kind != "PolyData" or poly_data is None:
+        found, content = root.attributes.get("type", ""), root.child(kind)
+        if root.tag != "VTKFile" or found != kind or content is None:
+            remedy = "; extract the lines and save those" if kind == "PolyData" else ""
             raise FormatError(
-                self.path,
-                root.position,
-                f"{root.tag} of type {kind!r}",
-                "VTKFile of type 'PolyData'; extract the lines and save those",
+                self.path, root.position, f"{root.tag} of type {found!r}", f"VTKFile of type {kind!r}{remedy}"
             )
-        self.poly_data = poly_data
+        self.content = content
         order = ">" if root.attributes.get("byte_order") == "BigEndian" else "<"
         self._order = order
         wide = root.attributes.get("header_type") == "UInt64"
         self._size_type = np.dtype(f"{order}u8" if wide else f"{order}u4")
         compressor = root.attributes.get("compressor", "")
-        if compressor not in _COMPRESSORS:
+        if compressor not in _COMPRESSORS and kind == "PolyData":
             raise FormatError(
                 self.path,
                 root.position,
                 f"compressor {compressor!r}",
                 f"one of {[c for c in _COMPRESSORS if c]} or none; save the file again with zlib",
             )
-        self._compressor = _COMPRESSORS[compressor]
+        self._compressor = _COMPRESSORS.get(compressor, compressor)
 
     def _parse(self, stop: int, complete: bool) -> Element:
         """Parse the XML up to byte `stop` into elements."""
@@ -182,6 +189,34 @@ class XmlFile:
             raise self.error(element, f"{len(values)} values", f"{rows} rows of {k} as the piece promises")
         return values.reshape(rows, k) if k > 1 else values
 
+    def check_sizes(self, element: Element, rows: int) -> None:
+        """Compare the size that a DataArray says with what the file promises elsewhere, before VTK spends memory on it.
+
+        Parameters
+        ----------
+        element : Element
+        rows : int
+            How many rows the file promises elsewhere.
+
+        Raises
+        ------
+        FormatError
+            If they differ, or the file is too small for as much.
+        """
+        values = rows * max(1, element.count("NumberOfComponents"))
+        form, kind = element.attributes.get("format", "ascii"), element.attributes.get("type", "")
+        if form == "ascii" or kind not in _TYPES:  # such as of strings
+            if values > self.file.size:
+                raise self.error(element, f"{values} values in {self.file.size} bytes", "fewer")
+            return
+        promised, source = values * np.dtype(_TYPES[kind]).itemsize, self._source(element, form == "appended")
+        if promised > MOST_TIMES * self.file.size:
+            raise self.error(element, f"{promised} bytes in a file of {self.file.size}", "fewer")
+        if self._compressor is None:
+            self._check_size(element, source.sizes(1)[0], promised)
+        else:
+            source.compressed_sizes(self._blocks(element, source, promised)[0])
+
     def error(self, element: Element, found: str, expected: str) -> FormatError:
         """Make the error that says what is wrong with an array."""
         name = element.attributes.get("Name", "")
@@ -205,18 +240,14 @@ class XmlFile:
 
     def _binary(self, element: Element, appended: bool, promised: int) -> bytes:
         """Return the bytes of a binary array."""
-        source = self._appended(element) if appended else self._inline(element)
+        source = self._source(element, appended)
         if self._compressor is None:
             (size,) = source.sizes(1)
-            if size != promised:
-                raise self.error(element, f"{size} bytes", f"{promised} bytes")
+            self._check_size(element, size, promised)
             return source.data(size)
-        n, block, last = source.sizes(3)
+        n, block, last = self._blocks(element, source, promised)
         if n == 0:
             return b""
-        total = (n - 1) * block + (last or block)
-        if n > self.file.size or total != promised:
-            raise self.error(element, f"{n} blocks of {block} bytes", f"{promised} bytes")
         packed = source.compressed_sizes(n)
         data = memoryview(source.data(int(packed.sum())))
         parts, at = [], 0
@@ -225,6 +256,18 @@ class XmlFile:
             parts.append(self._unpack(element, data[at : at + size], want))
             at += size
         return b"".join(parts)
+
+    def _check_size(self, element: Element, size: int, promised: int) -> None:
+        if size != promised:
+            raise self.error(element, f"{size} bytes", f"{promised} bytes")
+
+    def _blocks(self, element: Element, source: _Source, promised: int) -> list[int]:
+        """Return how many compressed blocks there are, and the bytes of one and of the last."""
+        n, block, last = source.sizes(3)
+        total = (n - 1) * block + (last or block) if n else 0
+        if n > self.file.size or (n and total != promised):
+            raise self.error(element, f"{n} blocks of {block} bytes", f"{promised} bytes")
+        return [n, block, last]
 
     def _unpack(self, element: Element, packed: memoryview, size: int) -> bytes:
         try:
@@ -238,6 +281,9 @@ class XmlFile:
         if len(data) != size:
             raise self.error(element, f"a block of {len(data)} bytes", f"{size} bytes")
         return data
+
+    def _source(self, element: Element, appended: bool) -> _Source:
+        return self._appended(element) if appended else self._inline(element)
 
     def _inline(self, element: Element) -> _Source:
         text = "".join("".join(element.text).split()).encode("ascii", "replace")

@@ -203,8 +203,9 @@ def _of_file(path: Path, scalars: Any) -> Found:
         return *read_metaimage(path), name
     from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
-    from .vtk_files import read
+    from .vtk_files import check_sizes, read
 
+    check_sizes(path)
     return _of_vtk(read(vtkXMLImageDataReader(), path), scalars)
 
 

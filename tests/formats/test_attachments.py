@@ -96,6 +96,21 @@ def test_files_that_do_not_fit(tmp_path):
         formats.attach(s, "a.dat")
 
 
+def test_headers_of_npy(tmp_path):
+    """One as Python 2 wrote it is read without a warning; one longer than the file takes no memory."""
+    s, path = rich(), tmp_path / "a.npy"
+    values = np.arange(s.n_points, dtype=np.float32)
+    np.save(path, values)
+    raw = path.read_bytes()
+    assert b"(27,), }  " in raw
+    path.write_bytes(raw.replace(b"(27,), }  ", b"(27L,), } "))
+    assert formats.attach(s, path, "v") == "per_point"
+    np.testing.assert_array_equal(s.per_point["v"], values)
+    path.write_bytes(raw[:6] + b"\x03\0" + (662372470).to_bytes(4, "little") + raw[10:])
+    with pytest.raises(FormatError, match="its header up to byte 662372482"):
+        formats.attach(s, path)
+
+
 @given(st.lists(st.integers(0, 5), max_size=8), st.sampled_from([".tsf", ".npy", ".txt", ".csv"]), st.booleans())
 def test_any_values_come_back(tmp_path_factory, counts, suffix, wide):
     n = sum(counts)

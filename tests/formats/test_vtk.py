@@ -222,6 +222,7 @@ def test_empty_and_foreign_files(tmp_path):
         ('NumberOfPoints="27"', 'NumberOfPoints="28"', "28 rows of 3"),
         ('NumberOfPoints="27"', 'NumberOfPoints="99999999999"', "99999999999"),
         ('NumberOfLines="6"', 'NumberOfLines="7"', "7 rows"),
+        ('NumberOfLines="6"', 'NumberOfLines="2147483648000"', "2147483648000 rows"),
         ('NumberOfLines="6"', 'NumberOfLines="-6"', "whole number"),
         ('type="Float32" Name="Points"', 'type="Float99" Name="Points"', "Float99"),
         ("</Piece>", "</Peace>", "broken XML"),
