@@ -116,11 +116,14 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
         with zipfile.ZipFile(path) as archive, Path(path).open("rb") as stream:
             if HEADER not in archive.namelist():
                 raise FormatError(path, 0, "a zip without a member header.json", "a .fiblets file")
+            size, told = os.fstat(stream.fileno()).st_size, archive.getinfo(HEADER)
+            if told.compress_type != zipfile.ZIP_STORED or max(told.compress_size, told.file_size) > size:
+                found = f"a header.json of {told.file_size} bytes, {told.compress_size} as stored, in {size}"
+                raise FormatError(path, told.header_offset, found, "a stored member (zip -0) that fits")
             try:
                 header = json.loads(archive.read(HEADER))
             except (ValueError, zipfile.BadZipFile) as error:
                 raise FormatError(path, 0, f"a damaged header.json ({error})", "JSON as it was written") from error
-            size = os.fstat(stream.fileno()).st_size
             arrays = {
                 info.filename: _map(path, stream, info, size) for info in archive.infolist() if info.filename != HEADER
             }

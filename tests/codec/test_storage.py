@@ -356,6 +356,18 @@ def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="beyond the set's largest radius"):
         storage.verify_file(tmp_path / "b.fiblets")
 
+def test_a_header_that_says_it_is_larger_than_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.fiblets"
+    pf.compress(smooth(3, 40)).save(path)
+    raw = bytearray(path.read_bytes())
+    at = raw.rindex(b"header.json") - 46  # its entry in the zip's directory
+    assert raw[at : at + 4] == b"PK\1\2"
+    raw[at + 20 : at + 24] = (0x7FFFFFFF).to_bytes(4, "little")  # bytes as stored
+    path.write_bytes(raw)
+    with pytest.raises(FormatError, match="2147483647 as stored"):
+        pf.FibletSet.open(path)
+
+
 
 def test_other_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.fiblets").write_text("not a zip")

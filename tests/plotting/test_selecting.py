@@ -363,7 +363,7 @@ def test_a_copy_selects_the_same_and_explain_tells():
     try:
         actor = plotter.add_fiblets([[(0, y, 0), (5, y, 1), (10, y, 0)] for y in range(6)])
         plotter.show(auto_close=False)
-        assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "gpu_bytes": 0}
+        assert actor.explain()["selection"] == {"streamlines": 0, "features": [], "passes": [], "gpu_bytes": 0}
         actor.select([1, 4])
         actor.selection_style(as_tubes=True, radius=0.3)
         plotter.render()
