@@ -117,9 +117,10 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
             if HEADER not in archive.namelist():
                 raise FormatError(path, 0, "a zip without a member header.json", "a .fiblets file")
             size, told = os.fstat(stream.fileno()).st_size, archive.getinfo(HEADER)
-            if told.compress_type != zipfile.ZIP_STORED or max(told.compress_size, told.file_size) > size:
+            _check_stored(path, told)
+            if max(told.compress_size, told.file_size) > size:
                 found = f"a header.json of {told.file_size} bytes, {told.compress_size} as stored, in {size}"
-                raise FormatError(path, told.header_offset, found, "a stored member (zip -0) that fits")
+                raise FormatError(path, told.header_offset, found, "a member that fits")
             try:
                 header = json.loads(archive.read(HEADER))
             except (ValueError, zipfile.BadZipFile) as error:
@@ -147,9 +148,13 @@ def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
     return header, arrays
 
 
-def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.ZipInfo, size: int) -> npt.NDArray[Any]:
+def _check_stored(path: str | os.PathLike[str], info: zipfile.ZipInfo) -> None:
     if info.compress_type != zipfile.ZIP_STORED:
         raise FormatError(path, info.header_offset, f"member {info.filename} deflated", "stored members (zip -0)")
+
+
+def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.ZipInfo, size: int) -> npt.NDArray[Any]:
+    _check_stored(path, info)
     stream.seek(info.header_offset)
     local = stream.read(_LOCAL_HEADER)
     if len(local) < _LOCAL_HEADER or local[:4] != b"PK\x03\x04":

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.vtp_arrays import Element, XmlFile
+from pvfiblets.formats.vtk_xml import Element, XmlFile
 
 __all__ = ["check_sizes", "read"]
 

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from pvfiblets.mappers.base import USUAL_DPI
 from pvfiblets.web.bar_places import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.document import Layer
 
-__all__ = ["USUAL_DPI", "Bars", "bar_arguments", "bar_calls", "bars_of", "contrast"]
+__all__ = ["Bars", "bar_arguments", "bar_calls", "bars_of", "contrast"]
 
 MOST_BARS = 6
-USUAL_DPI = 72
 
 
 class Bars:

@@ -8,10 +8,11 @@ import textwrap
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.mappers.base import USUAL_DPI
 from pvfiblets.plotting.volumes import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
-from pvfiblets.web.bars import USUAL_DPI, bar_arguments, bar_calls, bars_of
+from pvfiblets.web.bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 

@@ -139,11 +139,10 @@ class RaycastRenderer:
         casting = style.casting
         self._nodes.make(casting)
         self._tables.make(casting, block.step_mm(casting))
-        with self._gl.framebuffers_kept():
+        with self._gl.framebuffers_kept(), self._programs.noting() as noted:
             sparse = casting.sparse > 1
             self._picture = self._fitting(self._picture, view.size, casting, marked=sparse)
             features = [*self._features_of(casting, outside is not None), *self._cuts.update(view)]
-            self._features = sorted(features)
             block.write(view, casting, self._nodes.levels)
             voxels.filter(casting.filter != "nearest")
             self._passes.begin()
@@ -153,6 +152,7 @@ class RaycastRenderer:
             else:
                 with self._passes.timed("rays"):
                     self._cast(self._picture, features, 1, view.size, outside)
+        self._features = sorted(noted)
         self._generation += 1
         self._picture.buffer.generation = self._generation
         if outside is None:
@@ -277,9 +277,10 @@ class RaycastRenderer:
         Returns
         -------
         dict
-            ``passes`` (name, ms), ``features``, ``buffers`` (name, bytes), ``voxels_total``, ``nodes`` of the octree,
-            ``skipped``: share of its leaves in which there is nothing to see, ``octree``: what it costs, ``bytes``,
-            their ``share`` of the volume's, and ``ms`` that building it took, all 0 while there is none.
+            ``passes`` (name, ms), ``features``, which are on in the programs that ran, ``buffers`` (name, bytes),
+            ``voxels_total``, ``nodes`` of the octree, ``skipped``: share of its leaves in which there is nothing to
+            see, ``octree``: what it costs, ``bytes``, their ``share`` of the volume's, and ``ms`` that building it
+            took, all 0 while there is none.
         """
         sizes = {} if self._voxels is None else {"voxels": self._voxels.nbytes}
         if self._block is not None:

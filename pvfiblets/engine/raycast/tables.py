@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -41,7 +42,6 @@ class Tables:
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         self._ctx, self._volume = ctx, volume
-        self._bends: dict[str, float] = {}
         self._made_for: object = None
         self._textures: dict[str, moderngl.Texture] = {}
         self._numbers: dict[str, float | tuple[float, float]] = {}
@@ -77,15 +77,19 @@ class Tables:
 
     def _chord(self, casting: Casting) -> float:
         """Return how far values within a step typically are from its chord."""
-        if "typical" not in self._bends:
-            self._bends["typical"] = typical_bend(self._volume)
-        return 0.25 * min(casting.step, 1.0) * self._bends["typical"]
+        return 0.25 * min(casting.step, 1.0) * self._typical_bend
 
     def _bends_in(self, step: float) -> float:
         """Return by how much, at the most, the change of values changes from one step to the next, across an edge."""
-        if "largest" not in self._bends:
-            self._bends["largest"] = largest_bend(self._volume)
-        return step / float(self._volume.spacing.min()) * self._bends["largest"]
+        return step / float(self._volume.spacing.min()) * self._largest_bend
+
+    @cached_property
+    def _typical_bend(self) -> float:
+        return typical_bend(self._volume)
+
+    @cached_property
+    def _largest_bend(self) -> float:
+        return largest_bend(self._volume)
 
     def _texture(self, rows: npt.NDArray[Any]) -> moderngl.Texture:
         height, width = rows.shape[:2]
