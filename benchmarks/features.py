@@ -40,7 +40,7 @@ def features(fiblets) -> dict[str, tuple[Step, Callable[[Any], Any]]]:
     surfaces: list[Any] = []
 
     def clip_mesh(actor, n):
-        from pvfiblets.plotting.cutting import as_region
+        from pvfiblets.plotting.region_sources import as_region
 
         if not surfaces:
             surfaces.append(as_region(ring))

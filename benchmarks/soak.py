@@ -27,7 +27,7 @@ import pyvista as pv
 import volume_memory
 from soak_acts import WEIGHTS, Data
 
-from pvfiblets.engine.loader import loader
+from pvfiblets.engine.gl_loader import loader
 from pvfiblets.mappers import windows
 from pvfiblets.report.machine import about
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from pvfiblets.engine import Style, View
 from pvfiblets.engine.gbuffer import EMPTY
-from pvfiblets.engine.splines import SOLVERS, SplineRenderer
+from pvfiblets.engine.tubes import SOLVERS, TubeRenderer
 from pvfiblets.report.cameras import Lens, orbit
 from pvfiblets.report.tubes_rays import GOAL, clearance, radius_at, share, summary
-from pvfiblets.splines import curves
-from pvfiblets.splines.reference import ENTRY, EXIT, MISS, hits
+from pvfiblets.tubes import curves
+from pvfiblets.tubes.reference import ENTRY, EXIT, MISS, hits
 
 BLOCK = 8192
 REDUCED = 4  # times smaller each way: the pictures in which all solvers are compared
@@ -214,7 +214,7 @@ def measured(ctx: Any, name: str, tubes: Any, options: Any) -> list[dict[str, An
         for this in (size, small)
     }
     for solver in ("auto", *SOLVERS):
-        renderer = SplineRenderer(ctx, tubes, solver=solver)
+        renderer = TubeRenderer(ctx, tubes, solver=solver)
         try:
             for view in ("far", "close"):
                 frames(ctx, renderer, lenses[view, small][1:], 1, 0.0)  # what is compiled when first drawn

@@ -9,12 +9,12 @@ from tube_error_pictures import Picture, nearest
 
 from pvfiblets import SplineTubes
 from pvfiblets.engine import Style, View
-from pvfiblets.engine.splines import SplineRenderer
-from pvfiblets.engine.splines.probe import SolverProbe
+from pvfiblets.engine.tubes import TubeRenderer
+from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.report.cameras import Lens, unit
 from pvfiblets.report.tubes_rays import GOAL, clearance, share, summary
 from pvfiblets.report.tubes_sweeps import SWEEPS
-from pvfiblets.splines import curves
+from pvfiblets.tubes import curves
 
 LIMITS = (GOAL, 1e-2)  # of the radius
 EXTENT = 24.0  # radii from the middle of the tubes that pictures sweep to their ends
@@ -44,7 +44,7 @@ def swept(ctx: Any, way: tuple[str, str, bool, int], options: Any) -> list[dict[
             )
     probe.release()
     for key, ratio, tubes, lens in pictures(options):
-        renderer = SplineRenderer(ctx, tubes, solver=solver, iterations=iterations, min_width=0.0)
+        renderer = TubeRenderer(ctx, tubes, solver=solver, iterations=iterations, min_width=0.0)
         try:
             picture = Picture(renderer.render(View(lens.size, lens.matrix), Style()), lens)
         finally:

@@ -2,7 +2,7 @@
 
 In one run: every solver by its number of iterations, on rays and halves alone; whole pictures of the paper's five sets
 (Russig et al. 2020, section 4); sweeps of one ratio each to where float32 no longer suffices; and the quadratic halves
-against the cubics. What is right is computed in float64 by another method (``pvfiblets.splines.reference``)::
+against the cubics. What is right is computed in float64 by another method (``pvfiblets.tubes.reference``)::
 
     python benchmarks/tube_errors.py --output docs/benchmarks
 
@@ -22,8 +22,8 @@ from tube_error_pictures import NEAREST, measured
 from tube_error_sweeps import ABOUT, LIMITS, PICTURES, approximation, holding, swept
 from tube_ways import make_set
 
-from pvfiblets.engine.splines import SOLVERS, SplineRenderer
-from pvfiblets.engine.splines.probe import SolverProbe
+from pvfiblets.engine.tubes import SOLVERS, TubeRenderer
+from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.report.tubes_rays import CLASSES, GOAL, Rays, of_class, of_set
 
 SETS = ("fibers", "hotroom", "bundle", "brain", "furball")
@@ -76,7 +76,7 @@ def main() -> None:
 
 def the_default(ctx: Any) -> tuple[str, str, bool, int]:
     """Return the program's own way: its name, solver, whether by the chain of derivatives, iterations."""
-    renderer = SplineRenderer(ctx, make_set("helices-1"))
+    renderer = TubeRenderer(ctx, make_set("helices-1"))
     solver, iterations = renderer.solver, renderer.iterations
     renderer.release()
     return f"{solver}, loop", solver, False, iterations

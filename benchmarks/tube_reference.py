@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.report.baselines.tessellated import across
 from pvfiblets.report.cameras import VERTICAL_ANGLE, Camera
-from pvfiblets.report.rivals.tessellated import across
 from pvfiblets.report.tubes_pictures import outline
 
 SIDES = (16, 32, 64, 128)
@@ -113,7 +113,7 @@ def fine_meshes(tubes: Any, camera: Camera, pixels: float) -> Iterator[Any]:
     """Yield the reference as meshes of at most about :data:`BATCH` triangles, without what is out of the picture."""
     import pyvista as pv
 
-    from pvfiblets.splines import curves
+    from pvfiblets.tubes import curves
 
     gathered: list[tuple[np.ndarray, np.ndarray]] = []
     triangles = 0
@@ -181,7 +181,7 @@ def _fineness(controls: np.ndarray, camera: Camera, pixels: float) -> tuple[np.n
 
 def _strips(controls: np.ndarray, sides: int, steps: int) -> tuple[np.ndarray, np.ndarray]:
     """Return points and triangles of the envelope of halves."""
-    from pvfiblets.splines import curves
+    from pvfiblets.tubes import curves
 
     t = np.linspace(0.0, 1.0, steps + 1)
     place, slope = (f(controls[:, None], t) for f in (curves.evaluate, curves.derivative))

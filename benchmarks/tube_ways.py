@@ -16,8 +16,8 @@ import numpy as np
 from orbit import context
 from tube_reference import covered, fine_coverage
 
+from pvfiblets.report.baselines.tessellated import TessellatedTubes
 from pvfiblets.report.cameras import Camera, orbit
-from pvfiblets.report.rivals.tessellated import TessellatedTubes
 from pvfiblets.report.tubes_pictures import helices
 
 ABOUT = {
@@ -57,7 +57,7 @@ def polylines(tubes: Any, samples: int = 1) -> Any:
     """Return the axes as poly-lines with the array ``radius``: through the nodes, or more samples of each segment."""
     import pyvista as pv
 
-    from pvfiblets.splines import curves
+    from pvfiblets.tubes import curves
 
     ends = tubes.segments
     starts = np.ones(len(ends), bool)
@@ -226,13 +226,13 @@ class _Engine:
 
     def __init__(self, way: str, tubes: Any, options: Any) -> None:
         try:
-            from pvfiblets.engine.splines import SplineRenderer
+            from pvfiblets.engine.tubes import TubeRenderer
         except ImportError as error:
             raise TooMuchError(f"the engine draws no spline tubes: {error}") from error
         self.ctx = context()
         self.made: list[Any] = []
         more = {"engine-exact": {"min_width": 0.0}, "engine-unculled": {"culling": None}}.get(way, {})
-        self.make = functools.partial(SplineRenderer, self.ctx, tubes, **{**_choices(options), **more})
+        self.make = functools.partial(TubeRenderer, self.ctx, tubes, **{**_choices(options), **more})
         self.renderer = self._add()
 
     def _add(self, **more: Any) -> Any:

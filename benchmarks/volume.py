@@ -31,8 +31,8 @@ from volume_scene import FOLDER, MODES, known_data, make_data
 from volume_told import plot, table
 from volume_ways import EQUAL, WAYS
 
-from pvfiblets.raycast import RaycastVolume
 from pvfiblets.report.volume_scene import circle, look_of, truth
+from pvfiblets.volumes import RaycastVolume
 
 DATA = ("vessels-64", "vessels-128", "vessels-256", "vessels-512", "brain")
 PICTURE = 256  # pixels along a side of the pictures whose errors are measured

@@ -1,6 +1,6 @@
 """Error against run time of ray-cast volumes: step, filter, refinement, integrator, early end, sparse casting.
 
-Each picture of the engine is held against rays in float64 that know no steps (`pvfiblets.raycast.reference`): colours,
+Each picture of the engine is held against rays in float64 that know no steps (`pvfiblets.volumes.reference`): colours,
 from 0 to 1, and of surfaces the place along the ray, in voxels, against the roots of the cubic that the field is within
 each cell. Each filter is held against its own field. What nothing beats in both time and error is marked::
 
@@ -25,12 +25,12 @@ from volume_measure import Measured, nudged
 from volume_scene import FOLDER, MODES, known_data, make_data
 
 from pvfiblets.engine import View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.raycast import FILTERS
-from pvfiblets.raycast.casting import INTEGRATORS, Casting
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.volume_pictures import Right, colours_of, places, right_of
 from pvfiblets.report.volume_scene import circle, look_of
+from pvfiblets.volumes import FILTERS
+from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
 
 STEPS = (2.0, 1.0, 0.5, 0.25, 0.125)
 FEW_STEPS = (1.0, 0.5, 0.25)
@@ -76,7 +76,7 @@ def parsed() -> argparse.ArgumentParser:
 
 
 def settings(mode: str, steps: list[float], spread: float) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Return what is varied, and fields of `Casting`: those left out have their defaults.
+    """Return what is varied, and fields of `RaycastOptions`: those left out have their defaults.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def settings(mode: str, steps: list[float], spread: float) -> Iterator[tuple[str
     if mode == "composite":
         yield from (("stop", {"stop": stop}) for stop in STOPS)
         yield from (("homogeneous", {"homogeneous": share * spread}) for share in HOMOGENEOUS)
-        if "recon" in Casting.__dataclass_fields__:
+        if "recon" in RaycastOptions.__dataclass_fields__:
             yield "recon", {"recon": True}
     yield "octree", {"octree": False}
     for stride in STRIDES:
@@ -113,17 +113,17 @@ def measured(ctx: Any, name: str, mode: str, options: Any) -> list[dict[str, Any
     volume = make_data(name, options.seed, options.data_folder)
     look, cameras = look_of(volume, mode), circle(volume, 2, (options.size, options.size))
     rights: dict[str, Right] = {}
-    renderer = RaycastRenderer(ctx, volume)
+    renderer = VolumeRenderer(ctx, volume)
     rows: list[dict[str, Any]] = []
     plain: list[np.ndarray] = []
-    done: list[Casting] = []
+    done: list[RaycastOptions] = []
     try:
         for varied, fields in settings(mode, options.steps, float(np.ptp(volume.value_range))):
             casting = look.casting(**fields)
             if casting in done[1:]:  # the default itself is measured among its like, too
                 continue
             done.append(casting)
-            style = RaycastStyle(casting=casting)
+            style = VolumeStyle(casting=casting)
             if casting.filter not in rights:
                 rights[casting.filter] = right_of(volume, look, cameras, options.pixels, casting.filter)
             of = rights[casting.filter]
@@ -157,7 +157,7 @@ def draw(ctx: Any, renderer: Any, camera: Camera, style: Any) -> None:
     ctx.finish()
 
 
-def said(casting: Casting) -> dict[str, Any]:
+def said(casting: RaycastOptions) -> dict[str, Any]:
     """Return the fields that are told of a way to cast, defaults included."""
     told = {"step": casting.step, "filter": casting.filter, "jitter": casting.jitter, "octree": casting.octree,
             "sparse": casting.sparse, "sparse_threshold": casting.sparse_threshold}  # fmt: skip

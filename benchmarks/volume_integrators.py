@@ -21,15 +21,15 @@ import numpy as np
 from orbit import card_slug, context, machine, write
 
 from pvfiblets.engine import View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.raycast import reference
-from pvfiblets.raycast.casting import INTEGRATORS, Casting
-from pvfiblets.raycast.integrators import STABLE_UP_TO, study
-from pvfiblets.raycast.reference_profiles import profiles
-from pvfiblets.raycast.transfer import Transfer
-from pvfiblets.raycast.volume import RaycastVolume
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.report.volume_fields import DENSE, field, tables
 from pvfiblets.report.volume_pictures import light_of
+from pvfiblets.volumes import reference
+from pvfiblets.volumes.integrators import STABLE_UP_TO, study
+from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
+from pvfiblets.volumes.reference_profiles import profiles
+from pvfiblets.volumes.transfer import Transfer
+from pvfiblets.volumes.volume import RaycastVolume
 
 DENSITIES = (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3)  # kappa times a step of half a voxel, where it is densest
 STEPS = (0.25, 0.5, 1.0)
@@ -72,14 +72,14 @@ def cast(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
     volume, size = field(name, options.voxels), tuple(options.size)
     matrix = camera(volume, size)
     through = reference.rays(matrix, size, volume)
-    renderer, rows = RaycastRenderer(ctx, volume), []
+    renderer, rows = VolumeRenderer(ctx, volume), []
     for look, rgba in tables().items():
         for density in options.densities:
             transfer = Transfer(rgba, (0.0, 1.0), -0.5 * np.log1p(-DENSE) / density)
             right = reference.composite(volume, transfer, through).reshape(size[1], size[0], 4)
             for step in options.steps:
                 for integrator in INTEGRATORS:
-                    style = RaycastStyle(casting=Casting("composite", transfer=transfer, integrator=integrator,
+                    style = VolumeStyle(casting=RaycastOptions("composite", transfer=transfer, integrator=integrator,
                                                          step=step, stop=0.9999))  # fmt: skip
                     found, seconds = picture(ctx, renderer, matrix, size, style, options.repeats)
                     off = np.abs(found - right).max(axis=-1)

@@ -20,11 +20,11 @@ import numpy as np
 from orbit import card_slug, context, machine, write
 
 from pvfiblets.engine import View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.engine.raycast.occlusion import MAX_SAMPLES, RayOcclusionPass
-from pvfiblets.raycast import reference
-from pvfiblets.raycast.casting import Casting
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
+from pvfiblets.engine.volumes.occlusion import MAX_SAMPLES, RayOcclusionPass
 from pvfiblets.report.volume_openness import SETS, exact_openness, seen_from
+from pvfiblets.volumes import reference
+from pvfiblets.volumes.options import RaycastOptions
 
 SAMPLES = (4, 8, 16, 32, 64, 128, 256, 512)
 
@@ -56,12 +56,12 @@ def measured(ctx: Any, name: str, options: Any) -> list[dict[str, Any]]:
     """Return a result for every number of rays, and before them one of the right picture itself."""
     make, value, away = SETS[name]
     volume = make(options.voxels)
-    renderer, occlusion = RaycastRenderer(ctx, volume), RayOcclusionPass(ctx)
-    casting = Casting(values=(value,), step=options.step)
+    renderer, occlusion = VolumeRenderer(ctx, volume), RayOcclusionPass(ctx)
+    casting = RaycastOptions(values=(value,), step=options.step)
     matrix = seen_from(volume, options.size, away)
     try:
         view = View(tuple(options.size), matrix)
-        buffer = renderer.render(view, RaycastStyle(casting=casting))
+        buffer = renderer.render(view, VolumeStyle(casting=casting))
         shown = np.frombuffer(buffer.depth.read(), "u4") != 0xFFFFFFFF
 
         def openness(samples: int, seed: int, *, smooth: bool = False) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pvfiblets.raycast import RaycastVolume, as_raycast_volume
+from pvfiblets.volumes import RaycastVolume, as_raycast_volume
 
 MODES = ("composite", "mip", "isosurface")
 TEMPLATE = "nv_MNI152_2009_template.nii.gz"

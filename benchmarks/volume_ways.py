@@ -12,10 +12,10 @@ import numpy as np
 from orbit import context
 from volume_memory import held
 
-from pvfiblets.raycast import RaycastVolume
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.volume_pictures import colours_of
 from pvfiblets.report.volume_scene import Look, Truth
+from pvfiblets.volumes import RaycastVolume
 
 ABOUT = {
     "engine": "this program's ray casting on a bare context, without VTK: a G-buffer, not lit",
@@ -77,12 +77,12 @@ class Engine(Way):
     """The engine on a bare context."""
 
     def __init__(self, _: str, volume: RaycastVolume, look: Look, step: float, __: tuple[int, int]) -> None:
-        from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
+        from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 
         self.ctx, self.look, self.volume = context(), look, volume
         self.before = held()
-        self.renderer = RaycastRenderer(self.ctx, volume)
-        self.style = RaycastStyle(casting=look.casting(step=step))
+        self.renderer = VolumeRenderer(self.ctx, volume)
+        self.style = VolumeStyle(casting=look.casting(step=step))
 
     def draw(self, camera: Camera) -> None:
         """Cast rays and wait for them."""

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pyvista as pv
 
-from pvfiblets.splines.curves import cubic
 from pvfiblets.synthetic import tube_set
+from pvfiblets.tubes.curves import cubic
 
 
 def main(folder: Path) -> None:

@@ -16,9 +16,9 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets import Streamlines
-from pvfiblets.raycast import RaycastVolume
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.synthetic.vessels import vessel_tree
+from pvfiblets.volumes import RaycastVolume
 
 TITLE = {"position": (15, 488), "font_size": 13, "color": "white"}
 

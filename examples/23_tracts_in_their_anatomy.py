@@ -18,9 +18,9 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets import Streamlines, regions
-from pvfiblets.raycast import RaycastVolume, as_raycast_volume
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.synthetic.vessels import brain_like
+from pvfiblets.volumes import RaycastVolume, as_raycast_volume
 
 DATA = Path(os.environ.get("PVFIBLETS_DATA", Path(sys.argv[0]).resolve().parents[2] / "shared" / "data"))
 TEMPLATE = DATA / "nv_MNI152_2009_template.nii.gz"

@@ -14,8 +14,8 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets import regions
-from pvfiblets.raycast import RaycastVolume, smoothed
 from pvfiblets.synthetic.vessels import brain_like, vessel_tree
+from pvfiblets.volumes import RaycastVolume, smoothed
 
 LUMEN = 90  # brightness at the wall of a vessel
 REACH = 24.0  # mm, half the side of the box

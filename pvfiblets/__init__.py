@@ -14,7 +14,7 @@ _HOME = {
     "CodingError": "codec.error",
     "FibletSet": "codec.fibletset",
     "FormatError": "errors",
-    "SplineTubes": "splines.tubes",
+    "SplineTubes": "tubes.spline_tubes",
     "Streamlines": "streamlines",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from .codec.fibletset import FibletSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
-    from .splines.tubes import SplineTubes
     from .streamlines import Streamlines
+    from .tubes.spline_tubes import SplineTubes
 
 
 def __getattr__(name: str) -> Any:

@@ -66,7 +66,7 @@ class _Headless:
     def context(self, module):
         """Return it alive; `module` is the test's, whose predecessors' windows are gone for good first."""
         from pvfiblets.engine.errors import EngineError
-        from pvfiblets.engine.loader import loader
+        from pvfiblets.engine.gl_loader import loader
 
         if module is not self._module:  # a window that the garbage collector finds later takes the display away then
             gc.collect()

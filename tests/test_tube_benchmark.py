@@ -15,8 +15,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pvfiblets.report.baselines import tessellated
 from pvfiblets.report.cameras import ELEVATION, orbit
-from pvfiblets.report.rivals import tessellated
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = (160, 90)

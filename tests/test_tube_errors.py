@@ -115,7 +115,7 @@ def test_a_lens_is_the_orbits_camera(bench, tubes):
 
 
 def test_the_nearest_of_all_is_found(bench, tubes):
-    from pvfiblets.splines.reference import nearest_hits
+    from pvfiblets.tubes.reference import nearest_hits
 
     lens = Lens.of(orbit(tubes, "close", 4, (160, 90))[0])
     pixels = np.arange(0, 160 * 90, 37)

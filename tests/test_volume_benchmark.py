@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.raycast import RaycastVolume, reference
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.report import volume_pictures, volume_scene
+from pvfiblets.volumes import RaycastVolume, reference
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = (48, 48)
@@ -134,11 +134,11 @@ def test_the_engine_comes_near_what_is_right(gl, bench, mode):
     volume = ball()
     look, cameras = volume_scene.look_of(volume, mode), volume_scene.circle(volume, 2, SIZE)
     of = volume_scene.truth(volume, look, cameras, 400)
-    renderer = RaycastRenderer(gl, volume)
+    renderer = VolumeRenderer(gl, volume)
 
     def error(step):
         # By default light takes long steps in parts where they are wrong.
-        style = RaycastStyle(casting=look.casting(step=step, integrator="preintegrated"))
+        style = VolumeStyle(casting=look.casting(step=step, integrator="preintegrated"))
         views = [View(camera.size, camera.model_view_projection) for camera in cameras]
         shown = [
             volume_pictures.colours_of(renderer.render(view, style), look, camera)
@@ -236,8 +236,8 @@ def test_what_is_missed_counts_as_a_voxel(bench):
 def test_every_frame_that_is_timed_is_drawn_anew(gl, bench):
     volume = ball()
     look = volume_scene.look_of(volume, "mip")
-    renderer = RaycastRenderer(gl, volume)
-    style, drawn = RaycastStyle(casting=look.casting()), []
+    renderer = VolumeRenderer(gl, volume)
+    style, drawn = VolumeStyle(casting=look.casting()), []
 
     def draw(camera):
         drawn.append(renderer.render(View(camera.size, camera.model_view_projection), style).generation)

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvfiblets.engine.raycast.occlusion import LIFT
-from pvfiblets.raycast import RaycastVolume, reference
+from pvfiblets.engine.volumes.occlusion import LIFT
 from pvfiblets.report.volume_openness import exact_openness, seen_from
+from pvfiblets.volumes import RaycastVolume, reference
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -16,7 +16,7 @@ from .parameters import Parameters
 from .quantised import QuantisedPoints
 
 if TYPE_CHECKING:
-    from .query.predicates import FlagsOf, Predicate
+    from ..query.predicates import FlagsOf, Predicate
 
 __all__ = ["FibletSet"]
 
@@ -266,7 +266,7 @@ class FibletSet:
         return extract(self, ids)
 
     def select(self, predicate: Predicate, *, flags: FlagsOf | None = None) -> npt.NDArray[np.bool_]:
-        """Choose streamlines by where their points lie; see :func:`pvfiblets.codec.query.predicates.select`.
+        """Choose streamlines by where their points lie; see :func:`pvfiblets.query.predicates.select`.
 
         Parameters
         ----------
@@ -280,7 +280,7 @@ class FibletSet:
         numpy.ndarray
             ``(n_streamlines,)`` bool.
         """
-        from .query.predicates import select
+        from ..query.predicates import select
 
         return select(self, predicate, flags=flags)
 

@@ -128,7 +128,7 @@ def quaternions() -> npt.NDArray[np.float32]:
 
     Notes
     -----
-    The float32 operations and their order are those of ``shaders/decode/words.glsl``.
+    The float32 operations and their order are those of ``shaders/fiblets/decode/words.glsl``.
     """
     words = packed()
     levels = np.stack([words & np.uint32(0xFFFF), words >> np.uint32(16)], axis=-1).astype(np.uint16).view(np.int16)

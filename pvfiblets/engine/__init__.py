@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..later import names_from
+from ..lazy_imports import names_from
 
 if TYPE_CHECKING:
     from .errors import EngineError
+    from .fiblets.renderer import FibletRenderer
     from .gbuffer import GBuffer
-    from .renderer import FibletRenderer
     from .view import Style, View
 
 
@@ -25,7 +25,7 @@ __all__ = ["EngineError", "FibletRenderer", "GBuffer", "Style", "View"]
 
 _HOME = {
     "EngineError": "errors",
-    "FibletRenderer": "renderer",
+    "FibletRenderer": "fiblets.renderer",
     "GBuffer": "gbuffer",
     "Style": "view",
     "View": "view",

@@ -23,7 +23,7 @@ from typing import Any
 import moderngl
 
 from .errors import EngineError
-from .loader import loader
+from .gl_loader import loader
 
 __all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "OpenGL"]
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .census import Census
-from .pipelines import ComputePipeline, Pipeline
+from .fiblets.census import Census
+from .fiblets.pipelines import ComputePipeline, Pipeline
 
 if TYPE_CHECKING:
-    from .chunks import Chunk
     from .culling import Occlusion
+    from .fiblets.chunks import Chunk
+    from .fiblets.depth_peeling import Layers
+    from .fiblets.point_values import ValueSources
+    from .fiblets.region_query import RegionQuery
+    from .fiblets.visibility import Visibility
     from .gbuffer import GBuffer
-    from .kept import Kept
-    from .layers import Layers
-    from .querying import RegionQuery
-    from .values import ValueSources
 
 __all__ = ["buffer_sizes", "count_fiblets", "no_counts"]
 
@@ -26,7 +26,7 @@ def buffer_sizes(
     pipeline: Pipeline | None,
     occlusion: Occlusion | None,
     target: GBuffer | None,
-    kept: Kept | None,
+    kept: Visibility | None,
     values: ValueSources | None,
     layers: Layers | None,
     query: RegionQuery | None,
@@ -67,7 +67,7 @@ def count_fiblets(
     features: Sequence[str],
     pipeline: Pipeline,
     target: GBuffer,
-    kept: Kept,
+    kept: Visibility,
     culled: bool,
 ) -> dict[str, int | None]:
     """Count fiblets of the last picture; uniform blocks and camera are those of it.
@@ -82,10 +82,10 @@ def count_fiblets(
         What the fiblets need to be decoded, and ``CLIP_PLANES``.
     pipeline : Pipeline
     target : GBuffer
-    kept : Kept
+    kept : Visibility
     culled : bool
         Whether fiblets behind others were left out.
     """
-    marks = pipeline.buffers["marks"] if isinstance(pipeline, ComputePipeline) and pipeline.planned else None
+    marks = pipeline.buffers["visibility_bits"] if isinstance(pipeline, ComputePipeline) and pipeline.planned else None
     in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marks, kept)
     return no_counts(total, in_frustum, drawn if culled else in_frustum, census.visible(target))

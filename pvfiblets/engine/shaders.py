@@ -2,7 +2,7 @@
 
 Sources live in the repository's ``shaders`` folder, which the wheel carries as ``pvfiblets/shaders``. In them:
 
-``#include "decode/record.glsl"``
+``#include "fiblets/decode/record.glsl"``
     Pastes that file, once per program; :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``.
 ``FEATURE_NAME``
     1 or 0, for every name in :data:`FEATURES`; ``#if FEATURE_NAME`` keeps unused code out of the program.
@@ -45,7 +45,7 @@ FEATURES: dict[str, str] = {
     "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",
     "SUBGROUPS": "counting across invocations by the driver's own operations",
     "PER_PRIMITIVE": "segments handed to the fragments by a mesh stage",
-    "OUTSIDE": "other things in the scene hide fiblets too",
+    "SCENE_DEPTH": "other things in the scene hide fiblets too",
     "SECOND_ROUND": "fiblets drawn over others that were drawn first, out of turn",
     "CLIPPING": "fiblets that cross the edges of the picture",
     "CLIPPING_DEPTH": "fiblets that cross the near or the far plane",
@@ -56,19 +56,19 @@ FEATURES: dict[str, str] = {
     "POINT_MASK": "some points only",
     "PEEL": "what lies behind an earlier layer",
     "TUBES": "lines of a width in millimetres, with a surface",
-    "ACROSS": "where across a wide line a pixel lies",
+    "CROSS_LINE": "where across a wide line a pixel lies",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",
     "VALUES_VOLUME": "a volume sampled along the streamline",
-    "SPLINE_ILLINOIS": "roots by regula falsi with halved weights",
-    "SPLINE_ITP": "roots by interpolating, truncating and projecting",
-    "SPLINE_NEWTON": "roots by guarded Newton steps",
-    "SPLINE_CHAIN": "spline tubes by the chain of derivatives: the paper's way, and what cuts and insides need",
-    "SPLINE_HOLLOW": "spline tubes whose inside the eye may see",
-    "SPLINE_LISTED": "spline tubes that are not hidden",
-    "SPLINE_VALUES": "numbers along spline tubes",
-    "SPLINE_COLOURS": "colours along spline tubes",
+    "TUBE_ILLINOIS": "roots by regula falsi with halved weights",
+    "TUBE_ITP": "roots by interpolating, truncating and projecting",
+    "TUBE_NEWTON": "roots by guarded Newton steps",
+    "TUBE_CHAIN": "spline tubes by the chain of derivatives: the paper's way, and what cuts and insides need",
+    "TUBE_HOLLOW": "spline tubes whose inside the eye may see",
+    "TUBE_LISTED": "spline tubes that are not hidden",
+    "TUBE_VALUES": "numbers along spline tubes",
+    "TUBE_COLOURS": "colours along spline tubes",
     "HALO_POINTS": "points with halos, not lines",
     "HALO_LISTED": "halos that are not hidden",
     "HALO_TAPER": "lines with halos whose ends narrow",
@@ -78,25 +78,25 @@ FEATURES: dict[str, str] = {
     "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",
-    "RAYCAST_SURFACE": "surfaces in a volume",
-    "RAYCAST_LIGHT": "light through a volume",
-    "RAYCAST_LOCAL": "the first peak in a volume, not the greatest",
-    "RAYCAST_NEAREST": "the field of the nearest voxel",
-    "RAYCAST_TRICUBIC": "the field of cubics between voxels",
-    "RAYCAST_UNREFINED": "surfaces at the sample behind them",
-    "RAYCAST_NEWTON": "surfaces by Newton's steps",
-    "RAYCAST_ADAPTIVE": "light of stretches halved until they agree",
-    "RAYCAST_PREINTEGRATED": "light of steps integrated beforehand",
-    "RAYCAST_RIEMANN": "light by Riemann's sum",
-    "RAYCAST_SIMPSON": "light by Simpson's rule",
-    "RAYCAST_ROMBERG": "light by Romberg's rule of three levels",
-    "RAYCAST_RK4": "light by Runge and Kutta's method of order four",
-    "RAYCAST_WHOLE": "rays that skip nothing",
-    "RAYCAST_FINER": "light of shorter steps where values bend",
-    "RAYCAST_HOMOGENEOUS": "light through nodes of hardly any change at once",
-    "RAYCAST_JITTER": "rays that start at places of their own",
+    "VOLUME_SURFACE": "surfaces in a volume",
+    "VOLUME_LIGHT": "light through a volume",
+    "VOLUME_LOCAL": "the first peak in a volume, not the greatest",
+    "VOLUME_NEAREST": "the field of the nearest voxel",
+    "VOLUME_TRICUBIC": "the field of cubics between voxels",
+    "VOLUME_UNREFINED": "surfaces at the sample behind them",
+    "VOLUME_NEWTON": "surfaces by Newton's steps",
+    "VOLUME_ADAPTIVE": "light of stretches halved until they agree",
+    "VOLUME_PREINTEGRATED": "light of steps integrated beforehand",
+    "VOLUME_RIEMANN": "light by Riemann's sum",
+    "VOLUME_SIMPSON": "light by Simpson's rule",
+    "VOLUME_ROMBERG": "light by Romberg's rule of three levels",
+    "VOLUME_RK4": "light by Runge and Kutta's method of order four",
+    "VOLUME_WHOLE": "rays that skip nothing",
+    "VOLUME_FINER": "light of shorter steps where values bend",
+    "VOLUME_HOMOGENEOUS": "light through nodes of hardly any change at once",
+    "VOLUME_JITTER": "rays that start at places of their own",
     "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",
-    "SPLINE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
+    "TUBE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
     "PICTURE_SAMPLES": "a picture of several samples a pixel",
     "PICTURE_DEPTH": "the depths of a picture, beside its colours",
     "PICTURE_TONE": "other tones for a picture, beside depth of field",
@@ -182,7 +182,7 @@ def assemble(
         The stage's text, instead of a file; ``name`` then only serves messages.
     version : int
         Of GLSL: sources are written for 4.30 and the later ones that they name. Below 4.20 bindings are left out, for
-        the caller to make; below 4.00 ``shaders/data/glsl330.glsl`` supplies what is missing.
+        the caller to make; below 4.00 ``shaders/fiblets/data/glsl330.glsl`` supplies what is missing.
 
     Returns
     -------
@@ -229,7 +229,7 @@ def assemble(
         if version < 420:
             body = _BINDING.sub("", body)
         if version < 400:
-            switches += read_shader("data/glsl330.glsl")
+            switches += read_shader("fiblets/data/glsl330.glsl")
         return f"#version {version}\n{switches}{head}{body}"
     return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from ..codec.query.shapes import Region
-    from .volumes import VolumeSource
+    from ..query.shapes import Region
+    from .fiblets.sampled_volume import VolumeSource
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View"]
 
@@ -90,7 +90,7 @@ class Style:
     values : str or VolumeSource, optional
         The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
         streamline's first point), the name of an array in ``FibletSet.per_point``, or a volume to be sampled at the
-        points (:mod:`pvfiblets.engine.volumes`). None costs nothing.
+        points (:mod:`pvfiblets.engine.fiblets.sampled_volume`). None costs nothing.
     tolerance : float
         Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
         one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.

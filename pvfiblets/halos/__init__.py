@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .look import Look
-from .things import HaloLines, HaloPoints
+from .geometry import HaloLines, HaloPoints
+from .style import Look
 
 __all__ = ["HaloLines", "HaloPoints", "Look"]

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.splines.sources import Lines, flat, gather, joined
+from pvfiblets.lines import Lines, flat, gather, joined
 from pvfiblets.streamlines import Streamlines
 
-from .things import HaloLines, HaloPoints
+from .geometry import HaloLines, HaloPoints
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

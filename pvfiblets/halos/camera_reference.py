@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .look import Look
+from .style import Look
 
 __all__ = ["Array", "Camera", "Fragments", "Ints", "between", "box", "kept"]
 

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .look import DISPLACEMENTS, TABLE_SIZE
+from .style import DISPLACEMENTS, TABLE_SIZE
 
 __all__ = ["Displacement", "as_displacement", "displaced", "table_places"]
 

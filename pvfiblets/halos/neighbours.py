@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from pvfiblets.ragged import offsets_from_counts
 
+from .geometry import HaloLines
 from .grid import Grid
-from .things import HaloLines
 
 __all__ = ["Cloud", "Frame", "Paths", "distances"]
 

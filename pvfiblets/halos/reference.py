@@ -20,9 +20,9 @@ import numpy.typing as npt
 
 from .camera_reference import Array, Camera, Fragments, Ints, box
 from .displacement import displaced
-from .look import Look
+from .geometry import HaloLines, HaloPoints
 from .strips_reference import strips
-from .things import HaloLines, HaloPoints
+from .style import Look
 
 __all__ = ["HALO", "LINE", "NOTHING", "Picture", "picture"]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .geometry import HaloLines, HaloPoints
 from .neighbours import Cloud, Frame, Paths, distances
-from .things import HaloLines, HaloPoints
 
 __all__ = ["default_widths", "line_spacing", "point_spacing"]
 

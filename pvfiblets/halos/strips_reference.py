@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .camera_reference import Array, Camera, Fragments, Ints, between, box, kept
-from .look import Look
-from .things import HaloLines
+from .geometry import HaloLines
+from .style import Look
 
 __all__ = ["mask", "places_along", "rates", "strips"]
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .displacement import Displacement, as_displacement, displaced, table_places
-from .look import Look
+from .style import Look
 
 __all__ = ["halo_width"]
 

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pvfiblets.later import names_from
+from pvfiblets.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.mappers.engines import EngineOptions
+    from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-    from pvfiblets.mappers.mapper import FibletMapper
-    from pvfiblets.mappers.raycast import RaycastMapper, RayHit
-    from pvfiblets.mappers.splines import SplineMapper, SplineOptions
+    from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
+    from pvfiblets.mappers.volumes import RayHit, VolumeMapper
 
 
 __all__ = [
@@ -26,21 +26,21 @@ __all__ = [
     "HaloMapper",
     "HaloOptions",
     "RayHit",
-    "RaycastMapper",
-    "SplineMapper",
-    "SplineOptions",
+    "TubeMapper",
+    "TubeOptions",
+    "VolumeMapper",
 ]
 
 _HOME = {
     "Colouring": "colouring",
     "EngineOptions": "engines",
-    "FibletMapper": "mapper",
+    "FibletMapper": "fiblets",
     "HaloMapper": "halos",
     "HaloOptions": "halos",
-    "RayHit": "raycast",
-    "RaycastMapper": "raycast",
-    "SplineMapper": "splines",
-    "SplineOptions": "splines",
+    "RayHit": "volumes",
+    "VolumeMapper": "volumes",
+    "TubeMapper": "tubes",
+    "TubeOptions": "tubes",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

@@ -15,14 +15,14 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.halos import HaloLines
-from pvfiblets.mappers.base import EngineMapper
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
-from pvfiblets.mappers.extras import Draw, styled
+from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import shown_by
 from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.shader_effects import Draw, styled
 from pvfiblets.mappers.shading import background
-from pvfiblets.mappers.tubes import thickened
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
@@ -78,7 +78,7 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True)
 class Strips:
-    """An `pvfiblets.mappers.extras.Extra` by which the halos in the G-buffer have a colour.
+    """An `pvfiblets.mappers.shader_effects.Extra` by which the halos in the G-buffer have a colour.
 
     Parameters
     ----------

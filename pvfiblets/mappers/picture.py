@@ -24,7 +24,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.mappers.focusing import FOLLOWED, DepthOfField, Focusing, lens_of
+from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.tiles import Margin, margin_of, shifted
 from pvfiblets.mappers.windows import WindowContext, context_of, contexts_with, gl_viewport, weak

@@ -23,7 +23,7 @@ def proxy_polydata(bounds: Sequence[float] | None, layers: int = 1) -> vtkPolyDa
     bounds : sequence of float or None
         xmin, xmax, ymin, ymax, zmin, zmax in mm; None (nothing to draw) gives empty polydata.
     layers : int, default 1
-        How many there are (`pvfiblets.mappers.layers`); vertex and triangle numbers tell them apart.
+        How many there are (`pvfiblets.mappers.depth_peeling`); vertex and triangle numbers tell them apart.
 
     Returns
     -------

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.mappers.extras import Draw
-from pvfiblets.mappers.tubes import normals_to_view
+from pvfiblets.mappers.line_tubes import normals_to_view
+from pvfiblets.mappers.shader_effects import Draw
 
 if TYPE_CHECKING:
     from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass

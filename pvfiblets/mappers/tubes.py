@@ -1,157 +1,171 @@
-"""Lines with bodies: wide lines shaded as if they were round, tubes, and the light that falls on tubes."""
+"""`TubeMapper`: Hermite spline tubes as geometry of an ordinary VTK actor.
+
+The engine (`pvfiblets.engine.tubes`) finds for each pixel where its ray enters the tubes; its G-buffer holds depth,
+surface normal, tube, segment and value, and the resolve that serves fiblets shows it. It has no regions, filters and
+layers.
+"""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
+from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.mappers.extras import Draw, Extra
+from pvfiblets.engine.tubes import check_choices
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.line_tubes import SurfaceNormals
 
-__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
+if TYPE_CHECKING:
+    from pvfiblets.tubes.spline_tubes import SplineTubes
 
+__all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
 
-def thickness_of(extras: Iterable[Extra]) -> float:
-    """Return the radius (mm) of the tubes that extras want; 0 for lines."""
-    return max((extra.style.get("radius") or 0.0 for extra in extras), default=0.0)
-
-
-def thickened(bounds: Sequence[float], radius: float) -> Sequence[float]:
-    """Return bounds (xmin, xmax, ymin, ...) moved outwards."""
-    return [bound + side * radius for bound, side in zip(bounds, (-1, 1) * 3, strict=True)]
-
-
-def normals_to_view(directions: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return the ``(3, 3)`` cofactors, largest 1, of how directions turn: so a stretched surface keeps its normals."""
-    a, b, c = directions.T
-    turned = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)]).T
-    if np.linalg.det(directions) < 0.0:
-        turned = -turned
-    scaled: npt.NDArray[np.float64] = turned / (np.abs(turned).max() or 1.0)
-    return scaled
-
-
-class _Blank:
-    """A texel that says of every pixel that it lies in the middle of its line.
+@dataclass(frozen=True)
+class TubeOptions(Options):
+    """What can be chosen about casting rays at spline tubes.
 
     Parameters
     ----------
-    ctx : moderngl.Context
-    """
-
-    def __init__(self, ctx: Any) -> None:
-        self._ctx = ctx
-        self._texture: Any = None
-
-    @property
-    def texture(self) -> Any:
-        """The texel, made when it is first needed."""
-        if self._texture is None:
-            self._texture = self._ctx.texture((1, 1), 1, np.zeros(1, np.float16).tobytes(), dtype="f2", alignment=1)
-            self._texture.filter = self._ctx.NEAREST, self._ctx.NEAREST
-        return self._texture
-
-    def explain(self) -> dict[str, list[dict[str, Any]]]:
-        """Return ``passes``, of which there are none, and ``buffers``, name and bytes."""
-        held = [] if self._texture is None else [{"name": "fibletAcrossMap (blank)", "bytes": 2}]
-        return {"passes": [], "buffers": held}
-
-    def release(self) -> None:
-        """Give it back; twice is harmless."""
-        if self._texture is not None:
-            self._texture.release()
-            self._texture = None
-
-
-@dataclass(frozen=True)
-class TubeShading:
-    """An `pvfiblets.mappers.extras.Extra` by which lights fall on wide lines as on round tubes.
-
-    Only the light changes: depths stay those of flat lines, which face the viewer. Lines one pixel wide look as they
-    did, and tubes have their own normals. It costs two bytes for each pixel.
-    """
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"tube_shading"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
-        return {"across": True}
-
-    def make(self, ctx: Any) -> _Blank:
-        """Make what stands for the engine's texture where there are no wide lines."""
-        return _Blank(ctx)
-
-    def prepare(self, kept: _Blank, draw: Draw) -> Mapping[str, Any]:
-        """Return the engine's texture."""
-        flat = draw.style.relief == "across" and draw.buffer.across is not None
-        return {"fibletAcrossMap": draw.buffer.across if flat else kept.texture}
-
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Do nothing: the texture says all."""
-
-
-@dataclass(frozen=True)
-class SurfaceNormals:
-    """An `pvfiblets.mappers.extras.Extra` by which lights fall on the surface normals in ``GBuffer.across``."""
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"tube_normal"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
-        return {}
-
-    def make(self, ctx: Any) -> None:  # noqa: ARG002
-        """Keep nothing: the texture is the G-buffer's."""
-        return
-
-    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002
-        """Return the engine's texture."""
-        return {"fibletNormalMap": draw.buffer.across}
-
-    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002
-        """Set how normals turn with the actor."""
-        turned = normals_to_view(draw.frame.directions_to_view)
-        program.SetUniformMatrix3x3("fibletNormalToView", turned.T.ravel().tolist())
-
-
-@dataclass(frozen=True)
-class Tubes(SurfaceNormals):
-    """An `pvfiblets.mappers.extras.Extra` that draws streamlines as tubes: bodies with round ends.
-
-    Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and
-    into VTK's meshes, and lights, ambient occlusion and selection take them for surfaces. Those thinner than a pixel
-    are drawn a pixel wide. ``line_width`` is not looked at. It costs four bytes for each pixel.
-
-    Parameters
-    ----------
-    radius : float
-        Data mm; a user matrix that scales the actor scales its tubes.
+    silhouettes : {'auto', 'rectangles', 'boxes', 'pulled-boxes'}
+        What covers the pixels whose rays are tried.
+    solver : {'auto', 'bisection', 'illinois', 'itp', 'newton'}
+        How the first point of a tube on a ray is searched.
+    iterations : int, optional
+        Steps of one search at most; the solver's own number by default.
+    min_width : float, default 1.0
+        Pixels that a tube takes at least, 0 to 64, however thin and far it is.
+    culling : {'two-phase', 'none', None}
+        How segments behind others are found out.
 
     Raises
     ------
     ValueError
-        If the radius is not positive and finite.
+        A value is unknown.
     """
 
-    radius: float
+    silhouettes: str = "auto"
+    solver: str = "auto"
+    iterations: int | None = None
+    min_width: float = 1.0
+    culling: str | None = "two-phase"
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.radius) and self.radius > 0.0):
-            raise ValueError(f"the radius of tubes is {self.radius}; give a finite number of millimetres above 0")
+        """Check the values, and let None stand for no culling."""
+        if self.culling == "none":
+            object.__setattr__(self, "culling", None)
+        check_choices(self.silhouettes, self.solver, self.iterations, self.min_width, self.culling)
+
+
+def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
+    """Make the engine's renderer of spline tubes; the default ``renderer_factory``.
+
+    Raises
+    ------
+    EngineError
+        The window's OpenGL lacks what is wanted; said before anything is copied to the GPU.
+    """
+    from pvfiblets.engine.tubes import TubeRenderer
+
+    return TubeRenderer(ctx, tubes, **options)
+
+
+class TubeMapper(EngineMapper):
+    """Mapper that draws `SplineTubes` through VTK's own lights, passes, clipping planes and selection.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    colouring : Colouring, optional
+        White when left out.
+    options : TubeOptions, optional
+        How rays are cast.
+    renderer_factory : callable, optional
+        Takes a moderngl context, the tubes, and as keywords those options that are not the defaults; returns a
+        renderer as of `pvfiblets.engine.tubes`.
+
+    Notes
+    -----
+    Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
+
+    Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020), section 3.2.
+    """
+
+    _NAME = "TubeMapper"
+
+    def __init__(
+        self,
+        tubes: SplineTubes,
+        *,
+        colouring: Colouring | None = None,
+        options: TubeOptions | None = None,
+        renderer_factory: Callable[..., Any] = tube_renderer,
+    ) -> None:
+        super().__init__(
+            tubes,
+            colouring=Colouring("solid") if colouring is None else colouring,
+            options=TubeOptions() if options is None else options,
+            renderer_factory=renderer_factory,
+        )
+        self.set_extra("normals", SurfaceNormals())
 
     @property
-    def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
-        return {"radius": float(self.radius), "across": True}
+    def tubes(self) -> SplineTubes:
+        """What is drawn."""
+        tubes: SplineTubes = self._drawn
+        return tubes
+
+    def set_tubes(self, tubes: SplineTubes) -> None:
+        """Draw other tubes from the next frame on.
+
+        Raises
+        ------
+        ValueError
+            The colouring has values for another number of tubes.
+        """
+        self._put(tubes)
+
+    @property
+    def options(self) -> TubeOptions:
+        """How rays are cast; set another `TubeOptions` to change it from the next frame on."""
+        options: TubeOptions = self._options
+        return options
+
+    @options.setter
+    def options(self, options: TubeOptions) -> None:
+        self._options = options
+        self._actor_modified()
+
+    def pick_at(
+        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    ) -> tuple[int, float] | None:
+        """Return the place of the tubes nearest to a pixel of what was drawn last.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 2
+            How many pixels away a tube may be.
+
+        Returns
+        -------
+        tuple of int and float, or None
+            Segment and its parameter, 0 to 1, whose sphere the pixel shows. None where there is no tube. Other
+            actors in front are not looked at.
+        """
+        return self._pick(x, y, renderer=renderer, tolerance=tolerance, what="owner")
+
+    @property
+    def _empty(self) -> bool:
+        return not self._drawn.n_segments
+
+    @property
+    def _width(self) -> float:
+        return max(1.0, self.options.min_width)

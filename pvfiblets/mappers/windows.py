@@ -21,8 +21,8 @@ from vtkmodules.util.vtkConstants import VTK_UNSIGNED_CHAR
 from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
-from pvfiblets.mappers.outside import OutsideDepth
 from pvfiblets.mappers.scene import renderers_of
+from pvfiblets.mappers.scene_depth import OutsideDepth
 
 GL_VIEWPORT = 0x0BA2
 MAX_ROW = 4096
@@ -73,7 +73,7 @@ class Slot:
     drawn : dict
         Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
     extras : dict
-        Name of an extra to its class and what it keeps on the GPU (`pvfiblets.mappers.extras`).
+        Name of an extra to its class and what it keeps on the GPU (`pvfiblets.mappers.shader_effects`).
     """
 
     def __init__(self, mapper: Any) -> None:

@@ -17,18 +17,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pvfiblets.later import names_from
-from pvfiblets.plotting.component import AddFiblets, FibletsComponent
-from pvfiblets.plotting.halo_component import AddHaloLines, HaloLinesComponent
-from pvfiblets.plotting.halo_point_component import AddHaloPoints, HaloPointsComponent
-from pvfiblets.plotting.raycast_component import AddRaycastVolume, RaycastVolumesComponent
-from pvfiblets.plotting.spline_component import AddSplineTubes, SplineTubesComponent
+from pvfiblets.lazy_imports import names_from
+from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
+from pvfiblets.plotting.halos.component import AddHaloLines, HaloLinesComponent
+from pvfiblets.plotting.halos.point_component import AddHaloPoints, HaloPointsComponent
+from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
+from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.actor import FibletActor
-    from pvfiblets.plotting.halo_kinds import HaloLineActor, HaloPointActor
-    from pvfiblets.plotting.raycast_actor import RaycastActor
-    from pvfiblets.plotting.spline_actor import SplineTubeActor
+    from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
+    from pvfiblets.plotting.tubes.actor import TubeActor
+    from pvfiblets.plotting.volumes.actor import VolumeActor
 
 __all__ = [
     "AddFiblets",
@@ -42,18 +42,18 @@ __all__ = [
     "HaloLinesComponent",
     "HaloPointActor",
     "HaloPointsComponent",
-    "RaycastActor",
     "RaycastVolumesComponent",
-    "SplineTubeActor",
     "SplineTubesComponent",
+    "TubeActor",
+    "VolumeActor",
 ]
 
 _HOME = {
-    "FibletActor": "actor",
-    "HaloLineActor": "halo_kinds",
-    "HaloPointActor": "halo_kinds",
-    "RaycastActor": "raycast_actor",
-    "SplineTubeActor": "spline_actor",
+    "FibletActor": "fiblets.actor",
+    "HaloLineActor": "halos.actors",
+    "HaloPointActor": "halos.actors",
+    "VolumeActor": "volumes.actor",
+    "TubeActor": "tubes.actor",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
-from pvfiblets.plotting.sources import as_fiblets
+from pvfiblets.plotting.fiblets.sources import as_fiblets
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.plotting.choices import unique_name
-from pvfiblets.plotting.cutting import as_region, slab
+from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.plotting.region_sources import as_region, slab
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -44,7 +44,7 @@ class Clipping:
         ValueError
             If a mesh is open, empty or inside-out, a number makes no sense, or it is of labels.
         """
-        from pvfiblets.engine.cut_planes import check_region
+        from pvfiblets.engine.regions.clip_planes import check_region
 
         region = as_region(what)
         check_region(region)

@@ -13,11 +13,11 @@ from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_ta
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from pvfiblets.plotting.scalars import Scalars
+    from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
 class Coloured:
-    """The part of actors that has colours; see :class:`~pvfiblets.plotting.actor.FibletActor`.
+    """The part of actors that has colours; see :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`.
 
     What an actor draws, and what ``scalars`` mean for that, is its own: it brings ``scalars`` and
     overrides the two members that raise here.

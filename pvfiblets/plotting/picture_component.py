@@ -163,7 +163,7 @@ class PictureComponent:
     def _keep(self) -> None:
         """Have errors raised by what renders, and the mouse watched as long as a focus follows it."""
         if any(picture.on for picture in self._pictures.values()):
-            # Kept current here, since `clear_on_render_callbacks` drops what others registered.
+            # Registered current here, since `clear_on_render_callbacks` drops what others registered.
             self._plotter.add_on_render_callback(self._rendered)
         interactor = self._interactor()
         if interactor is None:

@@ -1,11 +1,11 @@
 import pyvista as pv
 
-from pvfiblets.plotting.component import AddFiblets, FibletsComponent
-from pvfiblets.plotting.halo_component import AddHaloLines, HaloLinesComponent
-from pvfiblets.plotting.halo_point_component import AddHaloPoints, HaloPointsComponent
+from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
+from pvfiblets.plotting.halos.component import AddHaloLines, HaloLinesComponent
+from pvfiblets.plotting.halos.point_component import AddHaloPoints, HaloPointsComponent
 from pvfiblets.plotting.picture_component import PictureComponent
-from pvfiblets.plotting.raycast_component import AddRaycastVolume, RaycastVolumesComponent
-from pvfiblets.plotting.spline_component import AddSplineTubes, SplineTubesComponent
+from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
+from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 
 __all__ = ["Plotter"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-# What the engine counts in each window (pvfiblets.engine.census).
+# What the engine counts in each window (pvfiblets.engine.fiblets.census).
 COUNTS = ("total", "in_frustum", "drawn", "visible")
 
 

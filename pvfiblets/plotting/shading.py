@@ -8,8 +8,8 @@ from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink
-from pvfiblets.mappers.tubes import Tubes, TubeShading
 
 STYLES = ("surface", "halo")
 """What :attr:`Shading.style` may be."""
@@ -85,7 +85,7 @@ class SurfaceShading:
 
 
 class Shading(SurfaceShading):
-    """The part of :class:`~pvfiblets.plotting.actor.FibletActor` that shades."""
+    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that shades."""
 
     def _init_shading(self) -> None:
         super()._init_shading()

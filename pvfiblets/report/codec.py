@@ -12,12 +12,12 @@ import numpy.typing as npt
 
 from pvfiblets.streamlines import Streamlines
 
+from .baselines.directions import PaperFiblets, QFib
+from .baselines.linearised import linearised
+from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from .data import SMALL, DataSet, data_sets
 from .measure import Turns, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
-from .rivals.directions import PaperFiblets, QFib
-from .rivals.linearised import linearised
-from .rivals.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from .study import Options
 
 __all__ = ["STUDY", "CodecStudy", "Way", "ways"]
@@ -143,7 +143,7 @@ class CodecStudy:
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
         "*fiblets*: greedy encoder, with the promise as the setting; *look-ahead*: effort high; *fiblets of 30 "
         "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
-        "in Schertzer et al. 2022 (pvfiblets/report/rivals/directions.py says what it leaves open), with the file's "
+        "in Schertzer et al. 2022 (pvfiblets/report/baselines/directions.py says what it leaves open), with the file's "
         "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
         "setting; its points cannot be had back, so its error is the distance from the line that is left, and there is "
         "nothing to decompress. *zlib* (level 6) and *zstd* (level 3) lose nothing.",

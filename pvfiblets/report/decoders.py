@@ -3,7 +3,8 @@
 All ways fill the same scratch with one rigid motion a point and then put these together:
 
 - *sequential* (Schertzer et al. 2022, section 3.3.1): frame and point move on from one to the next;
-- *prefix* (section 3.3.2): Sklansky's network of products of motions, as ``shaders/decode/parallel.glsl``. Here one
+- *prefix* (section 3.3.2): Sklansky's network of products of motions, as ``shaders/fiblets/decode/parallel.glsl``.
+Here one
   thread does the work of all 32, so its time is that of the work, not that of a graphics card;
 
 with rotations as *quaternions* or *matrices*, from a *table*, or by the *closed form* of

@@ -128,7 +128,7 @@ def subjects(options: Options) -> list[Callable[[], Subject]]:
         return brain_streamlines(QUICK_TUBES if options.quick else TUBES, step=1.0, seed=options.seed)
 
     def tubes() -> Subject:
-        from pvfiblets.splines import as_spline_tubes
+        from pvfiblets.tubes import as_spline_tubes
 
         made = streamlines()
         radius = 0.5 + 0.3 * np.sin(np.arange(made.n_points) / 5.0)
@@ -142,7 +142,7 @@ def subjects(options: Options) -> list[Callable[[], Subject]]:
         return halo_subject(lines)
 
     def volume() -> Subject:
-        from pvfiblets.raycast import RaycastVolume
+        from pvfiblets.volumes import RaycastVolume
 
         n = QUICK_VOXELS if options.quick else VOXELS
         x, y, z = np.meshgrid(*[np.linspace(-1.0, 1.0, n)] * 3, indexing="ij")

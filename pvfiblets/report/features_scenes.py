@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.engine.filtering import Filter
+from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
-from pvfiblets.engine.volumes import VolumeSource
 
 from .cameras import Camera, orbit
 from .features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture, lens_of
@@ -190,7 +190,7 @@ def _layers(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
 def brain_subject(fiblets: Any) -> Subject:
     """Return streamlines with what can be done to them; ``fiblets`` hold a per-point array ``'height'``."""
     from pvfiblets import regions
-    from pvfiblets.engine.renderer import FibletRenderer
+    from pvfiblets.engine.fiblets.renderer import FibletRenderer
 
     box = np.array(fiblets.bounds, np.float64).reshape(3, 2)
     middle, sides = box.mean(axis=1), box[:, 1] - box[:, 0]
@@ -243,7 +243,7 @@ def brain_subject(fiblets: Any) -> Subject:
 
 def by_planes(region: Any) -> dict[str, Any]:
     """Return the fields of a view that is cut as an actor is: by planes, as far as the region is made of them."""
-    from pvfiblets.engine.cut_planes import planes_of
+    from pvfiblets.engine.regions.clip_planes import planes_of
 
     planes, rest = planes_of(region, MAX_CLIP_PLANES)
     return {"clip_planes": planes, "region": rest}
@@ -264,7 +264,7 @@ def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Any
 
 def tube_subject(tubes: Any) -> Subject:
     """Return spline tubes with what can be done to them; ``tubes`` hold values ``'scalars'``."""
-    from pvfiblets.engine.splines import SplineRenderer
+    from pvfiblets.engine.tubes import TubeRenderer
 
     box = np.array(tubes.bounds, np.float64).reshape(3, 2)
     diagonal, middle = float(np.linalg.norm(box[:, 1] - box[:, 0])), box.mean(axis=1)
@@ -279,7 +279,7 @@ def tube_subject(tubes: Any) -> Subject:
     ]
 
     def make(ctx: Any, **options: Any) -> Any:
-        return SplineRenderer(ctx, tubes, **options)
+        return TubeRenderer(ctx, tubes, **options)
 
     return Subject("spline tubes", make, Style(), tubes.bounds, features)
 
@@ -317,16 +317,16 @@ def halo_subject(lines: Any) -> Subject:
 def volume_subject(volume: Any) -> Subject:
     """Return a volume that rays are cast through, and what can be done to it."""
     from pvfiblets import regions
-    from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-    from pvfiblets.raycast import Transfer
-    from pvfiblets.raycast.casting import Casting
+    from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
+    from pvfiblets.volumes import Transfer
+    from pvfiblets.volumes.options import RaycastOptions
 
     box = np.array(volume.bounds, np.float64).reshape(3, 2)
     middle, sides = box.mean(axis=1), box[:, 1] - box[:, 0]
     low, high = float(volume.values.min()), float(volume.values.max())
     table = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.1]], np.float32)
     light = {"mode": "composite", "transfer": Transfer(table, (low, high))}
-    mip = Casting(mode="mip")
+    mip = RaycastOptions(mode="mip")
 
     def casting(**changes: Any) -> dict[str, Any]:
         return {"casting": replace(mip, **changes)}
@@ -347,6 +347,6 @@ def volume_subject(volume: Any) -> Subject:
     ]
 
     def make(ctx: Any, **options: Any) -> Any:
-        return RaycastRenderer(ctx, volume, **options)
+        return VolumeRenderer(ctx, volume, **options)
 
-    return Subject("volume", make, RaycastStyle(casting=mip), volume.bounds, features)
+    return Subject("volume", make, VolumeStyle(casting=mip), volume.bounds, features)

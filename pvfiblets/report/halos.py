@@ -12,7 +12,7 @@ import numpy as np
 
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, Look
-from pvfiblets.halos.look import TABLE_SIZE
+from pvfiblets.halos.style import TABLE_SIZE
 
 from .data import DataSet, file_sets, made_up
 from .drawing import clock_of, drawing_context, timing, turns_of

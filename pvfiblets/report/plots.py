@@ -11,8 +11,8 @@ from matplotlib.figure import Figure as Picture
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from .dot_plot import in_rows
 from .record import Axes, Record, Report, StudyResult
-from .rows import in_rows
 
 __all__ = ["draw"]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.splines import curves
+from pvfiblets.tubes import curves
 
 from .cameras import VIEWS, Lens, by_turns, orbit
 from .drawing import Part, clock_of, run_parts, timing, turns_of
@@ -57,7 +57,7 @@ class Way:
 
 def ways(quick: bool) -> list[Way]:
     """Return all solvers, by loop and the paper's by chain, in a whole report all by both, by numbers of iterations."""
-    from pvfiblets.engine.splines import SOLVERS
+    from pvfiblets.engine.tubes import SOLVERS
 
     default = next(iter(SOLVERS))
     found = []
@@ -155,7 +155,7 @@ class _Probes(AbstractContextManager["_Probes"]):
 
     def made(self, way: Way) -> Any:
         """Return a way's solver, which is compiled when first asked for."""
-        from pvfiblets.engine.splines.probe import SolverProbe
+        from pvfiblets.engine.tubes.solver_probe import SolverProbe
 
         key = way.solver, way.chain
         if key not in self._made:
@@ -296,7 +296,7 @@ class TubesStudy:
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
     )
     notes = (
-        "What is right is found in float64 by another method (pvfiblets/splines/reference.py: eigenvalues of companion "
+        "What is right is found in float64 by another method (pvfiblets/tubes/reference.py: eigenvalues of companion "
         "matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, where it meets "
         "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
         "answer right; *missed* and *false* are such rays. Rays pass a sphere of a half segment within 1.15 radii of "

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.splines import SplineTubes
+from pvfiblets.tubes import SplineTubes
 
+from .baselines.tessellated import TessellatedTubes
 from .cameras import Camera, Lens
-from .rivals.tessellated import TessellatedTubes
 from .tubes_pictures import farness_of
 
 __all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
@@ -50,9 +50,9 @@ class CastTubes:
     way = "ray cast"
 
     def __init__(self, ctx: Any, tubes: SplineTubes, solver: str = "auto") -> None:
-        from pvfiblets.engine.splines import SplineRenderer
+        from pvfiblets.engine.tubes import TubeRenderer
 
-        self._ctx, self._renderer = ctx, SplineRenderer(ctx, tubes, solver=solver, min_width=0.0)
+        self._ctx, self._renderer = ctx, TubeRenderer(ctx, tubes, solver=solver, min_width=0.0)
         self.setting = self._renderer.solver
         self.ours = self.setting != "bisection"
         self.default = solver == "auto"
@@ -105,7 +105,7 @@ class MeshedTubes:
 
 def drawings(ctx: Any, tubes: SplineTubes, size: tuple[int, int]) -> list[Callable[[], Drawing]]:
     """Return what makes each way, the program's default first."""
-    from pvfiblets.engine.splines import SOLVERS
+    from pvfiblets.engine.tubes import SOLVERS
 
     default, *others = SOLVERS
 

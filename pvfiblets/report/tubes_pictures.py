@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.splines import SplineTubes, curves
-from pvfiblets.splines.reference import ENTRY, nearest_hits
+from pvfiblets.tubes import SplineTubes, curves
+from pvfiblets.tubes.reference import ENTRY, nearest_hits
 
 from .cameras import Lens
 from .tubes_rays import radius_at

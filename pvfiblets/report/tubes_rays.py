@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.splines import curves
-from pvfiblets.splines.reference import Hits, hits, surface_distance
+from pvfiblets.tubes import curves
+from pvfiblets.tubes.reference import Hits, hits, surface_distance
 
 from .cameras import Lens, orbit, unit
 

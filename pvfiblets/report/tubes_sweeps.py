@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.splines import curves
+from pvfiblets.tubes import curves
 
 from .cameras import unit
 from .tubes_rays import Rays, aimed, halves

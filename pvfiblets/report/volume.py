@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.raycast import FILTERS, RaycastVolume, Transfer, reference
-from pvfiblets.raycast.casting import INTEGRATORS, Casting
 from pvfiblets.synthetic.vessels import vessel_tree
+from pvfiblets.volumes import FILTERS, RaycastVolume, Transfer, reference
+from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
 
 from .cameras import Camera, by_turns
 from .drawing import Part, run_parts
@@ -36,17 +36,16 @@ SIZE, QUICK_SIZE = 256, 128
 PIXELS, QUICK_PIXELS = 3000, 500
 
 
-
 # --------------------------------------------------------------------------------------------------------- integrators
 
 
 def integrators(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of every integrator by transfer function, density and step; then how errors grow with density."""
-    from pvfiblets.engine.raycast import RaycastRenderer
+    from pvfiblets.engine.volumes import VolumeRenderer
 
     volume = field("ball", BALL)
     camera = circle(volume, 1, LIGHT_SIZE)[0]
-    renderer = RaycastRenderer(ctx, volume)
+    renderer = VolumeRenderer(ctx, volume)
     looks = tables()
     chosen = ("ramp", "peaks") if options.quick else tuple(looks)
     try:
@@ -71,7 +70,7 @@ def _integrated(
     ctx: Any, renderer: Any, volume: RaycastVolume, camera: Camera, transfer: Transfer, name: str, options: Options,
     left_out: list[LeftOut],
 ) -> Iterator[Record]:  # fmt: skip
-    from pvfiblets.engine.raycast import RaycastStyle
+    from pvfiblets.engine.volumes import VolumeStyle
 
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = some(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
@@ -81,8 +80,8 @@ def _integrated(
         for integrator in INTEGRATORS:
             if not timed.allows(f"{integrator} step {step:g}"):
                 continue
-            casting = Casting("composite", transfer=transfer, integrator=integrator, step=step, stop=0.9999)
-            style = RaycastStyle(casting=casting)
+            casting = RaycastOptions("composite", transfer=transfer, integrator=integrator, step=step, stop=0.9999)
+            style = VolumeStyle(casting=casting)
             off = light_of(drawn(ctx, renderer, camera, style))[at[:, 0], at[:, 1]] - right
             record = Record(
                 data=name,
@@ -95,7 +94,7 @@ def _integrated(
                     "light max": Figure(float(np.abs(off).max()), "of 1"),
                 },
                 ours=True,
-                default=(integrator, step) == (Casting.integrator, Casting.step),
+                default=(integrator, step) == (RaycastOptions.integrator, RaycastOptions.step),
                 machine=options.machine,
             )
             timed.add(record, by_turns(drawing(ctx, renderer, style), [camera]), 1)
@@ -108,11 +107,12 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
         errors = {
             f"max at κΔ {density:g}": record.errors["light max"]
             for density, record in found
-            if (record.way, record.setting) == (integrator, f"step {Casting.step:g}")
+            if (record.way, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
         }
         if errors:
             machine = found[0][1].machine
-            yield Record(name, "stiff", "light along a ray", integrator, f"step {Casting.step:g}", errors, ours=True,
+            yield Record(name, "stiff", "light along a ray", integrator, f"step {RaycastOptions.step:g}", errors,
+            ours=True,
                          machine=machine)  # fmt: skip
 
 
@@ -120,7 +120,7 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
 
 
 def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield what is varied, how, and the fields of `Casting` that are not its defaults, the default first.
+    """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
     """
     yield "default", "", {}
     steps = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
-    yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != Casting.step)
+    yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != RaycastOptions.step)
     if mode == "isosurface":
         yield "no refinement", "", {"refine": "none", "iterations": 1}
         for count in (1, 3):
@@ -158,12 +158,12 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
 
 def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of all that may be set, in each mode, on a tree of vessels."""
-    from pvfiblets.engine.raycast import RaycastRenderer
+    from pvfiblets.engine.volumes import VolumeRenderer
 
     side = QUICK_SIZE if options.quick else SIZE
     volume = vessel_tree(QUICK_VESSELS if options.quick else VESSELS, options.seed, "uint16")
     cameras = circle(volume, 1 if options.quick else 2, (side, side))
-    renderer = RaycastRenderer(ctx, volume)
+    renderer = VolumeRenderer(ctx, volume)
     cases = [(mode, "trilinear") for mode in ("composite", "mip", "isosurface")]
     if not options.quick:
         cases += [(mode, name) for mode in ("composite", "isosurface") for name in FILTERS if name != "trilinear"]
@@ -186,7 +186,7 @@ def _varied(
     ctx: Any, renderer: Any, look: Look, right: Right, name: str, kind: str, spread: float, spacing: float,
     options: Options, left_out: list[LeftOut],
 ) -> Iterator[Record]:  # fmt: skip
-    from pvfiblets.engine.raycast import RaycastStyle
+    from pvfiblets.engine.volumes import VolumeStyle
 
     cameras = right.colours.cameras
     timed = Timed(ctx, options, name, "draw")
@@ -195,7 +195,7 @@ def _varied(
             continue  # a tricubic picture takes ten times as long
         if not timed.allows(f"{varied} {how}".strip()):
             continue
-        style = RaycastStyle(casting=look.casting(filter=kind, **fields))
+        style = VolumeStyle(casting=look.casting(filter=kind, **fields))
         shown, depths = [], []
         for camera in cameras:
             buffer = drawn(ctx, renderer, camera, style)
@@ -247,7 +247,7 @@ class VolumeStudy:
     )
     notes = (
         "What is right is found in float64, ray by ray and cell by cell, without steps "
-        "(pvfiblets/raycast/reference.py), in a sample of the pixels whose rays meet the volume. Colours and opacities "
+        "(pvfiblets/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and opacities "
         "are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of rms.",
         f"Integrators: a ball of {BALL}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer functions that rise "
         "gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or several (*peaks*). κΔ "

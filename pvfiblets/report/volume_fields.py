@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast import RaycastVolume
+from pvfiblets.volumes import RaycastVolume
 
 __all__ = ["DENSE", "field", "tables"]
 

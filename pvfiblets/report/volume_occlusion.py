@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast import RaycastVolume, reference
-from pvfiblets.raycast.casting import Casting
+from pvfiblets.volumes import RaycastVolume, reference
+from pvfiblets.volumes.options import RaycastOptions
 
 from .record import Figure, LeftOut, Record
 from .study import Options
@@ -71,14 +71,14 @@ class _Picture:
         self, ctx: Any, volume: RaycastVolume, value: float, away: tuple[float, float, float], side: int
     ) -> None:
         from pvfiblets.engine import View
-        from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-        from pvfiblets.engine.raycast.occlusion import RayOcclusionPass
+        from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
+        from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
 
         self._ctx, self._volume, self._value = ctx, volume, value
-        self._casting = Casting(values=(value,))
+        self._casting = RaycastOptions(values=(value,))
         self._view = View((side, side), seen_from(volume, (side, side), away))
-        self._renderer, self._pass = RaycastRenderer(ctx, volume), RayOcclusionPass(ctx)
-        self._buffer = self._renderer.render(self._view, RaycastStyle(casting=self._casting))
+        self._renderer, self._pass = VolumeRenderer(ctx, volume), RayOcclusionPass(ctx)
+        self._buffer = self._renderer.render(self._view, VolumeStyle(casting=self._casting))
 
     def exact(self, count: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
         """Return rows and columns, ``(n, 2)``, of so many pixels at most that show the surface, and how open it is."""

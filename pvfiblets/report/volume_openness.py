@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast import RaycastVolume, reference
 from pvfiblets.synthetic.vessels import brain_like, vessel_tree
+from pvfiblets.volumes import RaycastVolume, reference
 
 from .cameras import Lens, unit
 
@@ -66,7 +66,7 @@ def exact_openness(
     numpy.ndarray
         ``(k,)``: share of the directions that meet nothing.
     """
-    from pvfiblets.engine.raycast.occlusion import LIFT
+    from pvfiblets.engine.volumes.occlusion import LIFT
 
     # The open side is the viewer's by the field next to the hit, not by differences over two voxels.
     before, after = (reference.sample(volume, through.points(t + beside)) for beside in (-BESIDE, BESIDE))

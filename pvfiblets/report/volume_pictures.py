@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast import RaycastVolume, reference
+from pvfiblets.volumes import RaycastVolume, reference
 
 from .cameras import Camera
 from .volume_scene import Look, Truth, grey_of, lit, truth

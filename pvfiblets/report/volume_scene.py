@@ -2,7 +2,7 @@
 
 Everything that shows a volume here shows the same: light by one transfer function, greatest values in grey, one surface
 in white that a lamp at the eye lights, on black. What is right is computed ray by ray in float64, without steps
-(`pvfiblets.raycast.reference`), for a sample of the pixels whose rays meet the volume.
+(`pvfiblets.volumes.reference`), for a sample of the pixels whose rays meet the volume.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast import RaycastVolume, Transfer, reference
-from pvfiblets.raycast.casting import Casting
+from pvfiblets.volumes import RaycastVolume, Transfer, reference
+from pvfiblets.volumes.options import RaycastOptions
 
 from .cameras import ELEVATION, VERTICAL_ANGLE, Camera
 
@@ -51,13 +51,13 @@ class Look:
     transfer: Transfer
     value: float
 
-    def casting(self, **more: Any) -> Casting:
+    def casting(self, **more: Any) -> RaycastOptions:
         """Return how the engine casts it."""
         if self.mode == "composite":
             more["transfer"] = self.transfer
         if self.mode == "isosurface":
             more["values"] = (self.value,)
-        return Casting(self.mode, **more)
+        return RaycastOptions(self.mode, **more)
 
 
 def look_of(volume: RaycastVolume, mode: str) -> Look:

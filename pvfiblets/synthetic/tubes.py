@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.ragged import offsets_from_counts
-from pvfiblets.splines.build import as_spline_tubes
-from pvfiblets.splines.tubes import SplineTubes
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.tubes.build import as_spline_tubes
+from pvfiblets.tubes.spline_tubes import SplineTubes
 
 from .tracking import brain_streamlines
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.raycast.volume import RaycastVolume
+from pvfiblets.volumes.volume import RaycastVolume
 
 __all__ = ["brain_like", "vessel_tree"]
 

@@ -244,7 +244,7 @@ def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load, whole: Any 
 
 def _cut_mesh(whole: Any, clips: Sequence[Clip], load: Load) -> Any:
     """Return what clips leave of a mesh: the mesh itself where there are none."""
-    from pvfiblets.plotting.surfaces import cut_surface
+    from pvfiblets.plotting.cut_surfaces import cut_surface
 
     for clip in clips:
         region = make_region(clip.shape, load)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.plotting.volumes import SUFFIXES as LABELS
+from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short, steps
 from pvfiblets.web.controls import controls, moved

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pvfiblets.plotting.scalars import ORIENTATION
+from pvfiblets.plotting.fiblets.scalars import ORIENTATION
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
 from pvfiblets.web.properties import TYPES, Choices, Property
 from pvfiblets.web.tables import MESH, TRACTOGRAM, TUBES, VOLUME

@@ -15,7 +15,7 @@ from typing import Any
 
 from pvfiblets import formats
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
-from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
+from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
 
@@ -190,7 +190,7 @@ class Files:
         if kind == "volume":
             import pyvista as pv
 
-            from pvfiblets.raycast import as_raycast_volume
+            from pvfiblets.volumes import as_raycast_volume
 
             volume = as_raycast_volume(pv.read(place) if name.lower().endswith(_EITHER) else place)
             watch("reading", 1.0)
@@ -258,7 +258,7 @@ class Watch:
 
 
 def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
-    from pvfiblets.plotting.spline_scalars import as_tubes
+    from pvfiblets.plotting.tubes.scalars import as_tubes
 
     if place.suffix.lower() not in _EITHER:
         points = formats.info(place).get("points")
@@ -289,9 +289,9 @@ def _colours(place: Path) -> Any:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
     import pyvista as pv
 
-    from pvfiblets.engine.volumes import VolumeSource
-    from pvfiblets.plotting.volumes import as_volume
-    from pvfiblets.raycast import as_raycast_volume
+    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+    from pvfiblets.plotting.fiblets.volume_sources import as_volume
+    from pvfiblets.volumes import as_raycast_volume
 
     if (found := as_volume(place)) is not None:
         return found
@@ -330,7 +330,7 @@ def _demo(source: Source, kind: str | None) -> Loaded:
         volume = brain_like(source.size)
         return Loaded("volume", source, "demo head", volume, _volume_facts(volume))
     if source.demo == "head" and kind == "colours":
-        from pvfiblets.engine.volumes import VolumeSource
+        from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
         from pvfiblets.synthetic.vessels import brain_like
 
         volume = brain_like(source.size)

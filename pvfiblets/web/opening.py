@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.formats.registry import suffixes
-from pvfiblets.plotting.volumes import SUFFIXES as LABELS
-from pvfiblets.raycast.sources import SUFFIXES as VOLUMES
+from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
+from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError
 from pvfiblets.web.loading import MESHES, Cancelled

@@ -47,7 +47,7 @@ class Questions:
 
     def arrays(self, layer_id: str) -> list[dict[str, str]]:
         """Return the values that a layer can be filtered by and that have histograms: ``name``, ``title``."""
-        from pvfiblets.plotting.scalars import UNITS
+        from pvfiblets.plotting.fiblets.scalars import UNITS
         from pvfiblets.web.tables import value_names
 
         layer = self.layer(layer_id)
@@ -193,7 +193,7 @@ def _count(name: str, values: np.ndarray, share: float, count: int) -> dict[str,
 def _values(layer: Layer, data: Any, name: str) -> tuple[np.ndarray, float]:
     """Return the numbers of a layer, or of an even share of it, and how large that is."""
     if layer.kind in LINES:
-        from pvfiblets.codec.query.measures import measure
+        from pvfiblets.query.measures import measure
 
         share = 1.0
         if data.n_points > MOST_POINTS:

@@ -1,7 +1,7 @@
 """Values of a volume along streamlines, for tables, profiles and histograms; the picture samples on the GPU.
 
-By the same rules (:mod:`pvfiblets.engine.volumes`): trilinear between voxel centres, of labels the nearest voxel's; the
-outermost voxels reach half a voxel beyond their centres; NaN outside and next to NaN.
+By the same rules (:mod:`pvfiblets.engine.fiblets.sampled_volume`): trilinear between voxel centres, of labels the
+nearest voxel's; the outermost voxels reach half a voxel beyond their centres; NaN outside and next to NaN.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ import textwrap
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.mappers.base import USUAL_DPI
-from pvfiblets.plotting.volumes import SUFFIXES as SAMPLED
+from pvfiblets.mappers.engine_mapper import USUAL_DPI
+from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.bars import bar_arguments, bar_calls, bars_of
@@ -200,7 +200,7 @@ class _Writer:
             return _Python(f"pv.read({self._file(path)})")
         if path.lower().endswith(SAMPLED):
             return _Python(self._file(path))
-        self._imports.add("from pvfiblets.raycast import as_raycast_volume")
+        self._imports.add("from pvfiblets.volumes import as_raycast_volume")
         self._lines += [f"volume = as_raycast_volume({self._file(path)})"]
         return _Python("(volume.values, volume.affine)")
 
@@ -281,7 +281,7 @@ class _Writer:
         _, others = split_cuts(layer, [other for other in self._scene.state.clips if other.cuts(layer)])
         if clip in others:
             self._needs(clip.shape)
-            self._imports.add("from pvfiblets.plotting.surfaces import cut_surface")
+            self._imports.add("from pvfiblets.plotting.cut_surfaces import cut_surface")
             side = "" if clip.inside else "~"
             region = f"{side}{shape_code(clip.shape, self._file)}"
             self._lines += [f"{name}.mapper.dataset = cut_surface({name}.mapper.dataset, {region})", ""]
@@ -296,7 +296,7 @@ class _Writer:
         if shape["kind"] not in ("mesh", "labels"):
             self._imports.add("from pvfiblets import regions")
         elif shape["kind"] == "mesh" or shape["labels"] is None:
-            self._imports.add("from pvfiblets.plotting.cutting import as_region")
+            self._imports.add("from pvfiblets.plotting.region_sources import as_region")
         else:
             self._imports |= {"import nibabel as nib", "import numpy as np", "from pvfiblets import regions"}
             self._uses_labels = True

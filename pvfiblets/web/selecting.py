@@ -58,7 +58,7 @@ class Selecting:
             ``layer``, ``streamline``, ``point`` (the place along it), ``position`` (mm), ``value``; ``None`` where
             there is none, and then ``"replace"`` selects nothing.
         """
-        from pvfiblets.plotting.picked import visible
+        from pvfiblets.plotting.fiblets.pick_result import visible
 
         at = np.array([[number(x, "x"), number(y, "y")]])
         reach = number(tolerance, "tolerance", 0.0, 64.0)
@@ -90,7 +90,7 @@ class Selecting:
         int
             How many are selected now.
         """
-        from pvfiblets.plotting.picked import checked_box
+        from pvfiblets.plotting.fiblets.pick_result import checked_box
 
         box = numbers([x0, y0, x1, y1], "box", 4)
         return self._area(checked_box(box), mode, through, "select a box")
@@ -265,7 +265,7 @@ class Selecting:
         return [(layer, self.actor(layer.id)) for layer in self.state.layers if layer.kind in LINES and layer.visible]
 
     def _area(self, corners: np.ndarray, mode: str, through: bool, what: str) -> int:
-        from pvfiblets.plotting.picked import everything, visible
+        from pvfiblets.plotting.fiblets.pick_result import everything, visible
 
         find: Any = everything if truth(through, "through") else visible
         found = {}
@@ -302,7 +302,7 @@ class Selecting:
 
 def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[str, Any]:
     """Return the profile of a volume's values; see :meth:`Selecting.profile`."""
-    from pvfiblets.codec.query.profile import mean_profile
+    from pvfiblets.query.profile import mean_profile
 
     part = actor.fiblets.extract(ids)
     mean, std = mean_profile(part, np.arange(len(ids)), sampled(volume, part.decompress().points), n)
@@ -344,7 +344,7 @@ def _rows(layer: Layer, actor: Any, ids: np.ndarray) -> list[dict[str, Any]]:
 
 def _values(actor: Any, ids: np.ndarray) -> tuple[np.ndarray, str | None]:
     """Return a number for each streamline, NaN for none, and what it is of."""
-    from pvfiblets.plotting.picked import point_values
+    from pvfiblets.plotting.fiblets.pick_result import point_values
 
     nothing = np.full(len(ids), np.nan)
     scalars = actor.active_scalars

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from pvfiblets.web.values import mapping, number, numbers, shown, text, whole
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.query.predicates import Predicate
+    from pvfiblets.query.predicates import Predicate
     from pvfiblets.regions import Region
 
     Load = Callable[[str, str], Any]
@@ -130,7 +130,7 @@ def make_region(shape: Mapping[str, Any], load: Load) -> Region:
         If a mesh is open or labels are none.
     """
     from pvfiblets import regions
-    from pvfiblets.plotting.cutting import as_region
+    from pvfiblets.plotting.region_sources import as_region
 
     kind = shape["kind"]
     if kind == "plane":

@@ -72,7 +72,7 @@ class Store:
     def shape(self, kind: str, path: str) -> Any:
         """Return what a region is made of: the region of a mesh, or an image of labels."""
         if (kind, path) not in self.shapes:
-            from pvfiblets.plotting.cutting import as_region
+            from pvfiblets.plotting.region_sources import as_region
 
             data = self.files.load(Source(path), kind).data
             self.shapes[kind, path] = as_region(data) if kind == "mesh" else data

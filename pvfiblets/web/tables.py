@@ -37,13 +37,13 @@ def _radii(data: Any) -> Limits:
 
 def value_names(fiblets: Any) -> list[str]:
     """Names of numbers that fiblets have, per streamline or per point."""
-    from pvfiblets.codec.query.measures import measure_names
+    from pvfiblets.query.measures import measure_names
 
     return [name for name in measure_names(fiblets) if name != "coding_error" or name in fiblets.per_point]
 
 
 def _line_scalars(fiblets: Any) -> Choices:
-    from pvfiblets.plotting.scalars import GROUP, ORIENTATION, UNITS
+    from pvfiblets.plotting.fiblets.scalars import GROUP, ORIENTATION, UNITS
 
     found: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour")]
     colours = [
@@ -56,8 +56,8 @@ def _line_scalars(fiblets: Any) -> Choices:
 
 
 def _tube_scalars(tubes: Any) -> Choices:
-    from pvfiblets.plotting.scalars import UNITS
-    from pvfiblets.plotting.spline_scalars import BUILT_IN
+    from pvfiblets.plotting.fiblets.scalars import UNITS
+    from pvfiblets.plotting.tubes.scalars import BUILT_IN
 
     names = dict.fromkeys([*BUILT_IN, *tubes.values, *tubes.tube_values])
     return [(None, "one colour"), *((name, UNITS.get(name, name)) for name in names)]

@@ -8,7 +8,7 @@
 // Far views (section 3.4.4): a fiblet that takes only a few pixels is drawn as the one segment a b. So is one that no pixel
 // can tell from it: whose capsule is thinner than detail.z pixels, and whose end slips no further. The nearest end decides.
 
-#include "decode/record.glsl"
+#include "fiblets/decode/record.glsl"
 
 struct Capsule { vec3 a; vec3 b; float r; float slip; };
 

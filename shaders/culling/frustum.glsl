@@ -11,8 +11,8 @@
 
 #include "culling/bounds.glsl"
 #include "frame/clip_planes.glsl"
-#include "data/streamline_mask.glsl"
-#include "data/point_mask.glsl"
+#include "fiblets/data/streamline_mask.glsl"
+#include "fiblets/data/point_mask.glsl"
 #if FEATURE_CLIP_REGION
 #include "regions/classify.glsl"
 #endif

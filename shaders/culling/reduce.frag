@@ -1,12 +1,12 @@
 // One level of the depth pyramid (pvfiblets/engine/culling/pyramid.py): the farthest of 2 x 2 depth keys of the level before.
-// In the first level the nearer of fiblets and of other things in the scene hides (FEATURE_OUTSIDE).
+// In the first level the nearer of fiblets and of other things in the scene hides (FEATURE_SCENE_DEPTH).
 //
 // Beyond the picture's edge there is nothing to hide: the nearest of all depths stands there. An empty pixel is the farthest.
 
 #version 430
 
 uniform usampler2D source;
-#if FEATURE_OUTSIDE
+#if FEATURE_SCENE_DEPTH
 uniform usampler2D outside;
 #endif
 uniform ivec2 last;  // pixel of the source
@@ -20,7 +20,7 @@ void main() {
         ivec2 at = first + ivec2(i & 1, i >> 1);
         if (at.x > last.x || at.y > last.y) continue;
         uint here = texelFetch(source, at, 0).x;
-#if FEATURE_OUTSIDE
+#if FEATURE_SCENE_DEPTH
         here = min(here, texelFetch(outside, at, 0).x);
 #endif
         key = max(key, here);

@@ -8,7 +8,7 @@
 #endif
 
 #if FEATURE_CULL_PYRAMID
-#include "culling/guess.glsl"
+#include "culling/visibility_prediction.glsl"
 
 uniform bool second_round;
 uniform usampler2D seen;  // a texel for each fiblet of all chunks

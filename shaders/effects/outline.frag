@@ -1,4 +1,4 @@
-// The outline of what effects/chosen.frag has marked: pixels that are not marked, at most width pixels from one that is.
+// The outline of what effects/selection_mask.frag has marked: pixels that are not marked, at most width pixels from one that is.
 //
 // Out: the nearest key of the marked pixels so near, which is where the outline lies; EMPTY where there is none.
 

@@ -37,7 +37,7 @@ bool clip_touches(vec3 centre, float radius) {
     return false;
 }
 
-// Narrows t to the part of the segment on the kept side of all planes, as clip_segment() of raster/project.glsl does for
+// Narrows t to the part of the segment on the kept side of all planes, as clip_segment() of frame/project.glsl does for
 // the view volume.
 bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
     for (int plane = 0; plane < clip_count(); ++plane) {

@@ -1,4 +1,4 @@
-// Tubes of a radius in millimetres; pvfiblets/engine/tubes.py packs them. Without the feature nothing of this file is left.
+// Tubes of a radius in millimetres; pvfiblets/engine/fiblets/line_tubes.py packs them. Without the feature nothing of this file is left.
 //
 // Symbols
 //   r            radius (mm)

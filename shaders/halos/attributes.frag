@@ -6,7 +6,7 @@
 
 #include "halos/vertices.glsl"
 #include "codec/layout.glsl"
-#include "attributes/tangent.glsl"
+#include "frame/tangent.glsl"
 
 uniform usampler2D hits;
 uniform sampler2D depths;

@@ -1,4 +1,4 @@
-// What all passes over lines and points with halos share; pvfiblets/engine/halos/blocks.py packs it.
+// What all passes over lines and points with halos share; pvfiblets/engine/halos/uniform_blocks.py packs it.
 //
 // Symbols
 //   w_line, w_strip, d_max, f, n_tapered, t_tapered    of Everts et al. 2009, sections 3.2 to 3.4; here mm of the data

@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 
 #include "halos/vertices.glsl"
 #include "culling/squares.glsl"
-#include "compute/groups.glsl"
+#include "frame/groups.glsl"
 
 layout(std430, binding = 0) readonly buffer SeenBits { uint seen[]; };
 layout(std430, binding = 1) writeonly buffer Listed { uint listed[]; };

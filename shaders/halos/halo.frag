@@ -21,7 +21,7 @@
 #include "halos/block.glsl"
 #include "halos/widths.glsl"
 #define HANDED flat in
-#include "halos/handed.glsl"
+#include "halos/varyings.glsl"
 
 layout(location = 0) out uvec2 shown;
 

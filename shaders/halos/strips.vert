@@ -27,7 +27,7 @@
 #include "halos/item.glsl"
 #include "frame/clip_planes.glsl"
 #define HANDED flat out
-#include "halos/handed.glsl"
+#include "halos/varyings.glsl"
 
 #if FEATURE_HALO_FILTER
 uniform samplerBuffer filter_texels;

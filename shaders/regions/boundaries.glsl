@@ -1,5 +1,5 @@
 // Whether a position of the picture lies in the caller's region: by the window depths at which the region begins and ends
-// along each pixel's ray, which pvfiblets/engine/cutting.py draws for a camera.
+// along each pixel's ray, which pvfiblets/engine/regions/ray_intervals.py draws for a camera.
 //
 // This work is based on: Schertzer et al. 2022, section 5.1 and figure 10, which keep one front and one back depth of a
 // mesh, hence cut right by convex ones. Here a pixel has as many as there are.

@@ -12,7 +12,7 @@ uniform int base, count;  // first layer, and how many
 
 out vec2 found;
 
-const int SQUARE = 4;  // as in pvfiblets/engine/surface_layers.py
+const int SQUARE = 4;  // as in pvfiblets/engine/regions/surface_crossings.py
 
 void main() {
     ivec2 low = ivec2(gl_FragCoord.xy) * SQUARE + rectangle.xy, high = min(low + SQUARE, rectangle.zw);

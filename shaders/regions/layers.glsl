@@ -1,4 +1,4 @@
-// Crossings of a pixel's ray with closed surfaces, as pvfiblets/engine/surface_layers.py has drawn them (regions/peel.frag).
+// Crossings of a pixel's ray with closed surfaces, as pvfiblets/engine/regions/surface_crossings.py has drawn them (regions/peel.frag).
 //
 // Symbols
 //   layer j      of a surface: its outermost crossings but for those of the layers before; even layers lie in one texture

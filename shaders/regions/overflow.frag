@@ -8,7 +8,7 @@ uniform int last;         // layer
 
 out vec2 found;
 
-const int SQUARE = 4;  // as in pvfiblets/engine/surface_layers.py
+const int SQUARE = 4;  // as in pvfiblets/engine/regions/surface_crossings.py
 const float OVERFLOW = -9.0;
 
 void main() {

@@ -1,4 +1,4 @@
-// Layers: what lies behind the nearest line shows through it (pvfiblets/engine/layers.py).
+// Layers: what lies behind the nearest line shows through it (pvfiblets/engine/fiblets/depth_peeling.py).
 //
 // VTK's geometry holds two triangles for each layer. The first are drawn first, and are the farthest: blended in this order
 // by a translucent actor every layer has its own colour, light and depth. With depth peeling VTK sorts them itself, among

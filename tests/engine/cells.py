@@ -1,4 +1,4 @@
-"""The pixels of thin lines (``shaders/raster/cells.glsl``), in integers and float64, without a line of the engine's."""
+"""The pixels of thin lines (``fiblets/raster/cells.glsl``), in integers and float64, without a line of the engine's."""
 
 from __future__ import annotations
 

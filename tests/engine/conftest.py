@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvfiblets.report.stability import seen
+from pvfiblets.report.stability import render_checks
 
 _spec = importlib.util.spec_from_file_location("fabricate", Path(__file__).with_name("fabricate.py"))
 _module = importlib.util.module_from_spec(_spec)
@@ -41,4 +41,4 @@ def random_lines():
 @pytest.fixture(scope="session")
 def camera():
     """Return a maker of model-view-projection matrices, perspective or parallel: that of the study of extreme cases."""
-    return seen.camera
+    return render_checks.camera

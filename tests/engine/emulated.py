@@ -1,8 +1,8 @@
 """The mesh pipelines on OpenGL without mesh shaders: their stages as compute shaders that write to buffers.
 
-Task and mesh stage run with the very includes that the real ones are made of; ``mesh/outputs.glsl`` alone, a page of
-assignments to built-in arrays, gives way to writes into a buffer. A vertex stage then hands vertices, primitive by
-primitive, to the rasteriser and the pipeline's own fragment stage.
+Task and mesh stage run with the very includes that the real ones are made of; ``fiblets/mesh/outputs.glsl`` alone, a
+page of assignments to built-in arrays, gives way to writes into a buffer. A vertex stage then hands vertices,
+primitive by primitive, to the rasteriser and the pipeline's own fragment stage.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from pvfiblets.engine.pipelines import CONSTANTS
-from pvfiblets.engine.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.pipelines.raster import FIRST_ROUND_UNIT
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
+from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
+from pvfiblets.engine.fiblets.pipelines.raster import FIRST_ROUND_UNIT
 from pvfiblets.engine.shaders import assemble
 
 TASK_WORDS, VERTICES, INDICES, HANDED, MOST = 16, 480, 180, 24, 60
@@ -22,8 +22,8 @@ SHARES = {False: 1, True: 4}
 TASK = """
 #version 430
 layout(local_size_x = {{ mesh_threads }}) in;
-#include "mesh/cull.glsl"
-#include "mesh/shares.glsl"
+#include "fiblets/mesh/cull.glsl"
+#include "fiblets/mesh/shares.glsl"
 layout(std430, binding = 8) writeonly buffer Tasks { uint tasks[]; };
 void main() {
     Survivors survivors;
@@ -43,14 +43,14 @@ const uint MESH_WORDS = 2104u, INDICES = 480u, HANDED_AT = 660u, COUNT = 2100u;
 MESH = """
 #version 430
 layout(local_size_x = THREADS_OF) in;
-#include "mesh/survivors.glsl"
-#include "mesh/segment.glsl"
+#include "fiblets/mesh/survivors.glsl"
+#include "fiblets/mesh/segment.glsl"
 layout(std430, binding = 8) readonly buffer Tasks { uint tasks[]; };
 layout(std430, binding = 9) writeonly buffer Meshes { uint meshes[]; };
 LAYOUT
 #define HANDED
 #define TO(name) name
-#include "raster/hand_over.glsl"
+#include "fiblets/raster/write_varyings.glsl"
 uint mesh;
 void put_vertex(uint vertex, vec4 at) {
     for (uint a = 0u; a < 4u; ++a) meshes[mesh + 4u * vertex + a] = floatBitsToUint(at[a]);
@@ -98,9 +98,9 @@ void main() {
 
 VERTEX = """
 #version 430
-#include "raster/piece.glsl"
+#include "fiblets/raster/clipped_segment.glsl"
 #define HANDED flat out
-#include "raster/handed.glsl"
+#include "fiblets/raster/varyings.glsl"
 layout(std430, binding = 9) readonly buffer Meshes { uint meshes[]; };
 LAYOUT
 float value(uint at) { return uintBitsToFloat(meshes[at]); }
@@ -171,7 +171,7 @@ class EmulatedMesh(MeshPipeline):
         if key not in self.kept:
             stage, threads = ("serial", "1") if serial else ("together", "{{ mesh_threads }}")
             mesh = MESH.replace("LAYOUT", LAYOUT).replace("STAGE", stage).replace("THREADS_OF", threads)
-            fragment = "raster/capsule.frag" if job.wide else "raster/line.frag"
+            fragment = "fiblets/raster/capsule.frag" if job.wide else "fiblets/raster/line.frag"
             program = self._ctx.program(
                 vertex_shader=assemble("vertex", every, CONSTANTS, source=VERTEX.replace("LAYOUT", LAYOUT)),
                 fragment_shader=assemble(fragment, every, CONSTANTS),
@@ -223,7 +223,8 @@ class EmulatedMesh(MeshPipeline):
 
 def emulated_renderer(monkeypatch, gl, fiblets, *, serial=False, **options):
     """Return a FibletRenderer that draws with an :class:`EmulatedMesh`."""
-    from pvfiblets.engine import FibletRenderer, renderer
+    from pvfiblets.engine import FibletRenderer
+    from pvfiblets.engine.fiblets import renderer
 
     def make(name, ctx, opengl, programs, n_fiblets, n_chunks, limits):
         return EmulatedMesh(ctx, opengl, programs, n_fiblets, serial=serial)

@@ -1,4 +1,4 @@
-"""What a picture's passes told each other about fiblets (``shaders/compute/marks.glsl``), read back afterwards."""
+"""What a picture's passes tell each other about fiblets (``fiblets/compute/visibility_bits.glsl``), read back."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
 CLASSES = 4
@@ -14,12 +14,12 @@ CLASSES = 4
 
 def column(name):
     """Number of a word of ``marks.glsl`` by its name there."""
-    return int(re.search(rf"\b{name} = (\d+)u", assemble("compute/clear.comp", (), CONSTANTS))[1])
+    return int(re.search(rf"\b{name} = (\d+)u", assemble("fiblets/compute/clear.comp", (), CONSTANTS))[1])
 
 
 def marks(renderer):
     """(n, words) of each 32 fiblets."""
-    buffer = renderer._pipeline.buffers["marks"]
+    buffer = renderer._pipeline.buffers["visibility_bits"]
     words = CONSTANTS["mark_words"]
     count = -(-renderer._fiblets.n_fiblets // 32)
     return np.frombuffer(buffer.read(4 * words * count), "<u4").reshape(count, words)

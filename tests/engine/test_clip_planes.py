@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.pipelines import CONSTANTS
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
 from .gl_lines import gl_lines
@@ -277,13 +277,13 @@ def compiled(source, features):
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("stage", ["clear", "cull", "depth", "own", "settle", "occlude", "refine"])
+@pytest.mark.parametrize("stage", ["clear", "cull", "depth", "resolve_owner", "resolve_ties", "occlude", "refine"])
 def test_without_planes_no_word_of_them_is_compiled(stage):
     words = re.compile(r"clip_planes|ClipPlanes|clip_height|clip_tilts|clip_info|brush_kept")
     for features in (["DIRECTION"], ["WIDE_LINES"], ["CLIPPING", "CLIPPING_DEPTH"]):
-        body = compiled(assemble(f"compute/{stage}.comp", features, CONSTANTS), features)
+        body = compiled(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features)
         assert "void main()" in body
         assert not words.search(body)
     features = ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES"]
-    body = compiled(assemble(f"compute/{stage}.comp", features, CONSTANTS), features)
-    assert bool(words.search(body)) == (stage in ("cull", "depth", "own", "settle"))
+    body = compiled(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features)
+    assert bool(words.search(body)) == (stage in ("cull", "depth", "resolve_owner", "resolve_ties"))

@@ -14,11 +14,11 @@ import pytest
 from pvfiblets import synthetic
 from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.chunks import storage_buffer
 from pvfiblets.engine.culling.coverage import CoverageBuffer, dilation_radius
+from pvfiblets.engine.fiblets.chunks import storage_buffer
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +31,7 @@ HIDDEN = """
 #version 430
 layout(local_size_x = 64) in;
 #include "culling/occlusion.glsl"
-#include "compute/groups.glsl"
+#include "frame/groups.glsl"
 layout(std430, binding = 5) buffer Out { uint bits[]; };
 void main() {
     uint f = group_index() * 64u + gl_LocalInvocationIndex;

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets import regions
 from pvfiblets.engine import Style, View
-from pvfiblets.engine.cut_planes import planes_of
+from pvfiblets.engine.regions.clip_planes import planes_of
 
 from .pictures import SIZE, draw, near
 

@@ -10,14 +10,14 @@ import pytest
 
 from pvfiblets.codec import layout, reference
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.chunks import storage_buffer
+from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.shaders import assemble
 
 SEQUENTIAL = """
 #version 430
 layout(local_size_x = 64) in;
-#include "compute/groups.glsl"
-#include "decode/sequential.glsl"
+#include "frame/groups.glsl"
+#include "fiblets/decode/sequential.glsl"
 layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void put(uint f, uint i) { for (int a = 0; a < 3; ++a) points[(f * 64u + i) * 3u + a] = walk_point[a]; }
 void main() {
@@ -31,8 +31,8 @@ void main() {
 PARALLEL = """
 #version 430
 layout(local_size_x = 32) in;
-#include "compute/groups.glsl"
-#include "decode/parallel.glsl"
+#include "frame/groups.glsl"
+#include "fiblets/decode/parallel.glsl"
 layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void main() {
     uint f = group_index();

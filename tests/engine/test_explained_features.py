@@ -10,15 +10,15 @@ import pytest
 
 from pvfiblets import compress, regions
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.filtering import Filter
+from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.halos import HaloRenderer, HaloStyle
-from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, switched_on
-from pvfiblets.engine.splines import SplineRenderer
+from pvfiblets.engine.tubes import TubeRenderer
 from pvfiblets.halos import Look
 from pvfiblets.halos.build import as_halo_lines
-from pvfiblets.splines import as_spline_tubes
 from pvfiblets.synthetic import brain_streamlines
+from pvfiblets.tubes import as_spline_tubes
 
 SIZE = (160, 120)
 ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
@@ -123,7 +123,7 @@ def test_of_layers_and_filters(gl, fiblets, camera, ran):
 @pytest.mark.parametrize("count", [20, 300], ids=["whole", "listed"])
 @pytest.mark.parametrize("planes", [(), [(1.0, 0.0, 0.0, 0.0)]], ids=["uncut", "cut"])
 def test_of_spline_tubes(gl, camera, ran, count, planes):
-    renderer = SplineRenderer(gl, as_spline_tubes(brain_streamlines(count, step=1.0, seed=2), radius=0.8))
+    renderer = TubeRenderer(gl, as_spline_tubes(brain_streamlines(count, step=1.0, seed=2), radius=0.8))
 
     def draw(turn):
         renderer.render(View(SIZE, camera(SIZE, eye=(3.0 * turn, -260, 60)), planes))
@@ -132,8 +132,8 @@ def test_of_spline_tubes(gl, camera, ran, count, planes):
         seen = told(renderer, ran, draw)
     finally:
         renderer.release()
-    assert {"TUBES", "SPLINE_ILLINOIS"} <= seen
-    assert ("SPLINE_LISTED" in seen) == (count == 300)
+    assert {"TUBES", "TUBE_ILLINOIS"} <= seen
+    assert ("TUBE_LISTED" in seen) == (count == 300)
     assert ("CLIP_PLANES" in seen) == bool(planes)
 
 
@@ -159,13 +159,13 @@ def test_programs_note_what_their_text_says(gl):
     programs = Programs(gl, CONSTANTS)
     try:
         with programs.noting() as outer:
-            programs.compute("compute/clear.comp", ["TUBES"])  # no stage of which looks at it
+            programs.compute("fiblets/compute/clear.comp", ["TUBES"])  # no stage of which looks at it
             with programs.noting() as inner:
-                programs.compute("compute/cull.comp", ["CLIP_PLANES", "DIRECTION"])
+                programs.compute("fiblets/compute/cull.comp", ["CLIP_PLANES", "DIRECTION"])
             programs.note(["PEEL"])
-        programs.compute("compute/cull.comp", ["TUBES"])
+        programs.compute("fiblets/compute/cull.comp", ["TUBES"])
         with programs.noting() as again:
-            programs.compute("compute/cull.comp", ["CLIP_PLANES", "DIRECTION"])
+            programs.compute("fiblets/compute/cull.comp", ["CLIP_PLANES", "DIRECTION"])
     finally:
         programs.release()
     assert inner == {"CLIP_PLANES"}, "to cull, nothing is decoded"

@@ -15,9 +15,9 @@ import pytest
 
 from pvfiblets.engine import Style, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.frame import frame_block
 from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.engine.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import Programs, assemble
 
 from .cells import line_cells

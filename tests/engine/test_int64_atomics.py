@@ -17,8 +17,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from pvfiblets.engine.pipelines import CONSTANTS
-from pvfiblets.engine.pipelines.compute import _has_int64_atomics
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
+from pvfiblets.engine.fiblets.pipelines.compute import _has_int64_atomics
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -42,7 +42,7 @@ def test_shaders_compile(tmp_path, stage, drawn, records):
     if tool is None:
         pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
     features = ["INT64_ATOMICS", *DRAWN[drawn], *RECORDS[records]]
-    source = assemble(f"compute/{stage}.comp", features, CONSTANTS, version=EXTENDED)
+    source = assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS, version=EXTENDED)
     path = tmp_path / "stage.comp"
     path.write_text(source)
     done = subprocess.run([tool, path], capture_output=True, text=True, check=False)
@@ -73,7 +73,7 @@ import moderngl
 import numpy as np
 from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, Style, View, shaders
-from pvfiblets.engine.pipelines import compute
+from pvfiblets.engine.fiblets.pipelines import compute
 
 ctx = moderngl.create_context(standalone=True, backend="egl")
 if "GL_ARB_gpu_shader_int64" not in ctx.extensions:
@@ -144,10 +144,10 @@ def test_pictures_are_the_same_bit_by_bit(tmp_path):
     assert done.returncode == 0, done.stderr[-4000:]
     lines = done.stdout.splitlines()
     for plain, words in zip(lines[0::4], lines[2::4], strict=True):
-        assert "settle" in plain
+        assert "resolve_ties" in plain
         assert "owners" not in plain
         assert "owners" in words
-        assert "settle" not in words
+        assert "resolve_ties" not in words
     assert "split" in lines[6]
     assert lines[1] == "None"
     assert lines[3] == str(8 * 200 * 150)

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec import layout
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, passes, shaders, upload
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View, passes, shaders
 from pvfiblets.engine.capabilities import pipelines
-from pvfiblets.engine.chunks import plan_chunks, storage_buffer
-from pvfiblets.engine.pipelines import CONSTANTS, limits
-from pvfiblets.engine.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
+from pvfiblets.engine.fiblets import upload
+from pvfiblets.engine.fiblets.chunks import plan_chunks, storage_buffer
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
+from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
 from pvfiblets.engine.shaders import assemble
 
 from .pictures import SIZE, assert_same, draw, read
@@ -95,13 +96,15 @@ def test_codes_of_values_are_found_beyond_as_many_bits_as_a_number_has(gl, monke
     """The word and the place in it of point 2^32 / bits and of others, in a chunk of 2^31 points."""
     stub = "uint asked;\nuint value_word(uint index) { asked = index; return 0x76543210u; }\n"
     honest = shaders.read_shader
-    monkeypatch.setattr(shaders, "read_shader", lambda name: stub if name == "data/values.glsl" else honest(name))
+    monkeypatch.setattr(
+        shaders, "read_shader", lambda name: stub if name == "fiblets/data/values.glsl" else honest(name)
+    )
     source = """
     #version 430
     layout(local_size_x = 1) in;
-    #include "decode/sequential.glsl"
-    #include "attributes/place.glsl"
-    #include "attributes/values.glsl"
+    #include "fiblets/decode/sequential.glsl"
+    #include "fiblets/attributes/place.glsl"
+    #include "fiblets/attributes/values.glsl"
     layout(std430, binding = 5) buffer Out { uint found[]; };
     uniform uint first;
     void main() {
@@ -139,7 +142,7 @@ def test_more_groups_than_an_axis_has_are_folded(gl):
     source = """
     #version 430
     layout(local_size_x = 1) in;
-    #include "compute/groups.glsl"
+    #include "frame/groups.glsl"
     layout(std430, binding = 5) buffer Out { uint found[]; };
     void main() { atomicAdd(found[group_index()], 1u); }
     """.replace("\n    ", "\n")
@@ -160,7 +163,7 @@ def test_more_groups_than_an_axis_has_are_folded(gl):
 
 def indirect(made):
     """(n, 4) arguments of all indirect dispatches: groups along x, y and z, length of the list."""
-    buffer = made._pipeline.buffers["marks"]
+    buffer = made._pipeline.buffers["visibility_bits"]
     size = ROUNDS * len(made._chunks) * CLASSES * ARGUMENT_BYTES
     return np.frombuffer(buffer.read(size, offset=4 * made._pipeline._argument_base), "<u4").reshape(-1, 4)
 

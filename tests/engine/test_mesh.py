@@ -15,8 +15,8 @@ import pytest
 
 from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, Style, View
-from pvfiblets.engine.pipelines import CONSTANTS
-from pvfiblets.engine.pipelines.mesh import TASK_FIBLETS, MeshPipeline
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS
+from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
 from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
 
 from .cells import SHIFT_256
@@ -56,9 +56,9 @@ def stages(kind, features):
     """Sources by glslang's names of the stages."""
     wide = "WIDE_LINES" in features
     files = {
-        "task": "mesh/fiblets.task",
-        "mesh": f"mesh/{kind}.mesh",
-        "frag": "raster/capsule.frag" if wide else "raster/line.frag",
+        "task": "fiblets/mesh/fiblets.task",
+        "mesh": f"fiblets/mesh/{kind}.mesh",
+        "frag": "fiblets/raster/capsule.frag" if wide else "fiblets/raster/line.frag",
     }
     every = {*features, "PER_PRIMITIVE"}
     return {stage: assemble(name, every, CONSTANTS, version=EXTENDED) for stage, name in files.items()}
@@ -110,7 +110,7 @@ def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     """256 vertices, 512 primitives, 16 KiB of outputs and shared memory; as many as the shares need."""
     features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "VALUES_ARC_LENGTH", *DRAWN[drawn]]
     source = tmp_path / "stage.mesh"
-    source.write_text(assemble(f"mesh/{kind}.mesh", features, CONSTANTS))
+    source.write_text(assemble(f"fiblets/mesh/{kind}.mesh", features, CONSTANTS))
     text = subprocess.run([glslang(), "-E", source], capture_output=True, text=True, check=True).stdout
     vertices, primitives = (int(re.search(rf"max_{what} = (\d+)", text)[1]) for what in ("vertices", "primitives"))
     share, shares = (int(n) for n in re.search(r"SHARE = (\d+)u, SHARES = (\d+)u", text).groups())
@@ -362,6 +362,6 @@ def test_calls_are_as_long_as_the_driver_allows():
 
 def test_emulation_replaces_one_page_only():
     """What the tests above do not run is this: assignments, without a decision."""
-    source = read_shader("mesh/outputs.glsl")
+    source = read_shader("fiblets/mesh/outputs.glsl")
     for word in ("if", "for", "?"):
         assert not re.search(rf"(?m)^[^/\n]*(?<!\w){re.escape(word)}(?!\w)", source.replace("#if", ""))

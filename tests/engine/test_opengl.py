@@ -228,7 +228,7 @@ def test_a_missing_function_is_named(gl, monkeypatch):
 
 
 def test_without_a_context_nothing_is_looked_up():
-    code = "from pvfiblets.engine.loader import loader; loader()"
+    code = "from pvfiblets.engine.gl_loader import loader; loader()"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert result.returncode == 1
     assert "EngineError: no OpenGL context is current; make it so" in result.stderr

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, measures
+from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine.fiblets import measures
+from pvfiblets.engine.fiblets.pipelines.limits import Limits
+from pvfiblets.engine.fiblets.pipelines.raster import RasterTarget, SeenTexture
 from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.engine.pipelines.limits import Limits
-from pvfiblets.engine.pipelines.raster import RasterTarget, SeenTexture
 from pvfiblets.synthetic import brain_streamlines
 
 from .likeness import assert_like
@@ -176,14 +177,20 @@ def test_two_phase_culling_changes_no_bit(gl, fabricate, random_lines, camera, w
     for number, view in enumerate(jumps(camera)):
         picture, expected = read(culled.render(view, style)), read(whole.render(view, style))
         assert not differences(picture, expected), f"picture {number}"
-    assert [p["name"] for p in culled.explain()["passes"]][-5:] == ["clear", "seen", "pyramid", "draw", "marks"]
+    assert [p["name"] for p in culled.explain()["passes"]][-5:] == [
+        "clear",
+        "visible",
+        "pyramid",
+        "draw",
+        "visibility_bits",
+    ]
     assert [p["name"] for p in whole.explain()["passes"]] == ["clear", "draw"]
     held = [{b["name"]: b["bytes"] for b in renderer.explain()["buffers"]} for renderer in (culled, whole)]
     pixels = SIZE[0] * SIZE[1]
     assert held[0]["depth"] == 16 * pixels
-    assert held[0]["marks"] == 1024 * -(-fiblets.n_fiblets // 1024)
+    assert held[0]["visibility_bits"] == 1024 * -(-fiblets.n_fiblets // 1024)
     assert held[1]["depth"] == 4 * pixels
-    assert "marks" not in held[1]
+    assert "visibility_bits" not in held[1]
     for renderer in (culled, whole):
         renderer.release()
 
@@ -236,7 +243,7 @@ def test_coverage_culling_keeps_a_still_picture(gl, camera, pipeline):
 def test_the_number_of_draws_does_not_follow_the_data(gl, fabricate, random_lines, camera, pipeline, monkeypatch):
     calls, render = [], moderngl.VertexArray.render
     monkeypatch.setattr(moderngl.VertexArray, "render", lambda *a, **k: (calls.append(k), render(*a, **k)))
-    monkeypatch.setattr("pvfiblets.engine.pipelines.textured.is_software", lambda ctx: False)
+    monkeypatch.setattr("pvfiblets.engine.fiblets.pipelines.textured.is_software", lambda ctx: False)
     counts = []
     for n in (3, 90):
         calls.clear()

@@ -10,21 +10,22 @@ from types import SimpleNamespace
 
 import pytest
 
-from pvfiblets.engine import pipelines
+from pvfiblets.engine.fiblets import pipelines
 from pvfiblets.engine.shaders import Programs, assemble, read_shader
 
 STAGES = {
-    "geometry": ("raster/survivors.vert", None, None, "geometry/lines.geom", "raster/line.frag"),
-    "geometry, wide": ("raster/survivors.vert", None, None, "geometry/capsules.geom", "raster/capsule.frag"),
-    "tessellation": (
-        "raster/survivors.vert", "tessellation/decode.tesc", "tessellation/lines.tese", None, "raster/line.frag",
+    "geometry": ("fiblets/raster/survivors.vert", None, None, "fiblets/geometry/lines.geom",
+    "fiblets/raster/line.frag"), "geometry, wide": ("fiblets/raster/survivors.vert", None, None,
+    "fiblets/geometry/capsules.geom", "fiblets/raster/capsule.frag"), "tessellation": (
+        "fiblets/raster/survivors.vert", "fiblets/tessellation/decode.tesc", "fiblets/tessellation/lines.tese", None,
+        "fiblets/raster/line.frag",
     ),
     "tessellation, wide": (
-        "raster/survivors.vert", "tessellation/decode.tesc", "tessellation/capsules.tese",
-        "tessellation/capsules.geom", "raster/capsule.frag",
+        "fiblets/raster/survivors.vert", "fiblets/tessellation/decode.tesc", "fiblets/tessellation/capsules.tese",
+        "fiblets/tessellation/capsules.geom", "fiblets/raster/capsule.frag",
     ),
-    "marks": ("raster/seen.vert", None, None, None, "raster/seen.frag"),
-    "between": ("screen/triangle.vert", None, None, None, "raster/between.frag"),
+    "visibility_bits": ("fiblets/raster/visible.vert", None, None, None, "fiblets/raster/visible.frag"),
+    "between": ("screen/triangle.vert", None, None, None, "fiblets/raster/between.frag"),
 }  # fmt: skip
 
 
@@ -93,10 +94,11 @@ def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, w
     features = {*values, *clipping, *(("WIDE_LINES",) if wide else ())}
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
     declared = [
-        re.match(r"HANDED (\w+) handed", line) for line in switched(read_shader("raster/handed.glsl"), features)
+        re.match(r"HANDED (\w+) handed", line)
+        for line in switched(read_shader("fiblets/raster/varyings.glsl"), features)
     ]
     components = 4 + sum(sizes[match[1]] for match in declared if match)
-    geometry = "\n".join(switched(read_shader(f"geometry/{'capsules' if wide else 'lines'}.geom"), features))
+    geometry = "\n".join(switched(read_shader(f"fiblets/geometry/{'capsules' if wide else 'lines'}.geom"), features))
     vertices = pipelines.CONSTANTS[re.search(r"max_vertices = \{\{ (\w+) \}\}", geometry)[1]]
     share = pipelines.CONSTANTS[re.search(r"SHARE = \{\{ (\w+) \}\}", geometry)[1]]
     assert components > 10

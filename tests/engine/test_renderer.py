@@ -9,7 +9,7 @@ from pvfiblets.engine import EngineError, FibletRenderer, Style, View, gbuffer, 
 
 from .pictures import SIZE, assert_same, draw, read
 
-PASSES = ["clear", "cull", "seen", "pyramid", "occlusion", "refine", "depth", "own", "settle"]
+PASSES = ["clear", "cull", "visible", "pyramid", "occlusion", "refine", "depth", "resolve_owner", "resolve_ties"]
 LATER_PASSES = ["last picture", *PASSES[:3], "guessed", *PASSES[3:]]
 
 
@@ -76,7 +76,7 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     assert [p["name"] for p in plain["passes"]] == LATER_PASSES
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}
-    assert {"anchors", "bounds", "decoding", "codes", "pages", "rotations", "marks", "occlusion"} <= names
+    assert {"anchors", "bounds", "decoding", "codes", "pages", "rotations", "visibility_bits", "occlusion"} <= names
     renderer.render(View(SIZE, camera(SIZE)), Style(2.0, "curvature", 0.0))
     rich = renderer.explain()
     assert set(rich["features"]) == {

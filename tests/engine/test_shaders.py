@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from pvfiblets.engine import EngineError
-from pvfiblets.engine.halos.blocks import CONSTANTS as OF_HALOS
-from pvfiblets.engine.pipelines import CONSTANTS as OF_PIPELINES
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
+from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
 from pvfiblets.engine.shaders import FEATURES, Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,7 +39,7 @@ COMPUTE = [p for p in SOURCES if p.suffix == ".comp" and p.stem != "split"]
 
 NAMES = [p.relative_to(ROOT / "shaders").as_posix() for p in COMPUTE]
 CONSTANTS = {**OF_HALOS, **OF_PIPELINES}
-ALWAYS = {"splines/cull.comp": ("TUBES",)}  # rays are what it is about
+ALWAYS = {"tubes/cull.comp": ("TUBES",)}  # rays are what it is about
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -53,13 +53,13 @@ def test_every_program_compiles(gl, name, features):
 
 
 def test_unused_features_leave_no_code():
-    source = assemble("compute/cull.comp", (), CONSTANTS)
+    source = assemble("fiblets/compute/cull.comp", (), CONSTANTS)
     assert "WIDE_LINES" not in source
     assert "#define FEATURE_ANCHORS_LOW 0" in source
 
 
 def test_a_file_is_pasted_once():
-    source = assemble("compute/own.comp", (), CONSTANTS)
+    source = assemble("fiblets/compute/resolve_owner.comp", (), CONSTANTS)
     assert source.count("buffer Anchors {") == 1
     assert source.startswith("#version 430\n")
 

@@ -116,7 +116,7 @@ def _values(path: Path) -> None:
 
 
 def _volume(path: Path) -> None:
-    from pvfiblets.raycast import as_raycast_volume
+    from pvfiblets.volumes import as_raycast_volume
 
     volume = as_raycast_volume(path)
     assert volume.values.ndim == 3

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.halos import Look
 from pvfiblets.halos.displacement import as_displacement, displaced
-from pvfiblets.halos.look import DISPLACEMENTS, TABLE_SIZE
+from pvfiblets.halos.style import DISPLACEMENTS, TABLE_SIZE
 
 X = np.linspace(0, 1, 1001)
 

@@ -44,42 +44,50 @@ CHANGED = {
         features="WIDE_LINES",
     ),
     "wide lines, shaded": What(
-        features="ACROSS, WIDE_LINES",
+        features="CROSS_LINE, WIDE_LINES",
         resolve="tube_shading",
     ),
     "tubes": What(
         ran="""
-            -compute/arguments.comp, -compute/clear.comp, -compute/cull.comp, -compute/depth.comp,
-            -compute/occlude.comp, -compute/own.comp, -compute/plan.comp, -compute/refine.comp,
-            -compute/settle.comp, geometry/capsules.geom, raster/between.frag, raster/capsule.frag,
-            raster/seen.frag, raster/seen.vert, raster/survivors.vert
+            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+            -fiblets/compute/depth.comp,
+            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
+            -fiblets/compute/refine.comp,
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
+            fiblets/raster/capsule.frag,
+            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, ACROSS, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+        features="-CLIPPING_DEPTH, -ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal",
-        passes="-cull, -depth, -guessed, -occlusion, -own, -refine, -settle, draw, marks",
-        buffers="depth of tubes, marks of tubes, tubes",
+        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        buffers="depth of tubes, visibility_bits of tubes, tubes",
         modules="""
-            engine.depth_texture, engine.pipelines.geometry, engine.pipelines.raster, engine.pipelines.textured
+            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
+            engine.fiblets.pipelines.textured
         """,
     ),
     "tubes, shaded": What(
         ran="""
-            -compute/arguments.comp, -compute/clear.comp, -compute/cull.comp, -compute/depth.comp,
-            -compute/occlude.comp, -compute/own.comp, -compute/plan.comp, -compute/refine.comp,
-            -compute/settle.comp, geometry/capsules.geom, raster/between.frag, raster/capsule.frag,
-            raster/seen.frag, raster/seen.vert, raster/survivors.vert
+            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+            -fiblets/compute/depth.comp,
+            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
+            -fiblets/compute/refine.comp,
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
+            fiblets/raster/capsule.frag,
+            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, ACROSS, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+        features="-CLIPPING_DEPTH, -ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal, tube_shading",
-        passes="-cull, -depth, -guessed, -occlusion, -own, -refine, -settle, draw, marks",
-        buffers="depth of tubes, fibletAcrossMap (blank), marks of tubes, tubes",
+        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
         modules="""
-            engine.depth_texture, engine.pipelines.geometry, engine.pipelines.raster, engine.pipelines.textured
+            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
+            engine.fiblets.pipelines.textured
         """,
     ),
     "opacity": What(),
     "layers": What(
-        ran="layers/copy.frag",
+        ran="fiblets/layers/copy.frag",
         features="PEEL",
         resolve="layers, layers_covered",
         buffers="across (no layer), layers, normal (no layer)",
@@ -118,7 +126,7 @@ CHANGED = {
     "clip: plane": What(
         features="CLIP_PLANES",
         buffers="clip_planes",
-        modules="codec.query.shapes, engine.cut_planes, regions",
+        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
     ),
     "clip: planes of VTK": What(
         features="CLIP_PLANES",
@@ -127,15 +135,16 @@ CHANGED = {
     "clip: box": What(
         features="CLIP_PLANES",
         buffers="clip_planes",
-        modules="codec.query.shapes, engine.cut_planes, regions",
+        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
     ),
     "clip: plane and ball": What(
         ran="regions/combine.frag",
         features="CLIP_PLANES, CLIP_REGION",
         buffers="clip_planes, region, region shapes",
         modules="""
-            codec.query.shapes, engine.cut_planes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
-            engine.surface_layers, regions
+            engine.regions, engine.regions.clip_planes, engine.regions.convex_rays, engine.regions.layer_stack,
+            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
+            query.shapes, regions
         """,
     ),
     "clip: outside a box": What(
@@ -143,8 +152,9 @@ CHANGED = {
         features="CLIP_REGION",
         buffers="region, region shapes",
         modules="""
-            codec.query.shapes, engine.cut_planes, engine.cutting, engine.layer_stack, engine.rays, engine.regions,
-            engine.surface_layers, regions
+            engine.regions, engine.regions.clip_planes, engine.regions.convex_rays, engine.regions.layer_stack,
+            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
+            query.shapes, regions
         """,
     ),
     "clip: mesh": What(
@@ -153,9 +163,10 @@ CHANGED = {
         buffers="region, region shapes",
         packages="numba",
         modules="""
-            codec.jit, codec.query.field_kernels, codec.query.fields, codec.query.shapes,
-            codec.query.surface_kernels, codec.query.surfaces, engine.cut_planes, engine.cutting,
-            engine.layer_stack, engine.rays, engine.regions, engine.surface_layers, regions
+            engine.regions, codec.jit, engine.regions.clip_planes, engine.regions.convex_rays,
+            engine.regions.layer_stack,
+            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
+            query.field_kernels, query.fields, query.shapes, query.surface_kernels, query.surfaces, regions
         """,
     ),
     "criterion: per streamline": What(
@@ -164,23 +175,23 @@ CHANGED = {
         packages="numba",
         modules="""
             codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest,
-            codec.query.measure_kernels
+            query.measure_kernels
         """,
     ),
     "criterion: per point": What(
         features="POINT_MASK",
         buffers="filter",
         packages="numba",
-        modules="codec.jit, codec.query.bit_kernels",
+        modules="codec.jit, query.bit_kernels",
     ),
     "include": What(
         features="STREAMLINE_MASK",
         buffers="filter, query",
         packages="numba",
         modules="""
-            codec.capsule_kernels, codec.jit, codec.query.classify, codec.query.endpoints, codec.query.passing,
-            codec.query.passing_kernels, codec.query.shape_kernels, codec.query.shapes, engine.querying,
-            engine.regions, regions
+            engine.regions, codec.capsule_kernels, codec.jit, engine.fiblets.region_query, engine.regions.uniform_block,
+            query.classify, query.endpoints, query.passing, query.passing_kernels, query.shape_kernels,
+            query.shapes, regions
         """,
     ),
     "selection": What(
@@ -188,33 +199,31 @@ CHANGED = {
         buffers="fibletChosenMap",
     ),
     "selection as tubes": What(
-        ran="screen/near.vert, splines/attributes.frag, splines/rectangles.vert, splines/tube.frag",
-        features="SPLINE_ILLINOIS, TUBES",
+        ran="screen/near.vert, tubes/attributes.frag, tubes/rectangles.vert, tubes/tube.frag",
+        features="TUBE_ILLINOIS, TUBES",
         resolve="highlight",
         buffers="fibletChosenMap",
         packages="numba",
         modules="""
             codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest,
-            engine.culling.listing, engine.depth_texture, engine.hit_target, engine.lattice, engine.pulling,
-            engine.splines, engine.splines.blocks, engine.splines.choices, engine.splines.inside,
-            engine.splines.nodes, engine.splines.renderer, engine.splines.silhouettes, mappers.splines,
-            plotting.standout, splines, splines.build, splines.curves, splines.sources, splines.tangents,
-            splines.tubes
+            engine.culling.listing, engine.depth_texture, engine.hit_target, engine.lattice, engine.tubes,
+            engine.tubes.eye_inside, engine.tubes.nodes, engine.tubes.options, engine.tubes.proxy_geometry,
+            engine.tubes.renderer, engine.tubes.uniform_blocks, engine.vertex_pulling, lines, mappers.tubes,
+            plotting.fiblets.selection_overlay, tubes, tubes.build, tubes.curves, tubes.spline_tubes, tubes.tangents
         """,
     ),
     "selection outlined": What(
-        ran="effects/chosen.frag, effects/outline.frag",
+        ran="effects/selection_mask.frag, effects/outline.frag",
         resolve="highlight, silhouette",
-        passes="chosen (effect), outline (effect)",
+        passes="selection_mask (effect), outline (effect)",
         buffers="chosen pixels (effect), chosen streamlines (effect), fibletChosenMap, outline (effect)",
         modules="""
-            engine.effects, engine.effects.halos, engine.effects.lens, engine.effects.outline,
-            engine.effects.screen
+            engine.effects, engine.effects.halos, engine.effects.lens, engine.effects.outline, engine.effects.screen
         """,
     ),
     "picking": What(),
     "culling: none": What(
-        ran="-compute/occlude.comp, -compute/refine.comp, -culling/reduce.frag, -screen/triangle.vert",
+        ran="-fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/reduce.frag, -screen/triangle.vert",
         features="-CULL_PYRAMID",
         passes="-guessed, -last picture, -occlusion, -pyramid, -refine",
         buffers="-occlusion",
@@ -222,7 +231,7 @@ CHANGED = {
     ),
     "culling: coverage": What(
         ran="""
-            -compute/refine.comp, culling/coverage_dilate.frag, culling/coverage_grid.frag,
+            -fiblets/compute/refine.comp, culling/coverage_dilate.frag, culling/coverage_grid.frag,
             culling/coverage_grid.vert
         """,
         features="-CULL_PYRAMID, CULL_COVERAGE",
@@ -231,31 +240,38 @@ CHANGED = {
     ),
     "pipeline: geometry": What(
         ran="""
-            -compute/arguments.comp, -compute/clear.comp, -compute/cull.comp, -compute/depth.comp,
-            -compute/occlude.comp, -compute/own.comp, -compute/plan.comp, -compute/refine.comp,
-            -compute/settle.comp, geometry/lines.geom, raster/between.frag, raster/line.frag, raster/seen.frag,
-            raster/seen.vert, raster/survivors.vert
+            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+            -fiblets/compute/depth.comp,
+            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
+            -fiblets/compute/refine.comp,
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/raster/between.frag,
+            fiblets/raster/line.frag, fiblets/raster/visible.frag,
+            fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
         features="-CLIPPING_DEPTH, -ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -own, -refine, -settle, draw, marks",
+        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="""
-            engine.depth_texture, engine.pipelines.geometry, engine.pipelines.raster, engine.pipelines.textured
+            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
+            engine.fiblets.pipelines.textured
         """,
     ),
     "pipeline: tessellation": What(
         ran="""
-            -compute/arguments.comp, -compute/clear.comp, -compute/cull.comp, -compute/depth.comp,
-            -compute/occlude.comp, -compute/own.comp, -compute/plan.comp, -compute/refine.comp,
-            -compute/settle.comp, raster/between.frag, raster/line.frag, raster/seen.frag, raster/seen.vert,
-            raster/survivors.vert, tessellation/decode.tesc, tessellation/lines.tese
+            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+            -fiblets/compute/depth.comp,
+            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
+            -fiblets/compute/refine.comp,
+            -fiblets/compute/resolve_ties.comp, fiblets/raster/between.frag, fiblets/raster/line.frag,
+            fiblets/raster/visible.frag, fiblets/raster/visible.vert,
+            fiblets/raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
         """,
         features="-CLIPPING_DEPTH, -ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -own, -refine, -settle, draw, marks",
+        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="""
-            engine.depth_texture, engine.pipelines.raster, engine.pipelines.tessellation,
-            engine.pipelines.textured
+            engine.depth_texture, engine.fiblets.pipelines.raster, engine.fiblets.pipelines.tessellation,
+            engine.fiblets.pipelines.textured
         """,
     ),
     "picture: depth of field": What(
@@ -267,7 +283,7 @@ CHANGED = {
         buffers="picture",
         modules="""
             engine.effects, engine.effects.depth_of_field, engine.effects.lens, engine.effects.picture,
-            engine.effects.screen, engine.effects.tone, mappers.focusing, mappers.overlays, mappers.picture,
+            engine.effects.screen, engine.effects.tone, mappers.lens_focus, mappers.overlays, mappers.picture,
             mappers.tiles, plotting.picture_component
         """,
     ),
@@ -277,25 +293,25 @@ CHANGED = {
         buffers="picture",
         modules="""
             engine.effects, engine.effects.depth_of_field, engine.effects.lens, engine.effects.picture,
-            engine.effects.screen, engine.effects.tone, mappers.focusing, mappers.overlays, mappers.picture,
+            engine.effects.screen, engine.effects.tone, mappers.lens_focus, mappers.overlays, mappers.picture,
             mappers.tiles, plotting.picture_component
         """,
     ),
     "spline tubes: values": What(
-        features="SPLINE_VALUES",
+        features="TUBE_VALUES",
         resolve="-colour_solid, colour_point_value",
         buffers="fibletTable, values",
     ),
     "spline tubes: colours": What(
-        features="SPLINE_COLOURS",
+        features="TUBE_COLOURS",
         resolve="-colour_solid, colour_point",
         buffers="colours",
     ),
     "spline tubes: solver": What(
-        features="-SPLINE_ILLINOIS, SPLINE_NEWTON",
+        features="-TUBE_ILLINOIS, TUBE_NEWTON",
     ),
     "spline tubes: planes": What(
-        features="CLIP_PLANES, SPLINE_CHAIN",
+        features="CLIP_PLANES, TUBE_CHAIN",
         buffers="clip_planes",
     ),
     "halo lines: tapered": What(
@@ -328,62 +344,63 @@ CHANGED = {
         buffers="-masks, -offsets",
     ),
     "volume: local mip": What(
-        features="RAYCAST_LOCAL",
+        features="VOLUME_LOCAL",
     ),
     "volume: surface": What(
-        features="RAYCAST_SURFACE",
+        features="VOLUME_SURFACE",
         resolve="tube_normal",
     ),
     "volume: gentle light": What(
-        features="RAYCAST_LIGHT, RAYCAST_PREINTEGRATED",
+        features="VOLUME_LIGHT, VOLUME_PREINTEGRATED",
         resolve="-colour_point_value, colour_point",
         buffers="-fibletTable, colours, segments",
         packages="numba",
-        modules="codec.jit, raycast.preintegration",
+        modules="codec.jit, volumes.preintegration",
     ),
     "volume: light": What(
-        features="RAYCAST_FINER, RAYCAST_LIGHT, RAYCAST_PREINTEGRATED",
+        features="VOLUME_FINER, VOLUME_LIGHT, VOLUME_PREINTEGRATED",
         resolve="-colour_point_value, colour_point",
         buffers="-fibletTable, colours, segments",
         packages="numba",
-        modules="codec.jit, raycast.preintegration",
+        modules="codec.jit, volumes.preintegration",
     ),
     "volume: nearest": What(
-        features="RAYCAST_NEAREST",
+        features="VOLUME_NEAREST",
     ),
     "volume: tricubic": What(
-        features="RAYCAST_TRICUBIC",
+        features="VOLUME_TRICUBIC",
     ),
     "volume: jitter": What(
-        features="RAYCAST_JITTER",
+        features="VOLUME_JITTER",
     ),
     "volume: no octree": What(
-        features="RAYCAST_WHOLE",
+        features="VOLUME_WHOLE",
         buffers="-nodes",
     ),
     "volume: sparse": What(
-        ran="raycast/fill.frag",
+        ran="volumes/fill.frag",
         passes="-rays, between, other rays, sparse rays",
         buffers="sparse",
     ),
     "volume: cut by planes": What(
-        modules="codec.query.shapes, engine.cut_planes, regions",
+        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
     ),
     "volume: cut": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",
         buffers="region",
         modules="""
-            codec.query.shapes, engine.cut_planes, engine.cutting, engine.frame, engine.layer_stack, engine.rays,
-            engine.surface_layers, regions
+            engine.regions, engine.frame, engine.regions.clip_planes, engine.regions.convex_rays,
+            engine.regions.layer_stack,
+            engine.regions.ray_intervals, engine.regions.surface_crossings, query.shapes, regions
         """,
     ),
     "volume: ray occlusion": What(
-        ran="raycast/occlusion.frag, raycast/occlusion_mean.frag",
-        features="RAYCAST_SURFACE",
+        ran="volumes/occlusion.frag, volumes/occlusion_mean.frag",
+        features="VOLUME_SURFACE",
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.effects, engine.effects.screen, engine.raycast.occlusion",
+        modules="engine.effects, engine.effects.screen, engine.volumes.occlusion",
     ),
 }

@@ -13,7 +13,7 @@ from vtkmodules.vtkRenderingCore import vtkActor2D, vtkHardwareSelector, vtkPoly
 
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers import windows
-from pvfiblets.mappers.focusing import DepthOfField, Focusing
+from pvfiblets.mappers.lens_focus import DepthOfField, Focusing
 from pvfiblets.mappers.picture import Picture
 from pvfiblets.mappers.scene import others_before, others_opaque
 

@@ -1,238 +1,348 @@
-"""Tubes and round shading among VTK's lights and meshes, against VTK's own surfaces and closed forms."""
+"""Spline tubes among VTK's lights, cuts and passes: against unions of VTK's own balls, and closed forms."""
 
 from __future__ import annotations
 
-import itertools
+import gc
 
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.engine import Style, View
-from pvfiblets.mappers import Colouring
-from pvfiblets.mappers.tubes import Tubes, TubeShading
+from pvfiblets.mappers import Colouring, TubeMapper, TubeOptions, windows
+from pvfiblets.mappers.tubes import tube_renderer
+from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
-RADIUS = 3.0
-RODS = [[(-18, 0, 0), (18, 4, 6)], [(5, -12, -10), (0, 10, 12)]]
-
-
-@pytest.fixture
-def rods(tools):
-    """Return a function: actor and mapper of two straight rods that pass through each other, white."""
-
-    def make(extra, line_width=1.0, curves=RODS):
-        lines = [np.linspace(a, b, 31) for a, b in curves]
-        fibres = tools.fibres("engine", type(tools.helices(1, 2)).from_list(lines))
-        mapper, actor = fibres.actor(
-            lighting=True, line_width=line_width, colouring=Colouring("solid", color=(1, 1, 1))
-        )
-        actor.GetProperty().SetAmbient(0.1)
-        actor.GetProperty().SetDiffuse(0.9)
-        mapper.set_extra("tubes", extra)
-        return fibres, mapper, actor
-
-    return make
+ANGLE = np.linspace(-3.0, 3.0, 8)
+BENT = np.stack([6 * ANGLE, 7 * np.sin(ANGLE), 6 * np.cos(ANGLE)], axis=1)
+TANGENTS = np.stack([6 + 0 * ANGLE, 7 * np.cos(ANGLE), -6 * np.sin(ANGLE)], axis=1) * (ANGLE[1] - ANGLE[0])
+RADII = 2.5 + 1.5 * np.sin(2 * ANGLE)
+RADIUS_SLOPES = 3.0 * np.cos(2 * ANGLE) * (ANGLE[1] - ANGLE[0])
 
 
-def scene(make_plotter, actor, place=None, light=(60, -100, 40)):
-    plotter = make_plotter(lighting="none")
-    lamp = pv.Light(position=light, focal_point=(0, 0, 0), light_type="scene light")
+def tubes_of():
+    """One tube of seven segments that bends and swells, derivatives by the parameter."""
+    segments = np.stack([np.arange(7), np.arange(1, 8)], axis=1)
+    return SplineTubes(BENT, segments, RADII, TANGENTS, RADIUS_SLOPES, False, np.zeros(7, int), 1)
+
+
+def straight(values=None, n_tubes=1, apart=8.0, length=30.0, radius=2.0):
+    """Tubes along x, each of two segments, at x = -length / 2, 0, length / 2."""
+    x = np.array([-0.5, 0.0, 0.5]) * length
+    points = np.concatenate([np.stack([x, 0 * x, 0 * x + apart * k], axis=1) for k in range(n_tubes)])
+    first = 3 * np.arange(n_tubes)
+    segments = np.stack([first, first + 1, first + 1, first + 2], axis=1).reshape(-1, 2)
+    n = 3 * n_tubes
+    return SplineTubes(
+        points, segments, np.full(n, radius), np.tile([1.0, 0.0, 0.0], (n, 1)), np.zeros(n), True,
+        np.repeat(np.arange(n_tubes), 2), n_tubes, {} if values is None else {"v": values},
+    )  # fmt: skip
+
+
+def cubics(tubes, count=50):
+    """Spheres along the cubics, by the textbook's basis: (n, 4)."""
+    t = np.linspace(0, 1, count)[:, None]
+    basis = 2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, 3 * t**2 - 2 * t**3, t**3 - t**2
+    nodes = np.column_stack([tubes.points, tubes.radius])
+    slopes = np.column_stack([tubes.tangents, tubes.radius_slopes])
+    found = [
+        basis[0] * nodes[i] + basis[1] * slopes[i] + basis[2] * nodes[j] + basis[3] * slopes[j]
+        for i, j in tubes.segments
+    ]
+    return np.concatenate(found)
+
+
+def made(tubes, *, lighting=False, **options):
+    mapper, actor = TubeMapper(tubes, **options), vtkActor()
+    mapper.attach(actor)
+    actor.GetProperty().SetLighting(lighting)
+    actor.GetProperty().SetAmbient(0.1)
+    actor.GetProperty().SetDiffuse(0.9)
+    return mapper, actor
+
+
+def lit(plotter):
+    plotter.remove_all_lights()
+    lamp = pv.Light(position=(60, -100, 40), focal_point=(0, 0, 0), light_type="scene light")
     lamp.positional = False
     plotter.add_light(lamp)
-    plotter.add_actor(actor, reset_camera=False)
-    if place:
-        place(actor)
     plotter.camera_position = [(20, -70, 25), (0, 0, 0), (0, 0, 1)]
     plotter.camera.clipping_range = 20, 150
     return plotter
 
 
-def capsules(fibres):
-    """Yield the rods as VTK's surfaces, finely cut: cylinders and balls."""
-    offsets, points = fibres.reference.offsets, fibres.reference.points.astype(float)
-    for s, e in itertools.pairwise(offsets):
-        a, b = points[s], points[e - 1]
-        yield pv.Cylinder(
-            center=(a + b) / 2,
-            direction=b - a,
-            radius=RADIUS,
-            height=np.linalg.norm(b - a),
-            resolution=240,
-            capping=False,
-        )
-        for end in (a, b):
-            yield pv.Sphere(radius=RADIUS, center=end, theta_resolution=120, phi_resolution=120)
+def flat(plotter, height=40.0):
+    """From -y, parallel: 200 pixels are `height` mm."""
+    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = height / 2
+    plotter.camera.clipping_range = 20, 200
+    return plotter
+
+
+def shown(make_plotter, actor, place=None, view=lit):
+    plotter = make_plotter()
+    plotter.add_actor(actor, reset_camera=False)
+    if place:
+        place(actor)
+    return view(plotter)
 
 
 @pytest.mark.parametrize(
     "place",
     [
         None,
-        lambda actor: actor.SetScale(1.5, 1.0, 0.7),
+        lambda actor: actor.SetScale(1.3, 1.0, 0.7),
         lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
     ],
     ids=["plain", "stretched", "mirrored"],
 )
-def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place):
-    """Outline, light, and where they cut into each other, for actors placed in any way."""
-    fibres, mapper, actor = rods(Tubes(RADIUS))
-    ours = tools.picture(scene(make_plotter, actor, place), mapper).astype(int)
-    other = make_plotter(lighting="none")
+def test_tubes_look_as_the_balls_that_they_are_swept_by(make_plotter, tools, place):
+    tubes = tubes_of()
+    mapper, actor = made(tubes, lighting=True)
+    ours = tools.picture(shown(make_plotter, actor, place), mapper).astype(int)
+    other = make_plotter()
     matrix = np.array([[actor.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
-    for mesh in capsules(fibres):
+    ball = pv.Sphere(radius=1.0, theta_resolution=60, phi_resolution=60)
+    meshes = []
+    for *centre, radius in cubics(tubes):
         # placed by its points: a mirrored actor turns VTK's own meshes inside out
-        placed = mesh.extract_surface(algorithm=None).transform(matrix, inplace=False)
-        placed = placed.compute_normals(auto_orient_normals=True, split_vertices=False)
-        other.add_mesh(placed, color="white", ambient=0.1, diffuse=0.9, specular=0.0, smooth_shading=True)
-    other.remove_all_lights()
-    lamp = pv.Light(position=(60, -100, 40), focal_point=(0, 0, 0), light_type="scene light")
-    lamp.positional = False
-    other.add_light(lamp)
-    other.camera_position = [(20, -70, 25), (0, 0, 0), (0, 0, 1)]
-    other.camera.clipping_range = 20, 150
-    theirs = tools.picture(other).astype(int)
-    mask = tools.covered(ours) & tools.covered(theirs)
-    assert mask.sum() > 2000
-    assert (tools.covered(ours) ^ tools.covered(theirs)).sum() < 0.01 * mask.sum()
-    assert (np.abs(ours - theirs).max(-1)[mask] <= 6).mean() > 0.985  # VTK's facets
+        mesh = ball.scale(radius, inplace=False).translate(centre, inplace=False).transform(matrix, inplace=False)
+        meshes.append(mesh.compute_normals(auto_orient_normals=True, split_vertices=False))
+    balls = pv.merge(meshes, merge_points=False)
+    other.add_mesh(balls, color="white", ambient=0.1, diffuse=0.9, specular=0.0, smooth_shading=True)
+    theirs = tools.picture(lit(other)).astype(int)
+    both = tools.covered(ours) & tools.covered(theirs)
+    assert both.sum() > 2000
+    assert (tools.covered(ours) ^ tools.covered(theirs)).sum() < 0.03 * both.sum()
+    assert np.median(np.abs(ours - theirs).max(-1)[both]) <= 2
+    assert (np.abs(ours - theirs).max(-1)[both] <= 12).mean() > 0.97
 
 
-def test_tubes_cut_into_meshes(rods, make_plotter, tools):
-    """A plane through the axis hides the far half of the tube: less shows than without it, and more than of a line."""
-
-    def shown(extra, line_width=1.0):
-        _, mapper, actor = rods(extra, line_width, [[(-15, 0, 0), (15, 0, 0)]])
-        plotter = scene(make_plotter, actor)
-        plotter.add_mesh(
-            pv.Plane(center=(0, 0, 0), direction=(0, 0, 1), i_size=60, j_size=60), color="red", lighting=False
-        )
-        image = tools.picture(plotter, mapper)
-        return (image[..., 1] > 10).sum(), (image[..., 1] > 10)
-
-    plotter_tube, mask = shown(Tubes(RADIUS))
-    rows = np.nonzero(mask.any(axis=1))[0]
-    _, mapper, actor = rods(Tubes(RADIUS), 1.0, [[(-15, 0, 0), (15, 0, 0)]])
-    alone = tools.covered(tools.picture(scene(make_plotter, actor), mapper))
-    assert 0.4 * alone.sum() < plotter_tube < 0.85 * alone.sum()
-    assert rows.max() < np.nonzero(alone.any(axis=1))[0].max()  # the lower part is hidden
-
-
-def test_wide_lines_shaded_as_tubes(rods, make_plotter, tools):
-    """A rod across the view, lit from above: light falls with the cosine around it."""
-    width = 30.0
-    _, mapper, actor = rods(TubeShading(), width, [[(-30, 0, 0), (30, 0, 0)]])
-    plotter = scene(make_plotter, actor, light=(0, -100, 100))
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.clipping_range = 20, 150
-    column = tools.picture(plotter, mapper)[:, 120, 0].astype(float)
-    lit = np.nonzero(column)[0]
-    middle = (lit.min() + lit.max()) / 2
-    assert abs(lit.max() - lit.min() + 1 - width) <= 1
-    across = (middle - lit) / (width / 2)  # rows run downwards
-    cosine = np.clip((np.sqrt(1 - across**2) + across) / np.sqrt(2), 0, 1)
-    assert np.abs(column[lit] - 255 * (0.1 + 0.9 * cosine)).max() < 12
-    assert np.median(np.abs(column[lit] - 255 * (0.1 + 0.9 * cosine))) < 3
-
-
-@pytest.mark.parametrize("direction", [(1, 0, 0), (-1, 0, 0), (0, 0, 1), (0.6, 0, -0.8)])
-def test_round_shading_faces_the_light_whatever_the_direction(rods, make_plotter, tools, direction):
-    """The half nearer to the light is brighter, in every direction of a line and for a mirrored actor."""
-    d = np.array(direction, float)
-    for place in (None, lambda actor: actor.SetScale(-1, 1, 1)):
-        _, mapper, actor = rods(TubeShading(), 16.0, [[-12 * d, 12 * d]])
-        plotter = scene(make_plotter, actor, place, light=(100, -30, 100))
-        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.enable_parallel_projection()
-        plotter.camera.clipping_range = 20, 150
-        image = tools.picture(plotter, mapper)[..., 0].astype(float)
-        rows, columns = np.nonzero(image)
-        seen = d * (-1 if place else 1, 1, 1)
-        left = np.array([-seen[2], seen[0]])  # of the line, in x and z of the picture
-        away = (columns - columns.mean()) * left[0] - (rows - rows.mean()) * left[1]
-        toward = np.sign(left @ (1, 1))
-        values = image[rows, columns]
-        assert toward == 0 or values[away * toward > 2].mean() > values[away * toward < -2].mean() + 20
-
-
-def test_thin_lines_are_left_as_they_are(rods, make_plotter, tools):
-    pictures = []
-    for extra in (None, TubeShading()):
-        _, mapper, actor = rods(extra)
-        pictures.append(tools.picture(scene(make_plotter, actor), mapper))
-        assert ("tube_shading" in mapper.features) == (extra is not None)
-    assert (pictures[0] == pictures[1]).all()
-
-
-def test_live_and_back_without_a_trace(rods, make_plotter, tools):
-    """Tubes, other tubes, round shading, and plain lines again, in one window: nothing stays."""
-    _, mapper, actor = rods(None)
-    plotter = scene(make_plotter, actor)
-    bounds = np.array(actor.GetBounds())
-    before = tools.picture(plotter, mapper)
-    names = {buffer["name"] for buffer in mapper.explain()["windows"][0]["buffers"]}
-    size = {b["name"]: b["bytes"] for b in mapper.explain()["windows"][0]["buffers"]}["gbuffer"]
-    areas = []
-    for extra in (Tubes(1.0), Tubes(RADIUS), TubeShading()):
-        mapper.set_extra("tubes", extra)
-        areas.append(tools.covered(tools.picture(plotter, mapper)).sum())
-        reach = getattr(extra, "radius", 0.0)
-        np.testing.assert_allclose(np.array(actor.GetBounds()) - bounds, reach * np.array([-1, 1] * 3), atol=1e-6)
-    assert areas[1] > 2 * areas[0] > 2 * areas[2]
-    mapper.set_extra("both", Tubes(1.0))  # its normals, not the lines' shading
-    assert tools.covered(tools.picture(plotter, mapper)).sum() == areas[0]
-    mapper.set_extra("both", None)
-    mapper.set_extra("tubes", None)
-    assert (tools.picture(plotter, mapper) == before).all()
-    assert {buffer["name"] for buffer in mapper.explain()["windows"][0]["buffers"]} == names
-    assert {b["name"]: b["bytes"] for b in mapper.explain()["windows"][0]["buffers"]}["gbuffer"] == size
-
-
-@pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])
-def test_a_radius_that_is_none_is_told(radius):
-    with pytest.raises(ValueError, match=f"radius of tubes is {radius}; give a finite number"):
-        Tubes(radius)
-
-
-def test_tubes_are_picked_where_they_show(rods, make_plotter, tools):
-    fibres, mapper, actor = rods(Tubes(RADIUS))
-    plotter = scene(make_plotter, actor)
-    mask = tools.covered(tools.picture(plotter, mapper))
-    rows, columns = np.nonzero(mask)
-    height = mask.shape[0]
-    for k in range(0, len(rows), 977):
-        found = mapper.pick_at(int(columns[k]), int(height - 1 - rows[k]), tolerance=0)
-        assert found is not None
-        assert found[0] in (0, 1)
-        assert 0.0 <= found[1] <= 30.0
-    assert mapper.pick_at(2, 2) is None
-
-
-def test_what_the_engine_was_asked(rods):
-    """The values that the extras stand for."""
-    assert Style(**Tubes(0.5).style) == Style(radius=0.5, across=True)
-    assert Style(line_width=4.0, **TubeShading().style).relief == "across"
-    assert Style(**TubeShading().style).relief is None
-    assert Style(**Tubes(0.5).style).relief == "normal"
-    assert View((4, 4), np.eye(4)) == View((4, 4), np.eye(4))
-
-
-def test_an_actor_of_the_plotter_has_tubes_and_round_shading(make_plotter, tools):
-    """Live, each on its own and both; copies by `name` and settings that are refused leave things as they were."""
+def test_bounds_hold_what_shows_and_the_camera_takes_them(make_plotter, tools):
+    mapper, actor = made(tubes_of())
+    bounds, spheres = np.array(actor.GetBounds()), cubics(mapper.tubes)
+    assert (spheres[:, :3] - spheres[:, 3:] >= bounds[::2] - 1e-9).all()
+    assert (spheres[:, :3] + spheres[:, 3:] <= bounds[1::2] + 1e-9).all()
     plotter = make_plotter()
-    actor = plotter.add_fiblets(tools.helices(6), line_width=5)
-    assert (actor.tube_shading, actor.tube_radius) == (False, None)
-    actor.prop.lighting = True
-    areas = []
-    for shading, radius in ((False, None), (True, None), (True, 2.0), (False, 0.5), (False, None)):
-        actor.tube_shading, actor.tube_radius = shading, radius
-        assert (actor.tube_shading, actor.tube_radius) == (shading, radius)
-        image = tools.picture(plotter, actor.mapper)
-        areas.append((tools.covered(image).sum(), image.astype(int).sum()))
-    assert areas[0] == areas[4]
-    assert areas[1][0] == areas[0][0]
-    assert areas[1][1] < areas[0][1]  # edges turn away from the light
-    assert areas[3][0] < areas[2][0]
-    with pytest.raises(ValueError, match="radius of tubes is -1"):
-        actor.tube_radius = -1
-    assert actor.tube_radius is None
+    plotter.add_actor(actor)
+    image = tools.covered(tools.picture(plotter, mapper))
+    assert image.sum() > 1000
+    assert not image[[0, -1]].any()
+    assert not image[:, [0, -1]].any()
+
+
+def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
+    """Half a tube is left, its cut closed; without the plane all of it is back."""
+    mapper, actor = made(straight())
+    plotter = shown(make_plotter, actor, view=flat)
+    whole = tools.covered(tools.picture(plotter, mapper))
+    plane = vtkPlane()
+    plane.SetNormal(1, 0, 0)
+    plane.SetOrigin(5, 0, 0)
+    mapper.AddClippingPlane(plane)
+    half = tools.covered(tools.picture(plotter, mapper))
+    right = np.zeros_like(whole)
+    right[:, 120 + 25 :] = True  # 5 pixels a mm
+    assert (half == (whole & right)).all()
+    plotter.camera_position = [(-100, 0, 0), (0, 0, 0), (0, 0, 1)]  # onto the cut
+    assert abs(tools.covered(tools.picture(plotter, mapper)).sum() - np.pi * 10.0**2) < 12
+    mapper.RemoveAllClippingPlanes()
+    assert (tools.covered(tools.picture(flat(plotter), mapper)) == whole).all()
+
+
+def test_tubes_cut_into_meshes(make_plotter, tools):
+    mapper, actor = made(straight(), colouring=Colouring("solid", color=(0, 1, 0)))
+    plotter = shown(make_plotter, actor, view=flat)
+    alone = tools.covered(tools.picture(plotter, mapper)).sum()
+    wall = pv.Plane(center=(0, -1, 0), direction=(0, 1, 0), i_size=60, j_size=60)
+    plotter.add_mesh(wall, color="red", lighting=False)
+    image = tools.picture(flat(plotter), mapper)
+    rows = np.flatnonzero((image[..., 1] > 0)[:, 120])
+    assert 0 < (image[..., 1] > 0).sum() < alone
+    assert abs(len(rows) - 5 * 2 * np.sqrt(2.0**2 - 1.0)) <= 1  # the chord of the circle, 5 pixels a mm
+
+
+def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools):
+    mapper, actor = made(straight(n_tubes=2))
+    plotter = shown(make_plotter, actor, view=flat)
+    assert mapper.pick_at(120, 100) is None
+    tools.picture(plotter, mapper)
+    for tube, row in enumerate((100, 140)):
+        for column in (60, 90, 119, 121, 150, 180):
+            x = (column + 0.5 - 120) / 5
+            segment, t = mapper.pick_at(column, row, tolerance=0)
+            assert segment == 2 * tube + (x > 0)
+            assert t == pytest.approx((x / 15) % 1, abs=1e-3)
+    assert mapper.pick_at(120, 120) is None
+    assert mapper.pick_at(120, 114, tolerance=6)[0] in (0, 1)
+
+
+def colour_at(image, column=150, row=100):
+    return image[image.shape[0] - 1 - row, column].tolist()
+
+
+def test_every_way_to_colour(make_plotter, tools):
+    numbers = NodeValues([0.0, 1.0, 0.0], [1 / 15, 0.0, -1 / 15])
+    mapper, actor = made(straight(numbers))
+    plotter = shown(make_plotter, actor, view=flat)
+
+    def colours(colouring):
+        mapper.colouring = colouring
+        return colour_at(tools.picture(plotter, mapper), 195)  # x = 15.1, the end's ball
+
+    assert colours(Colouring("orientation")) == [255, 0, 0]
+    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == [0, 255, 255]
+    assert colours(Colouring("streamline_rgb", values=np.array([[7, 8, 9]], np.uint8))) == [7, 8, 9]
+    red = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
+    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=red, clim=(0, 1))) == [0, 0, 255]
+    through = Colouring("point_value", source="v", lut=red, clim=(0, 1))
+    assert colours(through) == [255, 0, 0]
+    assert colour_at(tools.picture(plotter, mapper), 120) == [0, 0, 255]
+    assert colours(Colouring("point_value", source="v", clim=(1, 2), below_color=(0, 1, 0))) == [0, 255, 0]
+    with pytest.raises(ValueError, match="2 values for 1"):
+        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
+
+
+@pytest.mark.parametrize("opaque", [True, False])
+def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, opaque):
+    rgba = np.array([[1, 0, 0, 1], [0, 1, 0, 1 if opaque else 0.5], [0, 0, 1, 1]])
+    mapper, actor = made(straight(NodeValues(rgba, np.zeros((3, 4)))))
+    mapper.colouring = Colouring("point_rgb", source="v", see_through=not opaque)
+    plotter = shown(make_plotter, actor, view=flat)
+    image = tools.picture(plotter, mapper).astype(int)
+    assert actor.GetForceTranslucent() is not opaque
+    for column in (50, 75, 100, 119):
+        s = ((column + 0.5 - 120) / 5 / 15) % 1
+        share = 2 * s**2 if s < 0.5 else 1 - 2 * (1 - s) ** 2  # the two halves' parabolas of zero slopes
+        seen = 1.0 if opaque else 1 - 0.5 * share
+        wanted = [255 * (1 - share) * seen, 255 * share * seen, 0]
+        assert np.abs(np.array(colour_at(image, column)) - wanted).max() <= 3
+
+
+def test_point_colours_need_a_name():
+    with pytest.raises(ValueError, match="'point_rgb' needs source"):
+        Colouring("point_rgb")
+
+
+def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools):
+    asked = []
+
+    def factory(ctx, tubes, **options):
+        asked.append(options)
+        return tube_renderer(ctx, tubes, **options)
+
+    mapper, actor = made(tubes_of(), renderer_factory=factory)
+    plotter = shown(make_plotter, actor)
+    first = tools.picture(plotter, mapper)
+    assert mapper.pipeline_in_use == "rectangles"
+    mapper.options = TubeOptions("boxes", "bisection", 40)
+    second = tools.picture(plotter, mapper)
+    assert mapper.pipeline_in_use == "boxes"
+    assert asked == [{}, {"silhouettes": "boxes", "solver": "bisection", "iterations": 40}]
+    assert (first != second).any(-1).mean() < 1e-3
+    mapper.set_tubes(straight())
+    tools.picture(plotter, mapper)
+    assert len(asked) == 3
+    assert TubeOptions(culling="none") == TubeOptions(culling=None)
+    assert TubeOptions(culling=None).changed() == {"culling": None}
+    assert mapper.share == 1.0
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [{"silhouettes": "ellipses"}, {"solver": "luck"}, {"iterations": 0}, {"iterations": 2.5}, {"min_width": -1},
+     {"min_width": np.nan}, {"culling": "coverage"}],
+)  # fmt: skip
+def test_unknown_options_are_refused_at_once(bad):
+    with pytest.raises(ValueError, match=f"{next(iter(bad))} is "):
+        TubeOptions(**bad)
+
+
+def test_thin_tubes_stay_as_wide_as_is_asked(make_plotter, tools):
+    heights = []
+    for width in (1.0, 5.0):
+        mapper, actor = made(straight(radius=0.001), options=TubeOptions(min_width=width))
+        actor.SetPosition(0, 0, 0.06)  # not between two rows of pixels, where a pixel's width need not meet a middle
+        image = tools.covered(tools.picture(shown(make_plotter, actor, view=flat), mapper))
+        assert image.any(axis=0).sum() >= 150
+        heights.append(image[:, 130].sum())
+    assert heights[0] in (1, 2)
+    assert heights[1] in (4, 5, 6)
+
+
+def test_nothing_is_drawn_of_no_segments(make_plotter, tools):
+    none = SplineTubes(np.zeros((2, 3)), [], [1, 1], np.zeros((2, 3)), [0, 0], True, [], 4)
+    mapper, actor = made(none)
+    assert mapper.GetInput().GetNumberOfCells() == 0
+    plotter = shown(make_plotter, actor)
+    assert not tools.picture(plotter, mapper).any()
+    mapper.set_tubes(tubes_of())
+    assert tools.picture(plotter, mapper).any()
+    mapper.set_tubes(none)
+    assert not tools.picture(plotter, mapper).any()
+
+
+def test_gpu_memory_is_given_back(make_plotter, tools):
+    mapper, actor = made(tubes_of())
+    plotter = shown(make_plotter, actor)
+    tools.picture(plotter, mapper)
+    held = mapper.explain()["windows"][0]
+    assert (held["tubes_total"], held["segments_total"]) == (1, 7)
+    assert held["primitives"] > 0
+    mapper.release()
+    assert mapper.explain()["windows"] == []
+    tools.picture(plotter, mapper)
+    plotter.remove_actor(actor)
+    plotter.render()
+    assert mapper.explain()["windows"] == []
+    assert not windows._contexts
+
+
+def test_a_second_window_is_refused_in_words(make_plotter, tools):
+    mapper, actor = made(tubes_of())
+    first, second = make_plotter(), make_plotter()
+    first.add_actor(actor)
+    second.add_actor(actor)
+    tools.picture(first, mapper)
+    second.show(auto_close=False)
+    with pytest.raises(RuntimeError, match="another TubeMapper"):
+        mapper.raise_pending()
+
+
+def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
+    def broken(ctx, tubes, **options):
+        raise OSError("no memory")
+
+    mapper, actor = made(tubes_of(), renderer_factory=broken)
+    plotter = shown(make_plotter, actor)
+    plotter.show(auto_close=False)
+    with pytest.raises(OSError, match="no memory"):
+        mapper.raise_pending()
+
+
+def test_a_mapper_is_freed():
+    import weakref
+
+    mapper, actor = made(tubes_of())
+    gone = weakref.ref(mapper)
+    del mapper, actor
+    gc.collect()
+    assert gone() is None
+
+
+def test_vtk_selects_tubes(make_plotter, tools):
+    from vtkmodules.vtkCommonDataModel import vtkDataObject
+    from vtkmodules.vtkRenderingCore import vtkHardwareSelector
+
+    mapper, actor = made(straight())
+    plotter = shown(make_plotter, actor, view=flat)
+    tools.picture(plotter, mapper)
+    for row, wanted in ((100, 1), (60, 0)):
+        selector = vtkHardwareSelector()
+        selector.SetRenderer(plotter.renderer)
+        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
+        selector.SetArea(118, row - 2, 122, row + 2)
+        assert selector.Select().GetNumberOfNodes() == wanted
+    mapper.raise_pending()

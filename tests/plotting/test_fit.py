@@ -8,8 +8,8 @@ import pyvista as pv
 
 from pvfiblets import compress
 from pvfiblets.codec.restrict import even_share
-from pvfiblets.engine import fit
 from pvfiblets.engine.errors import EngineError
+from pvfiblets.engine.fiblets import memory_fit
 from pvfiblets.synthetic import brain_streamlines
 
 
@@ -42,12 +42,12 @@ def test_counting_leaves_the_picture_as_it_was(plotter, three_lines):
 
 def test_what_does_not_fit_is_refused_or_sampled(plotter, monkeypatch):
     fiblets = compress(brain_streamlines(3000, step=1.0))
-    monkeypatch.setattr(fit, "free_memory", lambda ctx, gl: fit.PICTURE_BYTES + 400_000)
+    monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: memory_fit.PICTURE_BYTES + 400_000)
     actor = plotter.add_fiblets(fiblets)
     with pytest.raises(EngineError, match=r"MB are available.*; draw fewer streamlines, or .* by fit='sample'"):
         plotter.show(auto_close=False)
     actor.fit = "sample"
-    monkeypatch.setattr(fit, "RESERVE", 0.0)
+    monkeypatch.setattr(memory_fit, "RESERVE", 0.0)
     assert (shot(plotter) > 0).any()
     assert 0.0 < actor.share < 0.9
     assert actor.explain()["share"] == actor.share

@@ -7,8 +7,8 @@ import pytest
 import pyvista as pv
 
 from pvfiblets import Streamlines, compress, regions
-from pvfiblets.plotting.scalars import find_scalars
-from pvfiblets.plotting.sources import as_fiblets, with_point_values
+from pvfiblets.plotting.fiblets.scalars import find_scalars
+from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
 from pvfiblets.synthetic import brain_streamlines
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.engine.filtering import Filter
+from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.mappers.picking import EMPTY
 from pvfiblets.mappers.windows import contexts_with
-from pvfiblets.plotting.picked import Picked
+from pvfiblets.plotting.fiblets.pick_result import Picked
 from pvfiblets.synthetic import brain_streamlines
 
 LASSO = np.array([[60, 60], [150, 70], [140, 150], [105, 95], [70, 140]], float)

@@ -48,7 +48,7 @@ def test_a_checker_knows_what_comes_back(tmp_path):
     command = [sys.executable, "-m", "mypy", "--ignore-missing-imports", "--follow-imports=silent", str(script)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     said = done.stdout
-    assert 'Revealed type is "pvfiblets.plotting.actor.FibletActor"' in said
-    assert 'Revealed type is "pvfiblets.plotting.raycast_actor.RaycastActor"' in said
+    assert 'Revealed type is "pvfiblets.plotting.fiblets.actor.FibletActor"' in said
+    assert 'Revealed type is "pvfiblets.plotting.volumes.actor.VolumeActor"' in said
     assert 'Unexpected keyword argument "line_widht"' in said
     assert "Found 1 error" in said

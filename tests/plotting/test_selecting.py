@@ -7,9 +7,9 @@ import pytest
 import pyvista as pv
 
 import pvfiblets as pf
-from pvfiblets.engine.filtering import Filter
+from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.plotting.standout import part_of_filter
+from pvfiblets.plotting.fiblets.selection_overlay import part_of_filter
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
@@ -325,7 +325,7 @@ def test_profile_plots(three_lines):
     import matplotlib as mpl
 
     mpl.use("Agg")
-    from pvfiblets.plotting.profiles import Profile
+    from pvfiblets.plotting.fiblets.profiles import Profile
 
     mean, std = np.array([1.0, np.nan, 3.0]), np.array([0.1, np.nan, 0.2])
     profile = Profile(mean, std, np.linspace(0, 1, 3), "FA", 5)

@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets import regions
-from pvfiblets.plotting.surfaces import cut_surface
+from pvfiblets.plotting.cut_surfaces import cut_surface
 
 
 @pytest.fixture

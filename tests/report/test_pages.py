@@ -11,10 +11,10 @@ from PIL import Image
 
 from pvfiblets.cli import main
 from pvfiblets.report import plots, studies
+from pvfiblets.report.dot_plot import in_rows
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
-from pvfiblets.report.rows import in_rows
 
 ABOUT = {
     "name": "m", "processor": "Some CPU", "cores": 2, "system": "Linux", "python": "3.11", "driver": "none",

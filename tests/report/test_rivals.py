@@ -9,12 +9,12 @@ import zlib
 import numpy as np
 import pytest
 
+from pvfiblets.report.baselines import octahedral
+from pvfiblets.report.baselines.directions import PaperFiblets, QFib, widest_turn
+from pvfiblets.report.baselines.linearised import LinesPacked, linearised
+from pvfiblets.report.baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from pvfiblets.report.data import made_up
 from pvfiblets.report.measure import distances, median_step
-from pvfiblets.report.rivals import octahedral
-from pvfiblets.report.rivals.directions import PaperFiblets, QFib, widest_turn
-from pvfiblets.report.rivals.linearised import LinesPacked, linearised
-from pvfiblets.report.rivals.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 
 
 def directions(n, seed=0):

@@ -79,8 +79,8 @@ def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path,
 
 
 def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
+    from pvfiblets.report.baselines.directions import widest_turn
     from pvfiblets.report.measure import median_step
-    from pvfiblets.report.rivals.directions import widest_turn
 
     smooth, noisy = (data.made_up(0.5, noise, 3000, 0) for noise in (False, True))
     for made in (smooth, noisy):

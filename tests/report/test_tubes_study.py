@@ -14,7 +14,7 @@ from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Unavailable
 from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
-from pvfiblets.splines import SplineTubes
+from pvfiblets.tubes import SplineTubes
 
 from .little import little
 

@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from pvfiblets.raycast.casting import INTEGRATORS, Casting
 from pvfiblets.report import volume, volume_fields, volume_occlusion, volume_scene
 from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
 
 from .little import little
 
@@ -110,4 +110,4 @@ def test_fields_and_tables_are_what_they_are_called():
     assert (alpha["peak"] > 0.0).sum() == 1
     assert (alpha["peaks"] > 0.0).sum() == 16
     assert all(values.max() == volume_fields.DENSE for values in alpha.values())
-    assert Casting.integrator == "adaptive"
+    assert RaycastOptions.integrator == "adaptive"

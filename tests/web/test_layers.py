@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets
-from pvfiblets.raycast import RaycastVolume
-from pvfiblets.splines.build import as_spline_tubes
+from pvfiblets.tubes.build import as_spline_tubes
+from pvfiblets.volumes import RaycastVolume
 from pvfiblets.web import layers
 from pvfiblets.web.document import Ids
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.raycast import RaycastVolume
-from pvfiblets.raycast.casting import INTEGRATORS
+from pvfiblets.volumes import RaycastVolume
+from pvfiblets.volumes.options import INTEGRATORS
 from pvfiblets.web import layers
 from pvfiblets.web.script import _UNSAID, as_script
 

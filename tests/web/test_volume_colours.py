@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from pvfiblets.engine.volumes import VolumeSource
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.web import session
 from pvfiblets.web.history import History
 from pvfiblets.web.sampling import sampled

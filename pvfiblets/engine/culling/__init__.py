@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...later import names_from
+from ...lazy_imports import names_from
 from ..errors import EngineError
 from .occlusion import Occlusion
 

@@ -17,8 +17,8 @@ import moderngl
 
 from ..opengl import BufferTexture, OpenGL
 from ..passes import dispatch
-from ..pulling import BATCH
 from ..shaders import Programs
+from ..vertex_pulling import BATCH
 from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class Listing:
         seen.clear()
         if not target.buffer.generation:
             return
-        program = self._programs.compute("culling/seen_items.comp")
+        program = self._programs.compute("culling/visible_items.comp")
         seen.bind_to_storage_buffer(0)
         shown.use(SHOWN_UNIT)
         program["shown"], program["count"], program["shift"] = SHOWN_UNIT, self._n, self._shift

@@ -118,7 +118,7 @@ class DepthPyramid:
             width, height = target.size
             for level, framebuffer in enumerate(levels.framebuffers):
                 outside = self.outside if level == 0 else None
-                program, array = self._programs.screen("culling/reduce.frag", ["OUTSIDE"] if outside else [])
+                program, array = self._programs.screen("culling/reduce.frag", ["SCENE_DEPTH"] if outside else [])
                 if outside is not None:
                     outside.use(OUTSIDE_UNIT)
                     program["outside"] = OUTSIDE_UNIT

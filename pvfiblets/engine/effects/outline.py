@@ -1,4 +1,4 @@
-"""Outlines of chosen streamlines: ``shaders/effects/chosen.frag`` and ``outline.frag``."""
+"""Outlines of chosen streamlines: ``shaders/effects/selection_mask.frag`` and ``outline.frag``."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class OutlinePass(ScreenEffect):
 
         def passes() -> None:
             sources = {"keys": buffer.depth, "ids": buffer.ids, "chosen": mask}
-            self._pass("chosen", "chosen pixels", sources, {})
+            self._pass("selection_mask", "chosen pixels", sources, {})
             self._pass("outline", "outline", {"marked": marked}, {"width": width})
 
         self._once((buffer, buffer.generation, id(chosen), width), passes)

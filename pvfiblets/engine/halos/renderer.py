@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 import numpy as np
 
-from ...halos.things import HaloLines, HaloPoints
+from ...halos.geometry import HaloLines, HaloPoints
 from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..hit_target import HitTarget
 from ..opengl import OpenGL
 from ..passes import Passes
-from ..pulling import PulledShapes
 from ..shaders import Programs
+from ..vertex_pulling import PulledShapes
 from ..view import View
-from .blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .style import HaloStyle
+from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import UNITS, Vertices
 
 if TYPE_CHECKING:

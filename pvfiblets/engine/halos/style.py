@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ...halos.look import Look
+from ...halos.style import Look
 from ..view import Style
 
 __all__ = ["HaloStyle"]

@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...halos.things import HaloLines, HaloPoints
+from ...halos.geometry import HaloLines, HaloPoints
 from ..errors import EngineError
 from ..lattice import lattice, places
 from ..opengl import TEXEL_FORMATS, BufferTexture, OpenGL

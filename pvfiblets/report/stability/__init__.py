@@ -20,7 +20,7 @@ MODULES = (
     "decode_cases",
     "capsule_cases",
     "camera_cases",
-    "spline_cases",
+    "tube_cases",
     "halo_cases",
     "volume_cases",
     "picking_cases",

@@ -11,8 +11,8 @@ from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .made_lines import lines_of, tracking, zigzag
-from .seen import EVERY_POINT, OFF_LINE, Array, camera, drawing, drawn, off_lines, read
+from .render_checks import EVERY_POINT, OFF_LINE, Array, camera, drawing, drawn, off_lines, read
+from .synthetic_lines import lines_of, tracking, zigzag
 
 __all__ = ["CASES"]
 

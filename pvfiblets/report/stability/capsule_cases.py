@@ -15,8 +15,8 @@ from pvfiblets.engine import Style, View
 from .case import Cases, Outcome, Setting, refused, worst
 from .codec_cases import EFFORTS
 from .decode_cases import stiff
-from .made_lines import lines_of, tracking, zigzag
-from .seen import Array, camera, drawn, pixel_rays
+from .render_checks import Array, camera, drawn, pixel_rays
+from .synthetic_lines import lines_of, tracking, zigzag
 
 __all__ = ["CASES"]
 

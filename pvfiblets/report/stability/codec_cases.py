@@ -13,7 +13,7 @@ from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .made_lines import apart, helix, lines_of, tracking, turning, zigzag
+from .synthetic_lines import apart, helix, lines_of, tracking, turning, zigzag
 
 __all__ = ["CASES"]
 

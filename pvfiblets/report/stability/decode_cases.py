@@ -8,15 +8,15 @@ from pvfiblets.codec import reference
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, FIELDS, PAGE_BITS, STEP_LEVELS, unpack
-from pvfiblets.codec.query.measures import measure
 from pvfiblets.engine import Style, View
+from pvfiblets.query.measures import measure
 from pvfiblets.streamlines import Streamlines
 
 from .. import decoders
 from ..decode import Made, exact, made
 from .case import Cases, Outcome, Setting, worst
-from .made_lines import apart, helix, lines_of, tracking, turning, zigzag
-from .seen import Array, camera, drawing
+from .render_checks import Array, camera, drawing
+from .synthetic_lines import apart, helix, lines_of, tracking, turning, zigzag
 
 __all__ = ["CASES", "stiff"]
 

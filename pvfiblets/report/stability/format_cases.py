@@ -17,7 +17,7 @@ from pvfiblets.errors import FibletsError
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .made_lines import apart, lines_of, tracking
+from .synthetic_lines import apart, lines_of, tracking
 
 __all__ = ["CASES"]
 

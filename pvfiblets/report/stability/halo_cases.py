@@ -12,7 +12,7 @@ from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.halos.reference import LINE, NOTHING, picture
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .seen import EMPTY, Array, camera
+from .render_checks import EMPTY, Array, camera
 
 __all__ = ["CASES"]
 

@@ -7,13 +7,13 @@ import numpy as np
 from pvfiblets import regions
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.codec.query.screen import under_polygon
 from pvfiblets.engine import View
+from pvfiblets.query.screen import under_polygon
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .made_lines import lines_of, tracking, zigzag
-from .seen import Array, camera, drawn, samples
+from .render_checks import Array, camera, drawn, samples
+from .synthetic_lines import lines_of, tracking, zigzag
 
 __all__ = ["CASES"]
 

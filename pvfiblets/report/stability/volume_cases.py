@@ -8,15 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import View
-from pvfiblets.engine.raycast import RaycastRenderer, RaycastStyle
-from pvfiblets.raycast import reference
-from pvfiblets.raycast.casting import Casting
-from pvfiblets.raycast.reference_rays import rays
-from pvfiblets.raycast.transfer import Transfer
-from pvfiblets.raycast.volume import RaycastVolume
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
+from pvfiblets.volumes import reference
+from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.reference_rays import rays
+from pvfiblets.volumes.transfer import Transfer
+from pvfiblets.volumes.volume import RaycastVolume
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .seen import EMPTY, Array, camera
+from .render_checks import EMPTY, Array, camera
 
 __all__ = ["CASES"]
 
@@ -65,12 +65,12 @@ class Cast:
 
 
 def cast(
-    setting: Setting, volume: RaycastVolume, casting: Casting, matrix: Array, size: tuple[int, int] = SIZE
+    setting: Setting, volume: RaycastVolume, casting: RaycastOptions, matrix: Array, size: tuple[int, int] = SIZE
 ) -> Cast:
     """Draw one picture."""
-    renderer = RaycastRenderer(setting.gl, volume)
+    renderer = VolumeRenderer(setting.gl, volume)
     try:
-        buffer = renderer.render(View(size, matrix), RaycastStyle(casting=casting))
+        buffer = renderer.render(View(size, matrix), VolumeStyle(casting=casting))
         key = np.frombuffer(buffer.depth.read(), "<u4").reshape(size[::-1])
         there = key != EMPTY
         value = np.frombuffer(buffer.position.read(), "<f4").reshape(*size[::-1], 2)[..., 1].astype(np.float64)
@@ -103,7 +103,7 @@ def surface(
     setting: Setting, volume: RaycastVolume, value: float, matrix: Array, size: tuple[int, int] = SIZE
 ) -> Outcome:
     """Compare an isosurface with float64: depths in the least voxel spacings; what is missed, or invented, is inf."""
-    shown = cast(setting, volume, Casting(values=(value,), step=0.25, iterations=8), matrix, size)
+    shown = cast(setting, volume, RaycastOptions(values=(value,), step=0.25, iterations=8), matrix, size)
     through = rays(matrix, size, volume)
     wanted = reference.isosurface(volume, value, through)
     voxel = float(volume.spacing.min())
@@ -137,7 +137,9 @@ def _steep(setting: Setting) -> Outcome:
     for name in TABLES:
         for kappa_step in (1e-3, 0.1, 10.0, 1e3):
             transfer = steep(name, kappa_step)
-            shown = cast(setting, volume, Casting("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
+            shown = cast(
+                setting, volume, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999), matrix
+            )
             off = float(np.abs(shown.light - reference.composite(volume, transfer, through)).max())
             found.append(Outcome(off if shown.sound else np.inf, HUNDREDTH, LIGHT, f"{name}, κΔ {kappa_step:g}"))
     return worst(found)
@@ -154,7 +156,7 @@ def _noise(setting: Setting) -> Outcome:
     through, found = rays(matrix, SIZE, volume), []
     for kappa_step in (1e-2, 1.0, 100.0):
         transfer = steep("one-entry peak", kappa_step)
-        shown = cast(setting, volume, Casting("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
+        shown = cast(setting, volume, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
         off = np.abs(shown.light - reference.composite(volume, transfer, through)).max(axis=-1)
         found.append(Outcome(1e3 * float((off > HUNDREDTH).mean()), 2.0, "pixels in 1,000", f"κΔ {kappa_step:g}"))
     return worst(found)
@@ -171,7 +173,7 @@ def _edges(setting: Setting) -> Outcome:
     through, found = rays(matrix, SIZE, volume), []
     for kappa_step in (0.1, 1.0):
         transfer = steep("ramp", kappa_step)
-        shown = cast(setting, volume, Casting("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
+        shown = cast(setting, volume, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
         off = float(np.abs(shown.light - reference.composite(volume, transfer, through)).max())
         found.append(Outcome(off, HUNDREDTH, LIGHT, f"κΔ {kappa_step:g}"))
     return worst(found)
@@ -217,12 +219,12 @@ def _constant(setting: Setting) -> Outcome:
     matrix = looking_at(volume)
     through = rays(matrix, SIZE, volume)
     hit = ~np.isnan(through.near)
-    surfaces = [cast(setting, volume, Casting(values=(v,)), matrix).there.sum() for v in (0.5, 0.4, 0.6)]
+    surfaces = [cast(setting, volume, RaycastOptions(values=(v,)), matrix).there.sum() for v in (0.5, 0.4, 0.6)]
     alpha = 0.2  # of a unit, 1 mm
     transfer = Transfer(np.tile([1.0, 0.5, 0.25, alpha], (4, 1)), (0.0, 1.0), 1.0)
-    light = cast(setting, volume, Casting("composite", transfer=transfer, stop=1.0), matrix).light[..., 3]
+    light = cast(setting, volume, RaycastOptions("composite", transfer=transfer, stop=1.0), matrix).light[..., 3]
     chord = np.where(hit, through.far - through.near, 0.0)
-    peak = cast(setting, volume, Casting("mip"), matrix)
+    peak = cast(setting, volume, RaycastOptions("mip"), matrix)
     off = max(
         float(np.abs(light - (1.0 - (1.0 - alpha) ** chord)).max()),
         float(np.abs(peak.value[peak.there] - 0.5).max()),
@@ -296,7 +298,11 @@ def _holes(setting: Setting) -> Outcome:
     wrong = abs(volume.n_missing - int(np.isnan(values).sum()))
     matrix = looking_at(volume)
     transfer = steep("ramp", 1.0)
-    for casting in (Casting(values=(0.5,)), Casting("mip"), Casting("composite", transfer=transfer)):
+    for casting in (
+        RaycastOptions(values=(0.5,)),
+        RaycastOptions("mip"),
+        RaycastOptions("composite", transfer=transfer),
+    ):
         shown = cast(setting, volume, casting, matrix)
         wrong += 0 if shown.sound and shown.there.any() else 1
     return Outcome(float(wrong), 0.0, "wrong pictures and counts")
@@ -338,9 +344,9 @@ def _long_steps(setting: Setting) -> Outcome:
     matrix, wrong = looking_at(volume), 0
     for step in (1e-2, 1e3):
         for casting in (
-            Casting(values=(0.5,), step=step),
-            Casting("mip", step=step),
-            Casting("composite", transfer=steep("ramp", 1.0), step=step),
+            RaycastOptions(values=(0.5,), step=step),
+            RaycastOptions("mip", step=step),
+            RaycastOptions("composite", transfer=steep("ramp", 1.0), step=step),
         ):
             wrong += not cast(setting, volume, casting, matrix).sound
     return Outcome(float(wrong), 0.0, "wrong pictures")
@@ -354,6 +360,6 @@ def _opaque(setting: Setting) -> Outcome:
     inside = np.nan_to_num(through.far - through.near) > 1.0
     clear = Transfer(table(ORANGE, np.zeros(256)), (0.0, 1.0), 1.0)
     solid = Transfer(table(ORANGE, np.ones(256)), (0.0, 1.0), 1.0)
-    none = cast(setting, volume, Casting("composite", transfer=clear), matrix).light.max()
-    full = cast(setting, volume, Casting("composite", transfer=solid), matrix).light[..., 3][inside]
+    none = cast(setting, volume, RaycastOptions("composite", transfer=clear), matrix).light.max()
+    full = cast(setting, volume, RaycastOptions("composite", transfer=solid), matrix).light[..., 3][inside]
     return Outcome(float(max(none, (1.0 - full).max())), HUNDREDTH, LIGHT)

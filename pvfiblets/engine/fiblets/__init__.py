@@ -1,0 +1,1 @@
+"""Fiblets on the GPU: uploaded once, then culled, decoded and drawn into a G-buffer by one of several pipelines."""

@@ -1,0 +1,118 @@
+"""How many fiblets a picture is made of, counted when somebody asks.
+
+=============  ==================================================================================================
+count          what it says
+=============  ==================================================================================================
+``total``      fiblets on the GPU
+``in_frustum`` those whose capsules reach into the view volume, on the kept side of the caller's planes
+``drawn``      those of them that culling left over; None where a pipeline does not remember them
+``visible``    those that own a pixel
+=============  ==================================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import moderngl
+import numpy as np
+
+from ..gbuffer import EMPTY, GBuffer
+from ..opengl import OpenGL
+from ..passes import GROUP_SIZE, dispatch, nowhere
+from ..shaders import Programs
+from .chunks import Chunk, storage_buffer
+from .data_textures import DataTextures, set_data_samplers
+
+if TYPE_CHECKING:
+    from .visibility import Visibility
+
+__all__ = ["Census"]
+
+_MARKS, _COUNTS = 5, 7  # storage bindings
+
+
+class Census:
+    """Counts fiblets on one context.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    programs : Programs
+    max_groups : int
+        Work groups per axis of a dispatch; 0 where there are no compute shaders.
+    """
+
+    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, max_groups: int) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._max_groups = max_groups
+
+    def count(
+        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
+    ) -> tuple[int, int | None]:
+        """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already.
+
+        Parameters
+        ----------
+        chunks : sequence of Chunk
+        features : sequence of str
+            What the fiblets need to be decoded, and ``CLIP_PLANES``.
+        marks : moderngl.Buffer, optional
+            Of the compute pipeline.
+        kept : Visibility
+            What of the set is there to be drawn.
+        """
+        if self._max_groups:
+            return self._by_compute(chunks, features, marks, kept)
+        return self._by_query(chunks, features, kept), None
+
+    def _by_compute(
+        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
+    ) -> tuple[int, int | None]:
+        program = self._programs.compute("fiblets/compute/count.comp", features)
+        counts = storage_buffer(self._ctx, np.zeros(2, np.uint32), "counts")
+        program["marked"] = marks is not None
+        if marks is not None:
+            marks.bind_to_storage_buffer(_MARKS)
+        for index, chunk in enumerate(chunks):
+            chunk.bind_storage()
+            kept.bind(program, index)
+            counts.bind_to_storage_buffer(_COUNTS)  # in the place of per-point values
+            dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
+        self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+        in_view, drawn = np.frombuffer(counts.read(8), "<u4").tolist()
+        counts.release()
+        return in_view, drawn if marks is not None else None
+
+    def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str], kept: Visibility) -> int:
+        program = self._programs.render(
+            {"vertex": "fiblets/raster/count.vert", "fragment": "fiblets/raster/count.frag"},
+            [*features, "TEXTURE_DATA"],
+        )
+        set_data_samplers(self._gl, program)
+        array = self._ctx.vertex_array(program, [])
+        total = 0
+        with nowhere(self._ctx, self._gl):
+            self._ctx.enable_only(moderngl.NOTHING)
+            self._ctx.point_size = 1.0
+            for index, chunk in enumerate(chunks):
+                kept.bind(program, index)
+                data, query = DataTextures(self._gl, chunk), self._ctx.query(samples=True)
+                data.bind()
+                chunk.buffers["chunk"].bind_to_uniform_block(2)
+                with query:
+                    array.render(moderngl.POINTS, vertices=chunk.n_fiblets)
+                total += int(query.samples)
+                data.release()
+        array.release()
+        return total
+
+    @staticmethod
+    def visible(target: GBuffer) -> int:
+        """Count fiblets that own a pixel of a picture, by reading it back."""
+        owners = np.unique(np.frombuffer(target.owner.read(), "<u4"))
+        return int((owners != EMPTY).sum())

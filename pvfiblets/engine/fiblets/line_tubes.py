@@ -1,0 +1,70 @@
+"""Tubes of a radius in millimetres: the uniform block of ``shaders/frame/tubes.glsl``, computed in float64.
+
+A pixel of a tube is where the ray through the pixel's centre enters the body (``shaders/fiblets/raster/tube.glsl``).
+Rays are described in local millimetres, by what a step of one pixel moves them: a shader then begins each ray beside
+the segment that it is tested against, and float32 rounds relative to the tube, not to its distance from the camera.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..frame import Array, local_frame
+from ..view import View
+
+__all__ = ["TUBES_BYTES", "tubes_block"]
+
+TUBES_BYTES = 80
+
+
+def tubes_block(view: View, radius: float, origin: Array, scale: Array, top: int) -> bytes:
+    """Pack the ``Tubes`` uniform block (std140).
+
+    Parameters
+    ----------
+    view : View
+    radius : float
+        Of the tubes (mm).
+    origin, scale, top
+        Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
+
+    Returns
+    -------
+    bytes
+        :data:`TUBES_BYTES` of them. A matrix that shows no depth gets rays of no length, which hit nothing.
+    """
+    _, _, local = local_frame(view, origin, scale, top)
+    width, height = view.size
+    x, y, z, w = local
+    window = np.array([width / 2 * (x + w), height / 2 * (y + w), (z + w) / 2, w])
+    slope = float(np.linalg.norm(w[:3]))
+    perspective = slope > 0.0
+    along = w if perspective else window[2]
+    eye, rays = np.zeros(3), np.zeros((3, 3))
+    try:
+        inverse = np.linalg.inv(np.array([window[0, :3], window[1, :3], along[:3]]))
+    except np.linalg.LinAlgError:
+        inverse = rays
+    if np.isfinite(inverse).all():
+        rays = inverse.T[[2, 0, 1]]
+        if perspective:
+            eye = -inverse @ window[[0, 1, 3], 3]
+    block: npt.NDArray[Any] = np.zeros((5, 4))
+    block[0] = radius, radius * slope, _least_w(window, perspective), float(perspective)
+    block[1:4, :3] = rays
+    block[4, :3] = eye
+    return block.astype("<f4").tobytes()
+
+
+def _least_w(window: Array, perspective: bool) -> float:
+    """Return W of the near plane, below which nothing shows; 0 where it changes along that plane."""
+    z, w = window[2], window[3]
+    if not perspective:
+        return 0.5 * float(w[3])
+    share = float(z[:3] @ w[:3] / (w[:3] @ w[:3]))
+    if share <= 0.0 or np.abs(z[:3] - share * w[:3]).max() > 1e-9 * np.abs(z[:3]).max():
+        return 0.0
+    return max(0.999 * float(w[3] - z[3] / share), 0.0)

@@ -1,0 +1,45 @@
+"""How fiblets become pixels: one module per pipeline, each filling the same G-buffer from the same chunks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..measures import ComputeMeasurer, FeedbackMeasurer, Measurer
+from .compute import ComputePipeline
+from .constants import CONSTANTS
+from .draw_request import DrawRequest, Pipeline
+from .limits import TEXTURED, Limits
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from ...opengl import OpenGL
+    from ...shaders import Programs
+
+__all__ = ["CONSTANTS", "ComputePipeline", "DrawRequest", "Limits", "Pipeline", "make_measurer", "make_pipeline"]
+
+
+def make_pipeline(
+    name: str, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int, n_chunks: int, limits: Limits
+) -> Pipeline:
+    """Make a pipeline by its name, which the context must support."""
+    if name in ("mesh", "mesh-serial"):
+        from .mesh import MeshPipeline
+
+        return MeshPipeline(ctx, gl, programs, n_fiblets, serial=name == "mesh-serial")
+    if name == "tessellation":
+        from .tessellation import TessellationPipeline
+
+        return TessellationPipeline(ctx, gl, programs, n_fiblets)
+    if name == "geometry":
+        from .geometry import GeometryPipeline
+
+        return GeometryPipeline(ctx, gl, programs, n_fiblets)
+    return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups)
+
+
+def make_measurer(name: str, ctx: moderngl.Context, gl: OpenGL, programs: Programs, limits: Limits) -> Measurer:
+    """Make what measures fiblets beside a pipeline."""
+    if name in TEXTURED:
+        return FeedbackMeasurer(ctx, gl, programs)
+    return ComputeMeasurer(ctx, programs, limits.groups)

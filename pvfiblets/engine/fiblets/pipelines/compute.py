@@ -1,0 +1,349 @@
+"""The compute pipeline (OpenGL 4.3): decode in registers, rasterise into images with atomics.
+
+=============  =================================================================================================
+pass           what it does
+=============  =================================================================================================
+clear          empties depth, owners and lists
+cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
+               the last picture's depth, of which class they are
+seen           draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
+guessed        draws the depth of those that will probably show
+pyramid        makes the depth so far into a pyramid
+occlusion      tests the rest against it, as a whole, and refine in pieces
+depth          draws the depth of what is left
+own            draws those so marked again: where depth was kept, the least fiblet index owns the pixel and writes
+               streamline, tangent and place into it
+settle         writes the pixels that more than one fiblet took, by their owners
+=============  =================================================================================================
+
+Of these, guessed to refine belong to two-phase culling. Last time's fiblets and depth only decide the order: the
+picture is the same whatever was seen before. There is a program for each class of fiblets
+(``shaders/fiblets/compute/cull.comp``): those inside all planes of the view volume need no clipping, those drawn as
+one segment no decoding.
+
+Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth passes keep depth and fiblet in one word
+(``shaders/fiblets/compute/nearest.glsl``). A pass ``split`` makes depth and owners of the words, before the pyramid
+and at the end; then ``resolve_owner`` draws the owners alone, by the program of ``resolve_ties``, which there is no
+more need of.
+
+Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
+calls whatever there is to draw.
+
+The sources are in ``shaders/compute``; what a program includes is decided by features.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+
+from ....codec.layout import MAX_POINTS
+from ...errors import EngineError
+from ...opengl import OpenGL
+from ...passes import GROUP_SIZE, dispatch, is_software
+from ...shaders import EXTENDED, Programs
+from ..chunks import Chunk, storage_buffer
+from .constants import GROUP_WORDS, MARK_WORDS
+from .draw_request import DrawRequest
+
+if TYPE_CHECKING:
+    from .geometry import GeometryPipeline
+
+__all__ = ["CLASSES", "ComputePipeline"]
+
+CLASSES = 4
+ROUNDS = 6
+ARGUMENT_BYTES = 16
+SEEN, GUESSED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
+
+NEAREST_BINDING = 8
+
+SOFTWARE_ITERATIONS = 60_000
+"""What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
+iterations in sum and says nothing."""
+
+TUBES_BY_RASTER = True
+"""Whether tubes are left to the pipeline `geometry` where software OpenGL draws: how many pixels a tube near the camera
+takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
+
+WIDEST_IN_SOFTWARE = 100
+"""Pixels of line width with which one segment of each fiblet stays within that."""
+
+
+class ComputePipeline:
+    """Draws chunks into a G-buffer.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    programs : Programs
+    n_fiblets : int
+        In all chunks.
+    n_chunks : int
+    max_groups : int
+        Work groups per axis of a dispatch.
+
+    Attributes
+    ----------
+    planned : bool
+        Whether the marks are those of the last picture.
+    """
+
+    name = "compute"
+
+    def __init__(
+        self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, n_chunks: int, max_groups: int
+    ) -> None:
+        self._ctx = ctx
+        self._programs = programs
+        self._max_groups = max_groups
+        self._software = is_software(ctx)
+        self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
+        self._shares = [(0, MAX_POINTS)]
+        self._raster: GeometryPipeline | None = None
+        self.planned = False
+        self._words = -(-n_fiblets // 32)
+        self._round_arguments = n_chunks * CLASSES
+        self._list_base = self._words * MARK_WORDS
+        self._argument_base = self._list_base + self._words * CLASSES
+        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+        self._own: dict[str, moderngl.Buffer] = {}
+        self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(size, np.uint32), "visibility_bits")
+
+    @property
+    def buffers(self) -> dict[str, Any]:
+        """``visibility_bits`` (``visibility_bits.glsl``); ``nearest``: a word a pixel, with 64-bit atomics.
+
+        And what the pipeline that draws tubes has, if it does.
+        """
+        others = {} if self._raster is None else self._raster.buffers
+        return {**self._own, **{f"{name} of tubes": held for name, held in others.items()}}
+
+    def draw(self, request: DrawRequest) -> None:
+        """Draw all chunks; the uniform blocks are bound already.
+
+        Raises
+        ------
+        EngineError
+            If lines are so wide that software OpenGL would lose parts of them.
+        """
+        if self._software and request.tubes and TUBES_BY_RASTER:
+            self._draw_by_raster(request)
+            self.planned = False
+            return
+        self._drop_raster()
+        self.planned = True
+        if self._software:
+            self._shares = _shares(1.0 if request.tubes else request.line_width, request.segment)
+        target, occlusion = request.target, request.occlusion
+        images = (target.depth, target.owner, target.ids, target.position, target.across)
+        for index, texture in enumerate(image for image in images if image is not None):
+            texture.bind_to_image(index, read=True, write=True)
+        self._own["visibility_bits"].bind_to_storage_buffer(5)
+        passes = request.passes
+        if self._int64:
+            self._bind_nearest(8 * target.size[0] * target.size[1])
+        with passes.timed("clear"):
+            clear = self._program("clear", self._int64)
+            self._set(clear, argument_base=self._argument_base)
+            self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
+            dispatch(clear, target.size[1], self._max_groups)
+        with passes.timed("cull"):
+            features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
+            if occlusion is not None and occlusion.guesses:
+                features.append(occlusion.feature)
+                occlusion.bind(self._program("cull", features))
+            self._run("cull", features, request)
+            self._barrier()
+        if occlusion is not None and not occlusion.halfway:
+            with passes.timed("occlusion"):
+                self._test("occlude", request)
+        with passes.timed("visible"):
+            self._round("depth", SEEN, request)
+        if occlusion is not None and occlusion.halfway:
+            if occlusion.guesses:
+                with passes.timed("guessed"):
+                    self._round("depth", GUESSED, request)
+            self._split(request, marking=False)
+            with passes.timed("pyramid"):
+                occlusion.build(target)
+            with passes.timed("occlusion"):
+                self._test("occlude", request)
+            with passes.timed("refine"):
+                self._refine(request)
+        with passes.timed("depth"):
+            self._round("depth", REST, request)
+        self._split(request, marking=True)
+        with passes.timed("resolve_owner"):
+            self._round("resolve_ties" if self._int64 else "resolve_owner", CANDIDATES, request)
+        if not self._int64:
+            with passes.timed("resolve_ties"):
+                self._round("resolve_ties", TIED, request)
+        self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+
+    def _draw_by_raster(self, request: DrawRequest) -> None:
+        """Have the pipeline `geometry` draw, which reads the same buffers."""
+        from .geometry import GeometryPipeline
+
+        if self._raster is None:
+            self._raster = GeometryPipeline(self._ctx, OpenGL(self._ctx), self._programs, 32 * self._words)
+        self._raster.draw(request)
+
+    def _bind_nearest(self, size: int) -> None:
+        held = self._own.get("nearest")
+        if held is None or held.size != size:
+            if held is not None:
+                self._own.pop("nearest").release()
+            try:
+                held = self._own["nearest"] = self._ctx.buffer(reserve=size)
+            except moderngl.Error as error:
+                raise EngineError(f"no GPU memory for {size} bytes of depths and owners") from error
+        held.bind_to_storage_buffer(NEAREST_BINDING)
+
+    def _split(self, request: DrawRequest, *, marking: bool) -> None:
+        """Make depth and owners of the words, if there are any; mark owners as seen, and to be drawn."""
+        if not self._int64:
+            return
+        with request.passes.timed("owners" if marking else "split"):
+            split = self._program("split", ())
+            self._set(split, marking=int(marking))
+            dispatch(split, request.target.size[1], self._max_groups)
+            self._barrier()
+
+    def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
+        return self._programs.compute(f"fiblets/compute/{stage}.comp", features)
+
+    def _set(self, program: moderngl.ComputeShader, **uniforms: object) -> None:
+        """Set those uniforms that the compiler left in."""
+        for name, value in {
+            "list_base": self._list_base,
+            "list_length": self._words,
+            **uniforms,
+        }.items():
+            if name in program:
+                program[name] = value
+
+    def _barrier(self) -> None:
+        self._ctx.memory_barrier(
+            moderngl.SHADER_STORAGE_BARRIER_BIT
+            | moderngl.SHADER_IMAGE_ACCESS_BARRIER_BIT
+            | moderngl.COMMAND_BARRIER_BIT
+            | moderngl.TEXTURE_FETCH_BARRIER_BIT
+            | moderngl.FRAMEBUFFER_BARRIER_BIT
+        )
+
+    def _arguments(self, number: int, chunk: int) -> int:
+        """Word at which the dispatch arguments of a round and chunk start."""
+        return self._argument_base + (number * self._round_arguments + chunk * CLASSES) * ARGUMENT_BYTES // 4
+
+    def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
+        """List what a round has to draw."""
+        plan = self._program("plan", ())
+        self._set(plan, drawing=number, refined=int(refined))
+        for index, chunk in enumerate(chunks):
+            self._set(plan, argument_base=self._arguments(number, index))
+            chunk.buffers["chunk"].bind_to_uniform_block(2)
+            dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
+        self._barrier()
+        arguments = self._program("arguments", ())
+        self._set(arguments, argument_base=self._arguments(number, 0), list_count=self._round_arguments)
+        self._set(arguments, max_groups=self._max_groups)
+        arguments.run(1)
+        self._barrier()
+
+    def _round(self, stage: str, number: int, request: DrawRequest) -> None:
+        """Draw one round's fiblets, class by class."""
+        refined = number == REST and request.occlusion is not None and request.occlusion.halfway
+        self._plan(number, request.chunks, refined)
+        for part, features in request.classes:
+            program = self._program(stage, [*features, *self._int64])
+            for share in self._shares if request.line_width > 1.0 else self._shares[:1]:
+                self._set(program, drawing=number, part=part, share=share)
+                self._run_listed(program, number, part, request)
+                if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
+                    self._barrier()
+        self._barrier()
+
+    def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, request: DrawRequest) -> None:
+        for index, chunk in enumerate(request.chunks):
+            at = self._arguments(number, index)
+            self._set(program, argument_base=at)
+            chunk.bind_storage()
+            request.kept.bind(program, index)
+            if request.peel is not None:
+                request.peel.bind(program)
+            program.run_indirect(self._own["visibility_bits"], 4 * at + ARGUMENT_BYTES * part)
+
+    def _test(self, stage: str, request: DrawRequest) -> None:
+        """Run a pass over all fiblets that looks at the occlusion's texture."""
+        self._run(stage, self._looking(stage, request), request)
+        self._barrier()
+
+    def _looking(self, stage: str, request: DrawRequest) -> Sequence[str]:
+        assert request.occlusion is not None
+        features = [*request.decoding, *request.detail, *request.tubes, request.occlusion.feature]
+        request.occlusion.bind(self._program(stage, features))
+        return features
+
+    def _refine(self, request: DrawRequest) -> None:
+        """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
+        program = self._program("refine", self._looking("refine", request))
+        self._plan(TESTED, request.chunks)
+        for part, _ in request.classes:
+            self._set(program, part=part)
+            self._run_listed(program, TESTED, part, request)
+        self._barrier()
+
+    def _run(self, stage: str, features: Sequence[str], request: DrawRequest) -> None:
+        """Run a pass of one invocation for 32 fiblets."""
+        program = self._program(stage, features)
+        self._set(program)
+        for index, chunk in enumerate(request.chunks):
+            chunk.bind_storage()
+            request.kept.bind(program, index)
+            dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
+
+    def release(self) -> None:
+        """Give the pipeline's own buffers back; twice is harmless."""
+        for buffer in self._own.values():
+            buffer.release()
+        self._own.clear()
+        self._drop_raster()
+
+    def _drop_raster(self) -> None:
+        if self._raster is not None:
+            self._raster.release()
+            self._raster = None
+
+
+def _has_int64_atomics(ctx: moderngl.Context) -> bool:
+    """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
+    wanted = {"GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"}
+    if ctx.version_code < EXTENDED or not wanted <= set(ctx.extensions):
+        return False
+    return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > NEAREST_BINDING
+
+
+def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
+    """Cut the segments of a fiblet into ranges whose pixels software OpenGL draws before it leaves the loops.
+
+    An invocation draws ``32 * GROUP_WORDS / GROUP_SIZE`` fiblets or fewer, and waits for its neighbours' segments.
+    Over each pixel of a segment's longer side stand at most sqrt(2) widths, 1.2 on average.
+    """
+    if line_width == 1.0:
+        return [(0, MAX_POINTS)]
+    fiblets = 32 * GROUP_WORDS // GROUP_SIZE
+    count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment + line_width)))
+    if count < 1 and line_width > WIDEST_IN_SOFTWARE:
+        raise EngineError(
+            f"a line width of {line_width:g} pixels is more than software OpenGL draws whole; give at most "
+            f"{WIDEST_IN_SOFTWARE}"
+        )
+    ranges = math.ceil(MAX_POINTS / max(count, 1))
+    edges = [MAX_POINTS * i // ranges for i in range(ranges + 1)]
+    return list(itertools.pairwise(edges))

@@ -1,0 +1,40 @@
+"""Numbers that the pipelines' sources and modules share, in a place that loads none of these modules."""
+
+from __future__ import annotations
+
+from ....query.region import MAX_LEAVES, MAX_OPS
+from ...passes import GROUP_SIZE
+from ...view import MAX_CLIP_PLANES
+from ..filter_textures import MASK_BITS
+
+__all__ = ["CONSTANTS", "GROUP_WORDS", "MARK_WORDS", "SHARES", "TASK_FIBLETS", "TASK_ROUNDS", "THREADS", "VERTICES"]
+
+GROUP_WORDS = 8
+MARK_WORDS = 15
+
+SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
+VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
+
+THREADS = 32
+"""Of a mesh stage's work group: a warp, as the paper has it."""
+
+TASK_ROUNDS = 8
+"""How many fiblets each invocation of a task work group tests."""
+
+TASK_FIBLETS = THREADS * TASK_ROUNDS
+
+CONSTANTS = {
+    "group_size": GROUP_SIZE,
+    "group_words": GROUP_WORDS,
+    "mark_words": MARK_WORDS,
+    "mask_bits": MASK_BITS,
+    "max_clip_planes": MAX_CLIP_PLANES,
+    "max_region_leaves": MAX_LEAVES,
+    "max_region_ops": MAX_OPS,
+    "mesh_threads": THREADS,
+    "task_fiblets": TASK_FIBLETS,
+    "task_rounds": TASK_ROUNDS,
+    **{f"{drawn}_share": share for drawn, share in SHARES.items()},
+    **{f"{drawn}_vertices": count for drawn, count in VERTICES.items()},
+}
+"""Of all pipelines' sources."""

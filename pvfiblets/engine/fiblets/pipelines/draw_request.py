@@ -1,0 +1,128 @@
+"""What a pipeline is told to draw, and what every pipeline does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from ...gbuffer import GBuffer
+from ...passes import Passes
+from ..chunks import Chunk
+
+if TYPE_CHECKING:
+    from ...culling.occlusion import Occlusion
+    from ..depth_peeling import Peel
+    from ..visibility import Visibility
+
+__all__ = ["DrawRequest", "Pipeline", "Sized"]
+
+
+@dataclass(frozen=True)
+class DrawRequest:
+    """One picture.
+
+    The uniform blocks ``Frame``, ``Coding``, ``ClipPlanes`` (if there are planes) and ``Rotations`` are bound to 0, 1,
+    3 and 4 already.
+
+    Attributes
+    ----------
+    chunks : sequence of Chunk
+    target : GBuffer
+    passes : Passes
+        Takes the times.
+    decoding : tuple of str
+        Features (keys of :data:`pvfiblets.engine.shaders.FEATURES`) that the fiblets' records ask for.
+    values : tuple of str
+        Feature of the per-point value.
+    clipping : bool
+        Whether any fiblet may cross the edges of the picture, the near or the far plane.
+    planes : tuple of str
+        ``CLIP_PLANES``, if planes of the caller's may touch anything.
+    detail : tuple of str
+        ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
+    line_width : float
+        Pixels; not looked at where there are tubes.
+    segment : float
+        Pixels that the longest segments in the picture take, roughly.
+    occlusion : Occlusion, optional
+        Tests what earlier depth hides.
+    kept : Visibility
+        The caller's filter and region.
+    tubes, across : tuple of str
+        ``TUBES`` and ``CROSS_LINE``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
+    peel : Peel, optional
+        Layers behind which the picture begins.
+    """
+
+    chunks: Sequence[Chunk]
+    target: GBuffer
+    passes: Passes
+    decoding: tuple[str, ...]
+    values: tuple[str, ...]
+    clipping: bool
+    planes: tuple[str, ...]
+    detail: tuple[str, ...]
+    line_width: float
+    segment: float
+    occlusion: Occlusion | None
+    kept: Visibility
+    tubes: tuple[str, ...] = ()
+    across: tuple[str, ...] = ()
+    peel: Peel | None = None
+
+    @property
+    def wide(self) -> tuple[str, ...]:
+        """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
+        wide = ("WIDE_LINES",) if self.line_width > 1.0 or self.tubes else ()
+        return (*wide, *self.tubes, *self.across)
+
+    @property
+    def peeling(self) -> tuple[str, ...]:
+        """``PEEL``, if the picture begins behind others."""
+        return () if self.peel is None else ("PEEL",)
+
+    @property
+    def cutting(self) -> tuple[str, ...]:
+        """Features by which a fiblet is drawn in part."""
+        return (*self.planes, *self.kept.cutting)
+
+    @property
+    def classes(self) -> list[tuple[int, tuple[str, ...]]]:
+        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
+        common = (*self.decoding, *self.values, *self.wide, *self.peeling)
+        classes = [(0, common)]
+        if self.clipping:
+            classes.append((1, (*common, *self.detail, "CLIPPING")))
+            classes.append((2, (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")))
+        if self.detail:
+            classes.append((3, (*common, "ONE_SEGMENT")))
+        return classes
+
+
+class Sized(Protocol):
+    """Something on the GPU."""
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        ...
+
+
+class Pipeline(Protocol):
+    """How fiblets become pixels."""
+
+    name: str
+
+    @property
+    def buffers(self) -> Mapping[str, Sized]:
+        """What it keeps on the GPU of its own, by name."""
+        ...
+
+    def draw(self, request: DrawRequest) -> None:
+        """Fill the target."""
+        ...
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        ...

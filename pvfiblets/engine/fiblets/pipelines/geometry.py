@@ -1,0 +1,54 @@
+"""The geometry pipeline (OpenGL 3.3): a point a fiblet goes in, lines come out, decoded while they are emitted.
+
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
+
+Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
+components of ``shaders/fiblets/raster/varyings.glsl``, per-point values included:
+
+======================  ==========  ==============  ===========================================================
+drawn                   components  vertices        segments of a share
+======================  ==========  ==============  ===========================================================
+thin, uncut             16          1024 // 16: 64  60: all of them, by 61 vertices
+thin, may be cut        17          1024 // 17: 60  30: every segment may be a strip of its own
+wide                    20          1024 // 20: 51  12: four vertices each, 60 in five shares
+wide, caller's planes   26          1024 // 26: 39  9: four vertices each, 60 in seven shares
+======================  ==========  ==============  ===========================================================
+
+A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import moderngl
+
+from ....codec.layout import MAX_POINTS
+from .constants import SHARES
+from .draw_request import DrawRequest
+from .textured import TexturedPipeline
+
+__all__ = ["GeometryPipeline"]
+
+
+class GeometryPipeline(TexturedPipeline):
+    """Draws chunks through geometry stages; parameters as for :class:`RasterPipeline`."""
+
+    name = "geometry"
+    mode = moderngl.POINTS
+
+    def _stages(self, request: DrawRequest) -> Mapping[str, str]:
+        geometry, fragment = ("capsules", "capsule") if request.wide else ("lines", "line")
+        return {
+            "vertex": "fiblets/raster/survivors.vert",
+            "geometry": f"fiblets/geometry/{geometry}.geom",
+            "fragment": f"fiblets/raster/{fragment}.frag",
+        }
+
+    def _shares(self, request: DrawRequest) -> int:
+        # The geometry stages choose by the same features.
+        if request.wide:
+            share = SHARES["cut_capsule" if request.planes else "capsule"]
+        else:
+            share = SHARES["cut_line" if request.clipping else "line"]
+        return -(-MAX_POINTS // share)

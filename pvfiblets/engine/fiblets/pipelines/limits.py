@@ -1,0 +1,76 @@
+"""What a driver allows a pipeline, or what its user does, where that is less."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+
+from ...opengl import OpenGL
+from .compute import CLASSES
+from .constants import MARK_WORDS
+
+__all__ = ["TEXTURED", "Limits"]
+
+TEXTURED = ("tessellation", "geometry")
+"""Pipelines that read data through buffer textures, and need no storage buffers."""
+
+MESH = ("mesh", "mesh-serial")
+
+LARGEST = 2**31 - 4
+"""Bytes of a buffer, whatever a driver allows: what shaders count in a chunk then fits into 32 bits (``chunks.py``)."""
+
+_MARK_BYTES = {"texture": 32, "buffer": 4 * (MARK_WORDS + CLASSES)}  # for 32 fiblets
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of a pipeline on a context; made by :meth:`of`.
+
+    Attributes
+    ----------
+    buffer_bytes : int
+        Of one buffer of records.
+    groups : int
+        Compute work groups along one axis; 0 where there are none.
+    marks : int
+        Fiblets of which the pipeline can remember what became of them.
+    marked_by : str
+        What holds them.
+    """
+
+    buffer_bytes: int
+    groups: int
+    marks: int
+    marked_by: str
+
+    def mark_bytes(self, n_fiblets: int) -> int:
+        """Bytes of those marks."""
+        return -(-n_fiblets // 32) * _MARK_BYTES[self.marked_by]
+
+    @classmethod
+    def of(
+        cls, ctx: moderngl.Context, gl: OpenGL, pipeline: str, buffer_bytes: int | None, groups: int | None
+    ) -> Limits:
+        """Ask the driver, and take what is less.
+
+        Parameters
+        ----------
+        ctx : moderngl.Context
+        gl : OpenGL
+        pipeline : str
+        buffer_bytes, groups : int, optional
+            Of the user's.
+        """
+        side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
+        if pipeline in TEXTURED:
+            # Of the buffers that decide how many fiblets a chunk holds, every texel has four bytes.
+            most = min(4 * gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE"), LARGEST)
+            return cls(min(most, buffer_bytes or most), 0, side * side, "texture")
+        most = gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
+        axis = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        most = min(most, LARGEST)
+        groups, records = min(axis, groups or axis), min(most, buffer_bytes or most)
+        if pipeline in MESH:
+            return cls(records, groups, side * side, "texture")
+        return cls(records, groups, 32 * (most // _MARK_BYTES["buffer"]), "buffer")

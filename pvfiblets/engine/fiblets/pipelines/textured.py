@@ -1,0 +1,56 @@
+"""What `tessellation` and `geometry` have in common: data from buffer textures, one vertex or several for a fiblet."""
+
+from __future__ import annotations
+
+import abc
+
+import moderngl
+
+from ...opengl import OpenGL
+from ...passes import is_software
+from ...shaders import Programs
+from ..chunks import Chunk
+from ..data_textures import DataTextures, set_data_samplers
+from .draw_request import DrawRequest
+from .raster import RasterPipeline
+
+__all__ = ["TexturedPipeline"]
+
+
+class TexturedPipeline(RasterPipeline):
+    """Draws by stages that take data from buffer textures, and fiblets from ``fiblets/raster/survivors.vert``."""
+
+    mode: int
+    """What a vertex is to OpenGL."""
+    software_batch: int | None = None
+    """Vertices of one call, where Mesa's software OpenGL draws."""
+
+    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int) -> None:
+        super().__init__(ctx, gl, programs, n_fiblets)
+        self._batch = self.software_batch if is_software(ctx) else None
+        self._data: dict[int, DataTextures] = {}
+
+    @abc.abstractmethod
+    def _shares(self, request: DrawRequest) -> int:
+        """How many vertices stand for a fiblet."""
+
+    def _prepare(self, program: moderngl.Program) -> None:
+        set_data_samplers(self._gl, program)
+
+    def _draw(self, array: moderngl.VertexArray, program: moderngl.Program, chunk: Chunk, request: DrawRequest) -> None:
+        shares = self._shares(request)
+        program["shares"] = shares
+        if id(chunk) not in self._data:  # they keep the chunk, so that no other can have its id
+            self._data[id(chunk)] = DataTextures(self._gl, chunk)
+        self._data[id(chunk)].bind()
+        count = chunk.n_fiblets * shares
+        batch = self._batch or count
+        for first in range(0, count, batch):
+            array.render(self.mode, vertices=min(batch, count - first), first=first)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for data in self._data.values():
+            data.release()
+        self._data.clear()
+        super().release()

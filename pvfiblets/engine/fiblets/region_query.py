@@ -1,0 +1,242 @@
+"""Which streamlines have points in a region, asked on the GPU of the records that are drawn.
+
+The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
+margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
+records in float64 by :func:`pvfiblets.query.passing.region_flags`: the answers are its own, bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ...query.predicates import ALL, ANY, FIRST, LAST
+from ..errors import GPUMemoryError
+from ..frame import FRAME_BYTES, Array
+from ..opengl import OpenGL
+from ..passes import GROUP_SIZE, dispatch
+from ..regions.uniform_block import RegionBlock
+from ..shaders import BLOCKS, Programs
+from .chunks import Chunk, reserve_buffer, storage_buffer
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+    from ...query.region import Region
+
+__all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
+
+BATCH = 1 << 20
+"""Fiblets asked at a time, so that no dispatch runs for long."""
+
+_ANSWERS, _LISTS = 5, 7  # storage bindings
+_STAGES = 3
+_REFERENCE_AT = 160  # bytes into the block `Frame`, see shaders/frame/blocks.glsl
+
+# As shaders/fiblets/compute/query.comp has them.
+_INSIDE, _OUTSIDE, _UNSURE, _FIRST_INSIDE, _FIRST_UNSURE, _LAST_INSIDE, _LAST_UNSURE = (1 << k for k in range(7))
+
+Bytes = npt.NDArray[np.uint8]
+
+
+class RegionQuery:
+    """Asks one set that is on the GPU.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    programs : Programs
+    fiblets : FibletSet
+        The whole set, with its codes.
+    chunks : sequence of Chunk
+        What of it is on the GPU.
+    max_groups : int
+        Work groups per axis of a dispatch; 0 for as many as the driver allows.
+
+    Attributes
+    ----------
+    unsure : int
+        How many streamlines of the last query were settled in float64.
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        gl: OpenGL,
+        programs: Programs,
+        fiblets: FibletSet,
+        chunks: Sequence[Chunk],
+        max_groups: int,
+    ) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._fiblets = fiblets
+        self._chunks = chunks
+        self._max_groups = max_groups
+        self._block = RegionBlock(ctx, gl)
+        self._frame: moderngl.Buffer | None = None
+        self.unsure = 0
+
+    @property
+    def available(self) -> bool:
+        """Whether the GPU can answer: the whole set is there, compute shaders, and large enough storage blocks."""
+        if self._ctx.version_code < 430 or sum(c.n_fiblets for c in self._chunks) < self._fiblets.n_fiblets:
+            return False
+        largest = self._gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
+        return all(buffer.size <= largest for chunk in self._chunks for buffer in chunk.buffers.values())
+
+    def flags(self, features: Sequence[str], region: Region, sampling: float | None = None) -> Bytes:
+        """Return the answers for every streamline, by the GPU where it can, else by the CPU.
+
+        Parameters
+        ----------
+        features : sequence of str
+            What the fiblets need to be decoded. The uniform blocks 1 and 4 are bound already; 0 is bound anew.
+        region : Region
+            In data mm.
+        sampling : float, optional
+            mm; see :func:`pvfiblets.query.passing.region_flags`.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` uint8 of :data:`ANY`, :data:`ALL`, :data:`FIRST`, :data:`LAST`.
+
+        Raises
+        ------
+        GPUMemoryError
+            If memory does not suffice for the answers.
+        ValueError
+            If the sampling is not above 0.
+        """
+        from ...query.passing import region_flags
+
+        if sampling is not None and not (np.isfinite(sampling) and sampling > 0.0):
+            raise ValueError(f"sampling is {sampling}; give a finite number of mm above 0, or None for points alone")
+        fiblets = self._fiblets
+        self.unsure = 0
+        if not (self.available and self._prepare(region)):
+            return region_flags(fiblets, region, sampling=sampling)
+        marks = self._ask([*features, *self._block.features], sampling or 0.0)
+        ids = np.arange(len(marks)) if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id)
+        found = np.zeros(fiblets.n_streamlines, np.uint8)
+        found[ids] = _answers(marks)
+        unsure = ids[_open(marks)]
+        self.unsure = len(unsure)
+        if len(unsure):
+            found[unsure] = region_flags(fiblets, region, sampling=sampling, ids=unsure)[unsure]
+        return found
+
+    def _prepare(self, region: Region) -> bool:
+        """Bring uniform blocks and fields up to date; False if there is no room for the fields."""
+        fiblets = self._fiblets
+        origin, scale = np.asarray(fiblets.origin, np.float64), np.asarray(fiblets.anchor_scale, np.float64)
+        reference = nearest_anchor(region, origin, scale, 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1)
+        to_data = np.eye(4)
+        to_data[:3, 3] = origin + scale * reference
+        try:
+            self._block.write(region, to_data)
+        except GPUMemoryError:
+            self._block.release()
+            return False
+        if self._frame is None:
+            self._frame = self._ctx.buffer(reserve=FRAME_BYTES)
+        block = np.zeros(FRAME_BYTES, np.uint8)
+        block[_REFERENCE_AT : _REFERENCE_AT + 12] = reference.astype("<u4").view(np.uint8)
+        self._frame.write(block.tobytes())
+        self._frame.bind_to_uniform_block(BLOCKS["Frame"])
+        return True
+
+    def _ask(self, features: Sequence[str], sampling: float) -> Bytes:
+        """``(n_ranks,)`` what the shader says of each streamline that has points."""
+        program = self._programs.compute("fiblets/compute/query.comp", features)
+        program["sampling"] = sampling
+        self._block.bind(program)
+        marks = np.zeros(int(self._fiblets.pages[-1, 0]), np.uint8)
+        for chunk in self._chunks:
+            first, last = (int(self._fiblets.pages[page, 0]) for page in chunk.plan.pages)
+            last = min(last + 1, len(marks))  # its last streamline may go on in the next chunk
+            marks[first:last] |= self._ask_chunk(program, chunk, last - first)
+        return marks
+
+    def _ask_chunk(self, program: moderngl.ComputeShader, chunk: Chunk, ranks: int) -> Bytes:
+        groups = self._max_groups or int(self._ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        batch = min(BATCH, chunk.n_fiblets)
+        with ExitStack() as stack:
+            answers = storage_buffer(self._ctx, np.zeros(ranks, np.uint8), "answers")
+            stack.callback(answers.release)
+            lists = reserve_buffer(self._ctx, 4 * (2 + 2 * batch), "lists of fiblets")
+            stack.callback(lists.release)
+            chunk.bind_storage()
+            answers.bind_to_storage_buffer(_ANSWERS)
+            lists.bind_to_storage_buffer(_LISTS)  # in the place of per-point values
+            for first in range(0, chunk.n_fiblets, batch):
+                size = min(batch, chunk.n_fiblets - first)
+                program["batch_first"], program["batch_size"] = first, size
+                lists.write(bytes(8))
+                for stage in range(_STAGES):
+                    # How many fiblets each stage left to the next.
+                    count = np.frombuffer(lists.read(8), "<u4")[stage - 1] if stage else size
+                    program["stage"] = stage
+                    dispatch(program, -(-int(count) // GROUP_SIZE), groups)
+                    self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+            return np.frombuffer(answers.read(ranks), np.uint8)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        return self._block.nbytes + (0 if self._frame is None else self._frame.size)
+
+    def release(self) -> None:
+        """Give back what is on the GPU; twice is harmless."""
+        self._block.release()
+        if self._frame is not None:
+            self._frame.release()
+            self._frame = None
+
+
+def nearest_anchor(region: Region, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
+    """Choose the anchor that rounding is made relative to: near the middle of a region, where answers turn.
+
+    Parameters
+    ----------
+    region : Region
+    origin, scale : numpy.ndarray
+        ``(3,)`` position of anchor 0 and mm per anchor integer.
+    top : int
+        The largest anchor integer.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(3,)`` int64 in ``0..top``.
+    """
+    low, high = np.asarray(region.bounds, np.float64).reshape(3, 2).T
+    first, last = origin, origin + scale * top
+    # Where a region has no end, the set's end stands for it; of an empty region any anchor serves.
+    middle = np.clip(low, first, last) / 2 + np.clip(high, first, last) / 2
+    steps = np.divide(middle - origin, scale, out=np.zeros(3), where=scale > 0.0)
+    chosen: npt.NDArray[np.int64] = np.rint(np.clip(np.nan_to_num(steps), 0, top)).astype(np.int64)
+    return chosen
+
+
+def _answers(marks: Bytes) -> Bytes:
+    """Answers as far as the marks settle them."""
+    found: npt.NDArray[Any] = np.where(marks & _INSIDE, ANY, 0)
+    found |= np.where(marks & (_OUTSIDE | _UNSURE), 0, ALL)
+    found |= np.where(marks & _FIRST_INSIDE, FIRST, 0) | np.where(marks & _LAST_INSIDE, LAST, 0)
+    return found.astype(np.uint8)
+
+
+def _open(marks: Bytes) -> npt.NDArray[np.bool_]:
+    """Which answers an unsure point could change."""
+    both = _INSIDE | _OUTSIDE
+    some = (marks & _UNSURE != 0) & (marks & both != both)
+    opened: npt.NDArray[np.bool_] = some | (marks & (_FIRST_UNSURE | _LAST_UNSURE) != 0)
+    return opened

@@ -1,0 +1,119 @@
+"""Uniform blocks that every pass of a renderer shares: what the set's numbers mean, and what a camera makes of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ...codec import layout, tables
+from ..clipping import BLOCK_BYTES, clip_planes_block
+from ..frame import FRAME_BYTES, frame_block, segment_pixels
+from ..shaders import BLOCKS
+from .line_tubes import TUBES_BYTES, tubes_block
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+    from ..view import Style, View
+    from .chunks import Chunk
+
+__all__ = ["SharedBlocks", "decoding_features"]
+
+Array = npt.NDArray[np.float64]
+
+
+def decoding_features(fiblets: FibletSet, chunks: list[Chunk]) -> list[str]:
+    """Return what fiblets need to be decoded, keys of :data:`pvfiblets.engine.shaders.FEATURES`."""
+    kinds = frozenset().union(*(chunk.kinds for chunk in chunks))
+    wanted = {
+        "ANCHORS_LOW": fiblets.anchors_low is not None,
+        "DIRECTION": layout.Kind.DIRECTION in kinds,
+        "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
+        "WIDE_LATTICE": layout.Kind.WIDE in kinds,
+        "RANK_TO_ID": fiblets.rank_to_id is not None,
+    }
+    return [name for name, on in wanted.items() if on]
+
+
+class SharedBlocks:
+    """The blocks of one set.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    fiblets : FibletSet
+
+    Attributes
+    ----------
+    buffers : dict of str to moderngl.Buffer
+        ``rotations``, ``coding``, ``frame``, and ``tubes`` and ``clip_planes`` while there are any.
+    segment : float
+        Pixels that the longest segments in the last view take, roughly.
+    """
+
+    def __init__(self, ctx: moderngl.Context, fiblets: FibletSet) -> None:
+        self._ctx = ctx
+        self._fiblets = fiblets
+        self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
+        self.segment = 0.0
+        coding = np.zeros((6, 4), "<f4")
+        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
+        coding[1] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice, fiblets.parameters.end_scale
+        coding[2:] = tables.packed_scales().reshape(4, 4)
+        self.buffers: dict[str, moderngl.Buffer] = {
+            "rotations": ctx.buffer(np.ascontiguousarray(tables.packed(), "<u4").tobytes()),
+            "coding": ctx.buffer(coding.tobytes()),
+            "frame": ctx.buffer(bytes(FRAME_BYTES)),
+        }
+
+    @property
+    def place(self) -> tuple[Array, Array, int]:
+        """Where anchors count from and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
+        fiblets = self._fiblets
+        return np.asarray(fiblets.origin, np.float64), np.asarray(fiblets.anchor_scale, np.float64), self.top
+
+    def bind(self) -> None:
+        """Bind those that are always there."""
+        for name, block in (("frame", "Frame"), ("coding", "Coding"), ("rotations", "Rotations")):
+            self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+
+    def forget_camera(self) -> None:
+        """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
+        self.buffers["frame"].write(bytes(FRAME_BYTES))
+
+    def write_camera(self, view: View, style: Style) -> tuple[bool, bool]:
+        """Bring the blocks of the camera up to date; say whether anything may cross the edges, or planes."""
+        # Where steps vary, four times their mean stands for the longest.
+        self.segment = segment_pixels(view, *self.place, 4.0 * self._fiblets.step)
+        block, margin = frame_block(view, style, *self.place)
+        radius = self._fiblets.parameters.largest_radius
+        self.buffers["frame"].write(block)
+        if style.radius is None:
+            self._drop("tubes")
+        else:
+            self._write("tubes", "Tubes", TUBES_BYTES, tubes_block(view, style.radius, *self.place))
+            radius += style.radius
+        planes = clip_planes_block(view, 2.0 * style.half_width or 1.0, *self.place, radius)
+        if planes is None:
+            self._drop("clip_planes")
+        else:
+            self._write("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
+        return margin < radius, planes is not None
+
+    def _write(self, name: str, block: str, size: int, data: bytes) -> None:
+        if name not in self.buffers:
+            self.buffers[name] = self._ctx.buffer(reserve=size)
+        self.buffers[name].write(data)
+        self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+
+    def _drop(self, name: str) -> None:
+        if name in self.buffers:
+            self.buffers.pop(name).release()
+
+    def release(self) -> None:
+        """Give the buffers back; twice is harmless."""
+        for buffer in self.buffers.values():
+            buffer.release()
+        self.buffers.clear()

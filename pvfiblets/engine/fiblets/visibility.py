@@ -1,0 +1,136 @@
+"""What of a set is there to be drawn: the caller's filter, and the region that cuts it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..frame import local_frame
+from .filter_textures import Filter, FilterTextures
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from ...codec.fibletset import FibletSet
+    from ..opengl import OpenGL
+    from ..regions.ray_intervals import Cutter
+    from ..regions.uniform_block import RegionBlock
+    from ..shaders import Programs
+    from ..view import View
+    from .chunks import Chunk
+
+__all__ = ["Visibility"]
+
+
+class Visibility:
+    """Filter and region of a renderer; nothing of either stays on the GPU while there is none.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : OpenGL
+    programs : Programs
+    whole, drawn : FibletSet
+        What filters speak of, and what lies on the GPU: the same, or some of its streamlines.
+    chunks : sequence of Chunk
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        gl: OpenGL,
+        programs: Programs,
+        whole: FibletSet,
+        drawn: FibletSet,
+        chunks: Sequence[Chunk],
+    ) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._filter = FilterTextures(ctx, whole, drawn, chunks)
+        self._cutter: Cutter | None = None
+        self._block: RegionBlock | None = None
+
+    @property
+    def filtering(self) -> Filter | None:
+        """See :attr:`FilterTextures.filtering`."""
+        return self._filter.filtering
+
+    @filtering.setter
+    def filtering(self, wanted: Filter | None) -> None:
+        self._filter.filtering = wanted
+
+    def update(
+        self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64], top: int
+    ) -> None:
+        """Bring what depends on the region and the camera up to date.
+
+        Parameters
+        ----------
+        view : View
+        origin, scale, top
+            Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
+
+        Raises
+        ------
+        ValueError
+            If such a region cannot cut.
+        EngineError
+            If memory does not suffice.
+        """
+        if view.region is None:
+            self._drop_region()
+            return
+        if self._cutter is None:
+            from ..regions.ray_intervals import Cutter
+            from ..regions.uniform_block import RegionBlock
+
+            self._cutter = Cutter(self._ctx, self._gl, self._programs)
+            self._block = RegionBlock(self._ctx, self._gl)
+        assert self._block is not None
+        self._cutter.prepare(view, origin, scale, top)
+        self._block.write(view.region, local_frame(view, origin, scale, top)[1])
+
+    @property
+    def culling(self) -> tuple[str, ...]:
+        """Keys of :data:`pvfiblets.engine.shaders.FEATURES` that programs need which look for fiblets to leave out."""
+        return (*self._filter.features, *self._region_features())
+
+    @property
+    def cutting(self) -> tuple[str, ...]:
+        """Those that programs need which draw parts of fiblets."""
+        return (*self._filter.cutting, *(("CLIP_REGION",) if self._cutter is not None else ()))
+
+    def _region_features(self) -> tuple[str, ...]:
+        return () if self._block is None else self._block.features
+
+    def bind(self, program: Any, chunk: int) -> None:
+        """Bind what a program looks at when it goes through a chunk, and tell it where that is."""
+        self._filter.bind(program, chunk)
+        if self._cutter is not None and self._block is not None:
+            self._cutter.bind(program)
+            self._block.bind(program)
+
+    @property
+    def buffers(self) -> dict[str, int]:
+        """Bytes on the GPU, by name."""
+        sizes = {"filter": self._filter.nbytes}
+        if self._cutter is not None:
+            sizes["region"] = self._cutter.nbytes
+        if self._block is not None:
+            sizes["region shapes"] = self._block.nbytes
+        return {name: size for name, size in sizes.items() if size}
+
+    def _drop_region(self) -> None:
+        for thing in (self._cutter, self._block):
+            if thing is not None:
+                thing.release()
+        self._cutter = self._block = None
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        self._filter.release()
+        self._drop_region()

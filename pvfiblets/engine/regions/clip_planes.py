@@ -1,0 +1,118 @@
+"""What of a region is planes: a plane, a slab or a box that all else lies within needs no boundaries for each pixel.
+
+A region that holds only what its parts hold all together, as several cuts of a user's do, is cut by part after part.
+Of those parts, planes, slabs and boxes are half spaces, which a view takes as clip planes (:mod:`.clipping`): 16 bytes
+each, and not 16 a pixel. The rest stays a region (:mod:`.cutting`).
+"""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...query.shapes import AND, BOX, LABELS, NOT, PLANE, SLAB, Shape
+
+if TYPE_CHECKING:
+    from ...query.region import Region
+    from ..frame import Array
+
+__all__ = ["SIDES", "check_region", "planes_of"]
+
+SIDES = {
+    PLANE: np.array([[0.0, 0, 1, 0]]),
+    SLAB: np.array([[0.0, 0, 1, 1], [0, 0, -1, 1]]),
+    BOX: np.array([[1.0, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1]]),
+}
+"""Planes around each kind of shape, as rows over homogeneous unit coordinates (u, v, w, weight)."""
+
+
+def check_region(region: Region) -> None:
+    """Refuse what has no crossings along a ray.
+
+    Raises
+    ------
+    ValueError
+        If the region holds a label volume.
+    """
+    if any(leaf.kind == LABELS for leaf in region.leaves):
+        raise ValueError(
+            "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a "
+            "closed surface around the labels, e.g. pyvista's contour_labels()"
+        )
+
+
+def planes_of(region: Region | None, room: int) -> tuple[Array, Region | None]:
+    """Take those parts out of a region that are planes.
+
+    Parameters
+    ----------
+    region : Region, optional
+    room : int
+        Planes that there may be. Parts are taken in order, each wholly or not at all.
+
+    Returns
+    -------
+    planes : numpy.ndarray
+        ``(k, 4)`` float64 rows (a, b, c, d), k <= `room`: what is kept has ax + by + cz + d >= 0, in the region's
+        coordinates.
+    rest : Region or None
+        The region is where both the planes and this keep; None for everywhere.
+    """
+    planes, rest = [np.zeros((0, 4))], []
+    for part in () if region is None else _parts(region).all_of:
+        found = _half_spaces(part)
+        if found is not None and len(found) <= room:
+            planes.append(found)
+            room -= len(found)
+        else:
+            rest.append(part)
+    return np.concatenate(planes), reduce(operator.and_, rest) if rest else None
+
+
+def _half_spaces(part: Region) -> Array | None:
+    """Return ``(k, 4)`` planes that all of a part lies within and nothing else; None if there are none."""
+    leaf = part.leaves[0]
+    if part.program == (0,) and leaf.kind in SIDES:
+        return _placed(leaf, SIDES[leaf.kind])
+    if part.program == (0, NOT) and leaf.kind == PLANE:
+        return _placed(leaf, -SIDES[PLANE])
+    return None
+
+
+def _placed(leaf: Shape, sides: Array) -> Array:
+    """Return rows over unit coordinates of a shape as rows over mm."""
+    rows = sides[:, :3] @ leaf.linear
+    placed: Array = np.column_stack([rows, sides[:, 3] - rows @ leaf.centre])
+    return placed
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """An expression in two ways: what all of some regions hold, or what any of some holds."""
+
+    all_of: tuple[Region, ...]
+    any_of: tuple[Region, ...]
+
+
+def _parts(region: Region) -> _Parts:
+    stack: list[_Parts] = []
+    for word in region.program:
+        if word >= 0:
+            leaf = (region.leaves[word],)
+            stack.append(_Parts(leaf, leaf))
+        elif word == NOT:
+            top = stack.pop()
+            stack.append(_Parts(tuple(~part for part in top.any_of), tuple(~part for part in top.all_of)))
+        else:
+            top, below = stack.pop(), stack.pop()
+            if word == AND:
+                both = below.all_of + top.all_of
+                stack.append(_Parts(both, (reduce(operator.and_, both),)))
+            else:
+                either = below.any_of + top.any_of
+                stack.append(_Parts((reduce(operator.or_, either),), either))
+    return stack[0]

@@ -1,0 +1,75 @@
+"""What can be chosen about the drawing of spline tubes, and what it is by default."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+__all__ = ["SILHOUETTES", "SOLVERS", "Solver", "check_choices"]
+
+AUTO = "auto"
+
+SILHOUETTES: dict[str, str] = {
+    "rectangles": "one rectangle of the window for each segment, by vertex pulling",
+    "boxes": "two oriented boxes for each segment, by the geometry stage (the paper's)",
+    "pulled-boxes": "the same boxes by vertex pulling",
+}
+"""How a segment covers the pixels whose rays may meet it."""
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A way to find roots.
+
+    Attributes
+    ----------
+    feature : str or None
+        Its switch in the shaders.
+    iterations : int
+        Steps of one search at most, by default.
+    about : str
+    """
+
+    feature: str | None
+    iterations: int
+    about: str
+
+
+SOLVERS: dict[str, Solver] = {
+    "illinois": Solver("TUBE_ILLINOIS", 48, "regula falsi that halves the weight of an end that stays"),
+    "itp": Solver("TUBE_ITP", 32, "interpolate, truncate, project (Oliveira and Takahashi 2020)"),
+    "newton": Solver("TUBE_NEWTON", 40, "Newton's steps inside the bracket, bisection where they leave it"),
+    "bisection": Solver(None, 20, "the paper's: all derivatives, a fixed number of halvings"),
+}
+"""How roots are found inside a bracket; all but the paper's leave the chain of derivatives out where f is convex."""
+
+
+def check_choices(
+    silhouettes: str = AUTO,
+    solver: str = AUTO,
+    iterations: int | None = None,
+    min_width: float = 1.0,
+    culling: str | None = None,
+) -> None:
+    """Raise where a choice is none.
+
+    Raises
+    ------
+    ValueError
+        Naming the value and what there is.
+    """
+    for name, value, known in (("silhouettes", silhouettes, SILHOUETTES), ("solver", solver, SOLVERS)):
+        if not isinstance(value, str) or (value != AUTO and value not in known):
+            raise ValueError(f"{name} is {value!r}; use one of {[AUTO, *known]}")
+    if culling not in (None, "two-phase"):
+        raise ValueError(f"culling is {culling!r}; use 'two-phase' or None")
+    if iterations is not None and not (_is_number(iterations) and iterations % 1 == 0 and iterations >= 1):
+        raise ValueError(f"iterations is {iterations!r}; give a whole number above 0, or None for the solver's own")
+    if not (_is_number(min_width) and 0.0 <= min_width <= 64.0):
+        raise ValueError(f"min_width is {min_width!r}; give pixels from 0 (as thin as they are) to 64")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

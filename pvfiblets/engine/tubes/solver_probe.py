@@ -1,0 +1,161 @@
+"""The solver alone, on rays and halves of the caller's: what tests and the report of error against run time ask.
+
+>>> probe = SolverProbe(ctx, "illinois")                                                # doctest: +SKIP
+>>> l, t, kind = probe.hits(controls, origins, directions)                              # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ..opengl import OpenGL
+from ..shaders import BLOCKS, Programs
+from .options import SOLVERS, check_choices
+from .uniform_blocks import CONSTANTS, SPLINES_BYTES
+
+__all__ = ["SolverProbe"]
+
+Array = npt.NDArray[np.float64]
+
+_ROW = 1024
+_UNIT = 16
+
+
+class SolverProbe:
+    """Meets rays with halves on the GPU, by the same code as the picture.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    solver : str
+        Of :data:`.SOLVERS`.
+    iterations : int, optional
+        Of one search; the solver's own by default.
+    chain : bool
+        By the chain of derivatives, as the paper's bisection always is.
+    hollow : bool
+        Look for exits where a ray begins inside.
+    clock : callable
+        Seconds, by which drawing is timed.
+
+    Attributes
+    ----------
+    seconds : float
+        That the last call's drawing took.
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        solver: str,
+        iterations: int | None = None,
+        *,
+        chain: bool = False,
+        hollow: bool = False,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        check_choices(solver=solver, iterations=iterations)
+        self._ctx, self._gl = ctx, OpenGL(ctx)
+        self._programs = Programs(ctx, CONSTANTS)
+        feature = SOLVERS[solver].feature
+        wanted = {"TUBE_CHAIN": chain or hollow or feature is None, "TUBE_HOLLOW": hollow}
+        features = [name for name, on in wanted.items() if on] + ([feature] if feature else [])
+        self._program, self._array = self._programs.screen("tubes/probe.frag", features)
+        self._block = ctx.buffer(bytes(SPLINES_BYTES))
+        self.limit(SOLVERS[solver].iterations if iterations is None else iterations)
+        self._clock = clock
+        self.seconds = 0.0
+
+    def hits(
+        self,
+        controls: Array,
+        origins: Array,
+        directions: Array,
+        *,
+        start: npt.ArrayLike = -np.inf,
+        capped: bool = False,
+    ) -> tuple[Array, Array, npt.NDArray[np.int64]]:
+        """Return where each ray meets its half.
+
+        Parameters
+        ----------
+        controls : numpy.ndarray
+            (n, 3, 4) control points: x, y, z, radius.
+        origins, directions : numpy.ndarray
+            (n, 3); directions need not be of length 1.
+        start : array_like
+            Where rays begin, from their origins on.
+        capped : bool
+            Whether what a ray begins in is cut there.
+
+        Returns
+        -------
+        l : numpy.ndarray
+            (n,) along the ray from its origin; NaN for a miss.
+        t : numpy.ndarray
+            (n,) on the half.
+        kind : numpy.ndarray
+            (n,) int64: 0 miss, 1 entry, 2 exit, 3 cut.
+        """
+        count = len(controls)
+        unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        low, high = controls[..., :3].min(axis=1), controls[..., :3].max(axis=1)
+        centre = (low + high) / 2.0
+        size = np.maximum((high - low).max(axis=1) / 2.0 + controls[..., 3].max(axis=1), 1e-30)
+        moved = controls.copy()
+        moved[..., :3] -= centre[:, None]
+        away = centre - origins
+        along = np.einsum("ij,ij->i", away, unit)
+        rows = np.zeros((count, 5, 4))
+        rows[:, :3] = moved / size[:, None, None]
+        rows[:, 3, :3] = (along[:, None] * unit - away) / size[:, None]
+        rows[:, 3, 3] = np.clip((np.broadcast_to(np.asarray(start, np.float64), count) - along) / size, -1e38, 1e38)
+        rows[:, 4, :3] = unit
+        rows[:, 4, 3] = float(capped)
+        found = self._run(rows)
+        kind = found[:, 2].astype(np.int64)
+        return np.where(kind > 0, found[:, 0] * size + along, np.nan), found[:, 1], kind
+
+    def limit(self, iterations: int) -> None:
+        """Search by so many iterations from now on; the program stays the same."""
+        check_choices(iterations=iterations)
+        self._block.write(np.array([iterations, 0, 0, 0], "<i4").tobytes(), offset=16)
+
+    def _run(self, rows: Array) -> Array:
+        ctx, count = self._ctx, len(rows)
+        height = max(1, -(-count // _ROW))
+        data = ctx.buffer(np.ascontiguousarray(rows, "<f4").tobytes())
+        cases = self._gl.texture_buffer(data, "rgba32f")
+        target = ctx.texture((_ROW, height), 4, dtype="f4")
+        framebuffer = ctx.framebuffer([target])
+        try:
+            self._block.bind_to_uniform_block(BLOCKS["Splines"])
+            cases.bind(_UNIT)
+            self._gl.set_sampler(self._program, "cases", _UNIT)
+            self._program["row"], self._program["count"] = _ROW, count
+            with self._gl.framebuffers_kept():
+                framebuffer.use()
+                ctx.scissor = None
+                ctx.enable_only(moderngl.NOTHING)
+                ctx.finish()
+                begin = self._clock()
+                self._array.render(moderngl.TRIANGLES, vertices=3)
+                ctx.finish()
+                self.seconds = self._clock() - begin
+            found = np.frombuffer(target.read(), "<f4").reshape(-1, 4)[:count].astype(np.float64)
+        finally:
+            framebuffer.release()
+            target.release()
+            cases.release()
+            data.release()
+        return found
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        self._block.release()
+        self._programs.release()

@@ -1,0 +1,281 @@
+"""What tubes and lines with halos are made from: lines and their data, from every kind of source in one form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.streamlines import Streamlines
+
+from .tubes.spline_tubes import Ints
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+__all__ = ["Lines", "flat", "gather", "joined"]
+
+_EXPECTED = "a PolyData with lines, Streamlines, a FibletSet, an (n, 3) array, a list of them or (points, segments)"
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Points and the lines through them.
+
+    Parameters
+    ----------
+    points : ndarray
+        ``(n_points, 3)`` float64, mm; or float32, where that was given and :func:`gather` was told to keep it.
+    ids : ndarray
+        ``(n_ids,)`` int64: the points of all lines, one line after the other.
+    offsets : ndarray
+        ``(n_lines + 1,)`` int64: line ``i`` goes through ``ids[offsets[i]:offsets[i + 1]]``.
+    point_data, line_data : mapping of str to array
+        One row per point, and per tube.
+    order : ndarray, optional
+        ``(n_segments,)`` int64: where the source has each segment, for sources that list segments. None: line by line.
+    tube_of : ndarray, optional
+        ``(n_segments,)`` int64, in the source's order: the tube of each segment, where tubes are not the lines.
+    n_tubes : int
+        Tubes, those without segments included.
+    """
+
+    points: npt.NDArray[Any]
+    ids: Ints
+    offsets: Ints
+    n_tubes: int
+    point_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    line_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    order: Ints | None = None
+    tube_of: Ints | None = None
+
+    @property
+    def counts(self) -> Ints:
+        """``(n_lines,)`` int64: points of each line."""
+        return np.diff(self.offsets)
+
+    @property
+    def shared(self) -> bool:
+        """Whether a point is on more than one line, or on one line more than once."""
+        return len(self.ids) > len(self.points) or bool(np.bincount(self.ids, minlength=1).max() > 1)
+
+    def line_of(self, row: int) -> int:
+        """The line that holds a row of `ids`."""
+        return int(np.searchsorted(self.offsets, row, side="right")) - 1
+
+    def segments(self) -> tuple[Ints, Ints]:
+        """Return ``(n_segments, 2)`` rows of `ids` and ``(n_segments,)`` tubes.
+
+        A line of one point has one segment, from its point to itself.
+        """
+        counts = self.counts
+        starts = np.ones(len(self.ids), bool)
+        starts[self.offsets[1:][counts > 1] - 1] = False
+        start = np.flatnonzero(starts)
+        line = np.repeat(np.arange(len(counts)), counts)[start]
+        segments = np.stack([start, start + (counts[line] > 1)], axis=1)
+        if self.order is None:
+            return segments, line
+        given = np.empty_like(segments)
+        given[self.order] = segments
+        tubes = np.empty_like(line)
+        tubes[self.order] = line
+        return given, tubes if self.tube_of is None else self.tube_of
+
+
+def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Lines:
+    """Take the lines out of a source.
+
+    Parameters
+    ----------
+    source : PolyData, Streamlines, FibletSet, array_like or tuple
+        As :func:`pvfiblets.tubes.build.as_spline_tubes` takes it.
+    noun : str, default: 'tubes'
+        What is made of the lines, for messages.
+    keep_single : bool, default: False
+        Whether points of float32 stay so; else all become float64.
+
+    Returns
+    -------
+    Lines
+
+    Raises
+    ------
+    TypeError
+        If there are no lines in such a source.
+    ValueError
+        If there are no lines in a PolyData, an array has the wrong shape, or segments refer to points that are not
+        there.
+    """
+    if isinstance(source, Streamlines):
+        return _from_streamlines(source, keep_single)
+    if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
+        return _from_streamlines(cast("FibletSet", source).decompress(), keep_single)
+    if hasattr(source, "IsA"):
+        return _from_vtk(source, noun, keep_single)
+    if isinstance(source, np.ndarray) and source.dtype != object:
+        if source.ndim == 3:
+            return _from_arrays(list(source), keep_single)
+        if source.size and (source.ndim != 2 or source.shape[1] != 3):
+            raise ValueError(f"points have the shape {source.shape}, expected (n, 3): x, y, z in mm of a line's nodes")
+        return _from_arrays([source], keep_single)
+    if isinstance(source, tuple) and len(source) == 2 and _are_segments(source[1]):
+        return _from_segments(_floats(source[0], keep_single), np.asarray(source[1], np.int64))
+    if isinstance(source, (Sequence, np.ndarray)) and not isinstance(source, (str, bytes)):
+        if len(source) and np.ndim(source[0]) == 1 and np.size(source[0]):
+            return gather(np.asarray(source, np.float64), noun)
+        return _from_arrays(list(source), keep_single)
+    raise TypeError(f"{noun} cannot be made from a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _floats(array: Any, keep_single: bool) -> npt.NDArray[Any]:
+    """The array in its own memory or another's, as float64 or, if that is kept, as the float32 it is."""
+    given = np.asarray(array)
+    return given if keep_single and given.dtype == np.float32 else given.astype(np.float64, copy=False)
+
+
+def _are_segments(what: Any) -> bool:
+    try:
+        array = np.asarray(what)
+    except ValueError:  # lists of unlike lengths
+        return False
+    return array.dtype.kind in "iu" and array.ndim == 2 and array.shape[1] == 2
+
+
+def _from_streamlines(lines: Streamlines, keep_single: bool) -> Lines:
+    points = _floats(lines.points, keep_single)
+    return Lines(
+        points, np.arange(len(points)), lines.offsets, len(lines), dict(lines.per_point), dict(lines.per_streamline)
+    )
+
+
+def _from_arrays(arrays: list[Any], keep_single: bool) -> Lines:
+    lines = [_floats(array, keep_single) for array in arrays]
+    for i, line in enumerate(lines):
+        if line.size and (line.ndim != 2 or line.shape[1] != 3):
+            raise ValueError(f"line {i} has the shape {line.shape}, expected (n, 3): x, y, z in mm of its nodes")
+    lines = [line.reshape(-1, 3) for line in lines]
+    filled = [line for line in lines if len(line)]  # an empty list is one of float64, whatever the others are
+    points = np.concatenate(filled) if filled else np.zeros((0, 3))
+    offsets = offsets_from_counts([len(line) for line in lines])
+    return Lines(points, np.arange(len(points)), offsets, len(lines))
+
+
+def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if not mesh.IsA("vtkPolyData"):
+        whole = "combine()." if mesh.IsA("vtkCompositeDataSet") else ""
+        raise TypeError(
+            f"{noun} cannot be made from a {type(mesh).__name__}; give its {whole}extract_surface() or "
+            f"{whole}extract_all_edges()"
+        )
+    cells = mesh.GetLines()
+    n = cells.GetNumberOfCells()
+    if n == 0:
+        raise ValueError(
+            f"the PolyData has no lines but {mesh.GetNumberOfCells()} other cells (vertices, polygons); "
+            "give it lines, such as pyvista.lines_from_points(points) has, or a surface's extract_all_edges()"
+        )
+    n_points, first = mesh.GetNumberOfPoints(), mesh.GetVerts().GetNumberOfCells()
+
+    def data(attributes: Any) -> dict[str, npt.NDArray[Any]]:
+        # Arrays of text are none of NumPy's: VTK gives None for them.
+        arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+        return {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a is not None and a.GetName()}
+
+    points = np.array(_floats(vtk_to_numpy(mesh.GetPoints().GetData()), keep_single))
+    ids = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
+    offsets = vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)
+    point_data = {k: v for k, v in data(mesh.GetPointData()).items() if len(v) == n_points}
+    line_data = {k: v[first : first + n] for k, v in data(mesh.GetCellData()).items()}
+    if len(ids) and (ids.min() < 0 or ids.max() >= n_points):
+        raise ValueError(f"lines refer to points {ids.min()} to {ids.max()}, but the PolyData has {n_points} points")
+    if np.all(np.diff(offsets) == 2):
+        # Cells of two points are how many filters write whole lines: they are smooth where they follow each other.
+        chained = _from_segments(points, ids.reshape(-1, 2))
+        return Lines(points, chained.ids, chained.offsets, n, point_data, line_data, chained.order, np.arange(n))
+    return Lines(points, ids, offsets, n, point_data, line_data)
+
+
+def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
+    """Chain segments that follow each other to lines."""
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"points have the shape {points.shape}, expected (n, 3): x, y, z in mm")
+    n = len(segments)
+    if n and (segments.min() < 0 or segments.max() >= len(points)):
+        bad = int(np.argwhere((segments < 0) | (segments >= len(points)))[0, 0])
+        raise ValueError(
+            f"segment {bad} is {segments[bad].tolist()}, but there are {len(points)} points, counted from 0"
+        )
+    root, place = _chains(_before(segments, len(points)))
+    heads, chain = np.unique(root, return_inverse=True)
+    order = np.lexsort((place, chain))
+    counts = np.bincount(chain, minlength=len(heads)) + 1
+    offsets = offsets_from_counts(counts)
+    ids = np.empty(int(offsets[-1]), np.int64)
+    ids[offsets[:-1]] = segments[heads, 0]
+    inner = np.ones(len(ids), bool)
+    inner[offsets[:-1]] = False
+    ids[inner] = segments[order, 1]
+    return Lines(points, ids, offsets, len(heads), order=order)
+
+
+def _before(segments: Ints, n_points: int) -> Ints:
+    """The segment that each one goes on from, itself for none.
+
+    It is the one listed just before, if that ends where this one starts; else the only one that ends there, if this is
+    the only one that starts there.
+    """
+    n = len(segments)
+    own = np.arange(n)
+    start, end = segments.T
+    before = own.copy()
+    ending = np.zeros(n_points, np.int64)
+    ending[end] = own
+    alone = (np.bincount(start, minlength=n_points) == 1) & (np.bincount(end, minlength=n_points) == 1)
+    before[alone[start]] = ending[start[alone[start]]]
+    follows = np.flatnonzero(end[:-1] == start[1:]) + 1
+    before[follows] = follows - 1
+    return before
+
+
+def _chains(before: Ints) -> tuple[Ints, Ints]:
+    """Each segment's first one, and how many lie between; rings start at the one listed first."""
+    own = np.arange(len(before))
+    rounds = max(len(before), 1).bit_length()
+    for _ in range(2):
+        root, least = before.copy(), np.minimum(own, before)
+        place = (before != own).astype(np.int64)
+        for _ in range(rounds):
+            place += place[root]
+            least = np.minimum(least, least[root])
+            root = root[root]
+        ring = before[root] != root
+        if not ring.any():
+            break
+        before = np.where(ring & (least == own), own, before)
+    return root, place
+
+
+def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
+    """The array with its one column as numbers, as tractograms store them."""
+    if array.dtype.kind not in "fiub":
+        raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
+    return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
+
+
+def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:
+    """An array of what was given; a list of arrays, one for each line, becomes one."""
+    arrays = isinstance(given, Sequence) and not isinstance(given, bytes) and any(np.ndim(part) for part in given)
+    if not arrays:
+        return np.asarray(given)
+    sizes = {np.shape(part) for part in given}
+    # A list with a row of three or four numbers for each point or line, rather than the arrays of lines.
+    if len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given):
+        return np.asarray(given)
+    return np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])

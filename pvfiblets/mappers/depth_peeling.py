@@ -1,0 +1,132 @@
+"""An extra that lets lines be looked through: several layers of the picture, blended in order.
+
+The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
+engine keeps as many layers (`pvfiblets.engine.fiblets.depth_peeling`). While the actor is opaque neither is drawn,
+and no layer behind the nearest is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import moderngl
+
+from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
+
+_BESIDE = {
+    "colour_point_value": "layers_value",
+    "tube_normal": "layers_normal",
+    "tube_shading": "layers_across",
+}
+"""Pieces of the resolve that others need where there are layers."""
+
+_EMPTY = {"depth": (1, "u4"), "ids": (2, "u4"), "position": (2, "f4"), "across": (1, "f2"), "normal": (1, "u4")}
+
+__all__ = ["Layers", "layers_of", "with_layers"]
+
+
+class _Held:
+    """What is kept in one window: the engine that has layers, or empty textures in their place."""
+
+    def __init__(self, ctx: Any) -> None:
+        self._ctx = ctx
+        self._engine: Any = None
+        self._empty: dict[str, Any] = {}
+        self.count = 1
+
+    def layers(self, draw: Any, count: int) -> dict[str, Any]:
+        """Return texture arrays by what they hold."""
+        self._engine, self.count = draw.engine, count
+        return dict(draw.engine.render_layers(draw.view, draw.style, count).arrays)
+
+    def empty(self) -> dict[str, Any]:
+        """Return what samplers of arrays may look at where there is nothing; no other kind of texture will do."""
+        self.count = 1
+        self._drop_layers()
+        return {name: self.blank(name) for name in ("depth", "ids", "position")}
+
+    def blank(self, name: str) -> Any:
+        """Return a texture of one texel, zero."""
+        if name not in self._empty:
+            components, dtype = _EMPTY[name]
+            data = bytes(components * int(dtype[1]))
+            self._empty[name] = self._ctx.texture_array((1, 1, 1), components, data, alignment=1, dtype=dtype)
+            self._empty[name].filter = moderngl.NEAREST, moderngl.NEAREST
+        return self._empty[name]
+
+    def explain(self) -> dict[str, list[dict[str, Any]]]:
+        """Return ``passes``, of which there are none of its own, and ``buffers``, name and bytes."""
+        sizes = {name: components * int(dtype[1]) for name, (components, dtype) in _EMPTY.items()}
+        buffers = [{"name": f"{name} (no layer)", "bytes": sizes[name]} for name in self._empty]
+        return {"passes": [], "buffers": buffers}
+
+    def _drop_layers(self) -> None:
+        if self._engine is not None:
+            self._engine.drop_layers()
+            self._engine = None
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        self._drop_layers()
+        for array in self._empty.values():
+            array.release()
+        self._empty.clear()
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Where the actor is translucent, several layers show.
+
+    Parameters
+    ----------
+    count : int, default 4
+        Layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all
+        fiblets in view, whenever the camera, the data or the style has changed.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer or more.
+    """
+
+    count: int = 4
+    features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered"})
+    style: ClassVar[Mapping[str, Any]] = {}
+
+    def __post_init__(self) -> None:
+        if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:
+            raise ValueError(f"{self.count!r} layers are asked for; give a whole number from 2 to {MOST_LAYERS}")
+        object.__setattr__(self, "count", int(self.count))
+
+    def make(self, ctx: Any) -> _Held:
+        """Make room for a window's textures."""
+        return _Held(ctx)
+
+    def prepare(self, kept: _Held, draw: Any) -> Mapping[str, Any]:
+        """Have the engine draw the layers, unless nothing shows through or VTK selects."""
+        through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
+        arrays = kept.layers(draw, self.count) if through else kept.empty()
+        names = {"fibletDepthLayers": "depth", "fibletIdLayers": "ids", "fibletPositionLayers": "position"}
+        textures = {sampler: arrays[name] for sampler, name in names.items()}
+        for sampler, relief in (("fibletAcrossLayers", "across"), ("fibletNormalLayers", "normal")):
+            held = "across" in arrays and draw.style.relief == relief
+            textures[sampler] = arrays["across"] if held else kept.blank(relief)
+        return textures
+
+    def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all extras
+        """Say how many there are."""
+        program.SetUniformi("fibletLayerCount", kept.count)
+
+
+def layers_of(extras: Iterable[Any]) -> int:
+    """Return how many layers a mapper's geometry must have."""
+    return max((extra.count for extra in extras if isinstance(extra, Layers)), default=1)
+
+
+def with_layers(features: frozenset[str]) -> frozenset[str]:
+    """Return the pieces of the resolve, with those that layers need beside others."""
+    if "layers" not in features:
+        return features
+    return features | {piece for other, piece in _BESIDE.items() if other in features}

@@ -1,0 +1,359 @@
+"""`EngineMapper`: what an engine draws, as geometry of an ordinary VTK actor.
+
+VTK draws one triangle that covers the viewport (`pvfiblets.mappers.proxy`) with its own program, in which
+pieces of GLSL (`pvfiblets.mappers.resolve`) read the engine's G-buffer. From inside that draw VTK fires
+``UpdateShaderEvent``: the mapper, observing itself, has the engine bring the G-buffer up to date for the
+camera, viewport and pass of that very moment, and hands the program its uniforms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, cast
+
+import numpy as np
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_OBJECT
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
+
+from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
+from pvfiblets.mappers import resolve
+from pvfiblets.mappers.active import ActiveRenderer
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.depth_peeling import layers_of, with_layers
+from pvfiblets.mappers.introspection import Questions
+from pvfiblets.mappers.line_tubes import thickened, thickness_of
+from pvfiblets.mappers.picking import Drawn
+from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.scene import frame_of, others_before, world_planes
+from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms, styled
+from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
+from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
+
+VTK_SURFACE = 2
+USUAL_DPI = 72  # of a vtkRenderWindow that nobody has changed
+
+
+class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
+    """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
+
+    Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
+    alone is not enough. One mapper serves one actor, in any number of renderers of one window; another
+    window needs another mapper and actor, as with all of VTK's.
+
+    Parameters
+    ----------
+    drawn : Any
+        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``.
+    colouring : Colouring
+        Where the colours come from.
+    options : Options
+        What can be chosen about drawing.
+    renderer_factory : callable
+        Takes a moderngl context, what is drawn, and as keywords those options that are not the defaults; returns
+        the engine's renderer.
+    **made_with
+        Further keywords of the factory.
+
+    Notes
+    -----
+    An exception while drawing cannot pass through VTK. It is stored, nothing is drawn, and
+    `raise_pending` raises it: call that after every render.
+
+    GL objects are given back after the first frame in which the actor is no longer in the window, when
+    the window goes, and at once by `release`.
+    """
+
+    _NAME: ClassVar[str]
+
+    def __init__(
+        self, drawn: Any, *, colouring: Colouring, options: Any, renderer_factory: Callable[..., Any], **made_with: Any
+    ) -> None:
+        self._factory = renderer_factory
+        self._options = options
+        self._made_with = made_with
+        self._actor = weak(None)
+        self._property = weak(None)
+        self._observer = 0
+        self._active = ActiveRenderer()
+        self._installed: tuple[resolve.Replacement, ...] = ()
+        self._extras: dict[str, Extra] = {}
+        self._error: BaseException | None = None
+        self._last_drawn: str | None = None
+        self._colouring = colouring
+        self.SetScalarVisibility(False)
+        self._put(drawn)
+        self.AddObserver("UpdateShaderEvent", _update_shader)
+
+    # What is drawn, and how
+
+    def _put(self, drawn: Any) -> None:
+        """Draw something else from the next frame on; refused while the colouring is for another number."""
+        self._colouring.check_count(drawn.n_streamlines)
+        self._drawn = drawn
+        self._set_proxy()
+
+    @property
+    def _empty(self) -> bool:
+        """Whether there is nothing to draw, and so no bounds."""
+        return not (self._drawn.n_streamlines and self._drawn.n_points)
+
+    def _set_proxy(self) -> None:
+        """Give VTK its geometry; setting it makes VTK build the shaders anew."""
+        self._layers = layers_of(self._extras.values())
+        self._thickness = thickness_of(self._extras.values())
+        bounds = None if self._empty else thickened(self._drawn.bounds, self._thickness)
+        self.SetInputData(proxy_polydata(bounds, self._layers))
+
+    @property
+    def colouring(self) -> Colouring:
+        """Where the colours come from; set another `Colouring` to change them."""
+        return self._colouring
+
+    @colouring.setter
+    def colouring(self, colouring: Colouring) -> None:
+        colouring.check_count(self._drawn.n_streamlines)
+        self._colouring = colouring
+        self._install()
+        self._actor_modified()
+
+    @property
+    def extras(self) -> Mapping[str, Extra]:
+        """Looks beside the colours, by name; see `set_extra`."""
+        return dict(self._extras)
+
+    def set_extra(self, name: str, extra: Extra | None) -> None:
+        """Set or, with None, take away one of the looks beside the colours (`pvfiblets.mappers.shader_effects`)."""
+        if extra is None:
+            self._extras.pop(name, None)
+        else:
+            self._extras[name] = extra
+        made_for = self._layers, self._thickness
+        if (layers_of(self._extras.values()), thickness_of(self._extras.values())) != made_for:
+            self._set_proxy()
+        self._install()
+        self._actor_modified()
+
+    # The actor
+
+    @property
+    def actor(self) -> vtkActor | None:
+        """The actor that this mapper was attached to, if it still exists."""
+        return cast("vtkActor | None", self._actor.Get())
+
+    def attach(self, actor: vtkActor) -> None:
+        """Make this the mapper of an actor and add the shader pieces to it.
+
+        Parameters
+        ----------
+        actor : vtkActor
+            Shader replacements of others stay. Its representation stays at surface whatever a key or a
+            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
+        """
+        self.detach()
+        self._actor = weak(actor)
+        actor.SetMapper(self)
+        _keep_surface(actor.GetProperty(), "")
+        self._property = weak(actor.GetProperty())
+        self._observer = actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
+        self._install()
+
+    def detach(self) -> None:
+        """Take the shader pieces out of the actor; it then needs another mapper."""
+        actor = self.actor
+        if actor is not None:
+            resolve.uninstall(actor.GetShaderProperty(), self._installed)
+        if self._property.Get() is not None:
+            self._property.Get().RemoveObserver(self._observer)
+        self._property = weak(None)
+        self._installed = ()
+        self._actor = weak(None)
+
+    def _actor_modified(self) -> None:
+        """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
+        if self.actor is not None:
+            self.actor.Modified()
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve shader in use."""
+        extras = frozenset().union(*(extra.features for extra in self._extras.values()))
+        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | extras))
+
+    def _install(self) -> None:
+        """Bring the actor's shader pieces and its translucency up to date."""
+        actor = self.actor
+        if actor is None:
+            return
+        wanted = resolve.assemble(self.features)
+        if wanted != self._installed:
+            resolve.uninstall(actor.GetShaderProperty(), self._installed)
+            resolve.install(actor.GetShaderProperty(), wanted)
+            self._installed = wanted
+        translucent = self._translucent
+        if translucent != actor.GetForceTranslucent():
+            actor.SetForceTranslucent(translucent)
+
+    @property
+    def _translucent(self) -> bool:
+        """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
+        return self._colouring.translucent()
+
+    # Drawing
+
+    def raise_pending(self) -> None:
+        """Raise the exception of the last draw, if there was one, once."""
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    def _update(self, program: Any) -> None:
+        """Answer VTK's ``UpdateShaderEvent``: G-buffer, textures and uniforms for this draw."""
+        unraised, self._error = self._error, None
+        try:
+            self._draw(program)
+        except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
+            program.SetUniform2i("fibletSize", (0, 0))
+            self._error = error
+        if unraised is not None:
+            # Nobody asked for the last one: VTK prints what an observer raises.
+            raise unraised
+
+    def _draw(self, program: Any) -> None:
+        actor = self.actor
+        if actor is None or not program.IsUniformUsed("fibletDepthMap"):
+            raise RuntimeError(
+                "the actor lacks the mapper's shader pieces; use mapper.attach(actor), "
+                "not actor.SetMapper(mapper), and do not replace its shader property"
+            )
+        renderer = self._active.find(actor)
+        context = context_of(renderer.GetRenderWindow())
+        if any(other is not context and other.shows(self) for other in contexts_with(self)):
+            raise RuntimeError(
+                "VTK can show an actor in one window only; for the second window make another "
+                f"{self._NAME} of the same data, with an actor of its own"
+            )
+        viewport = gl_viewport(context.window)
+        if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
+            program.SetUniform2i("fibletSize", (0, 0))
+            return
+        frame = frame_of(renderer, actor, viewport)
+        planes, region = self._cuts()
+        view = View(
+            viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
+        )
+        style = self._style(renderer, viewport)
+        slot = context.slot(self)
+        with context.foreign():
+            engine = self._engine(context, slot)
+            outside = None
+            if engine.needs_outside(view, style):
+                outside = self._outside(context, slot, renderer, viewport)
+            buffer = engine.render(view, style, outside=outside)
+            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor)
+            textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
+            textures |= prepare_extras(slot, self._extras, draw)
+            units = context.texture_units(len(textures))
+            for unit, texture in zip(units, textures.values(), strict=True):
+                texture.use(unit)
+        for unit, name in zip(units, textures, strict=True):
+            program.SetUniformi(name, unit)
+        set_uniforms(program, frame, style, self._drawn, self._colouring)
+        set_extra_uniforms(slot, self._extras, program, draw)
+        self._last_drawn = renderer.GetAddressAsString("")
+        slot.drawn.pop(self._last_drawn, None)
+        slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
+
+    def _cuts(self) -> tuple[Any, Any]:
+        """Return what cuts in world mm: planes, and the region that is not planes."""
+        return world_planes(self), None
+
+    def _outside(
+        self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
+    ) -> Any:
+        """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
+        actor = self.actor
+        if self._layers == 1 and actor is not None and others_before(renderer, actor):
+            return slot.outside_depth(context.ctx).copy(viewport)
+        return None
+
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
+        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window.
+
+        Pictures with fewer dots per inch than usual have thinner lines, as they have smaller letters.
+        """
+        enlarged = max(1.0, viewport[2] / max(1, renderer.GetSize()[0]))
+        enlarged *= min(1.0, renderer.GetRenderWindow().GetDPI() / USUAL_DPI)
+        style = Style(line_width=max(1.0, self._width * enlarged), values=self._colouring.point_source)
+        return styled(style, self._extras.values())
+
+    @property
+    def _width(self) -> float:
+        """Pixels of the window that everything takes at least."""
+        raise NotImplementedError
+
+    def _engine(self, context: WindowContext, slot: Slot) -> Any:
+        """Return the engine's renderer of a window, made anew for other data and other options."""
+        if slot.versions.get("drawn") is not self._drawn or slot.versions.get("options") != self._options:
+            slot.drop_renderer()
+            slot.versions |= {"drawn": self._drawn, "options": self._options}
+        if slot.renderer is None:
+            slot.renderer = self._factory(context.ctx, self._drawn, **self._options.changed(), **self._made_with)
+        return slot.renderer
+
+    # Memory
+
+    def release(self, window: Any = None) -> None:
+        """Delete the GL objects of one window, or of all; twice is harmless.
+
+        Parameters
+        ----------
+        window : vtkRenderWindow, optional
+            All windows when left out. Call it before a window is closed, to have the memory back at once.
+        """
+        address = None if window is None else window.GetAddressAsString("")
+        for context in contexts_with(self):
+            if address in (None, context.address):
+                context.release(self)
+
+
+class CutMapper(EngineMapper):
+    """Mapper of what a region can cut."""
+
+    _region: Any = None
+
+    @property
+    def region(self) -> Any:
+        """`pvfiblets.regions.Region` in world mm outside of which nothing is drawn; None for none."""
+        return self._region
+
+    @region.setter
+    def region(self, region: Any) -> None:
+        self._region = region
+        self._actor_modified()
+
+    def _cuts(self) -> tuple[Any, Any]:
+        """Return planes, VTK's own and what of the region is planes as far as there is room, and the rest of it."""
+        planes, region = super()._cuts()
+        if self._region is None:
+            return planes, region
+        from pvfiblets.engine.regions.clip_planes import planes_of
+
+        more, region = planes_of(self._region, max(MAX_CLIP_PLANES - len(planes), 0))
+        return np.concatenate([planes, more]), region
+
+
+@calldata_type(VTK_OBJECT)
+def _update_shader(mapper: EngineMapper, _event: str, program: Any) -> None:
+    mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
+
+
+def _keep_surface(actor_property: Any, _event: str) -> None:
+    """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
+    if actor_property.GetRepresentation() != VTK_SURFACE:
+        actor_property.SetRepresentationToSurface()
+    if actor_property.GetEdgeVisibility():
+        actor_property.SetEdgeVisibility(False)
+    if actor_property.GetFrontfaceCulling():
+        actor_property.SetFrontfaceCulling(False)

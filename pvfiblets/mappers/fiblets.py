@@ -1,0 +1,170 @@
+"""`FibletMapper`: fiblets as geometry of an ordinary VTK actor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from pvfiblets.engine.view import Style
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engine_mapper import CutMapper
+from pvfiblets.mappers.engines import EngineOptions, engine_renderer
+from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
+
+
+class FibletMapper(CutMapper):
+    """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
+
+    Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
+    alone is not enough. One mapper serves one actor, in any number of renderers of one window; another
+    window needs another mapper and actor, as with all of VTK's.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        What to draw.
+    colouring : Colouring, optional
+        By orientation when left out.
+    line_width : float, default 1.0
+        Pixels of the window, at least 1.
+    options : EngineOptions, optional
+        Pipeline and culling; the defaults suit every machine.
+    renderer_factory : callable, optional
+        Takes a moderngl context, the fiblets, and as keywords those options that are not the defaults; returns a
+        renderer as of `pvfiblets.engine`.
+    progress : bool, default False
+        Show a progress bar while copying to the GPU.
+
+    Notes
+    -----
+    Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
+    """
+
+    _NAME = "FibletMapper"
+
+    def __init__(
+        self,
+        fiblets: Any,
+        *,
+        colouring: Colouring | None = None,
+        line_width: float = 1.0,
+        options: EngineOptions | None = None,
+        renderer_factory: Callable[..., Any] = engine_renderer,
+        progress: bool = False,
+    ) -> None:
+        self._filtering: Any = None
+        super().__init__(
+            fiblets,
+            colouring=Colouring() if colouring is None else colouring,
+            options=EngineOptions() if options is None else options,
+            renderer_factory=renderer_factory,
+            **({"progress": True} if progress else {}),
+        )
+        self.line_width = line_width
+
+    @property
+    def fiblets(self) -> Any:
+        """The `FibletSet` that is drawn."""
+        return self._drawn
+
+    def set_fiblets(self, fiblets: Any) -> None:
+        """Draw other fiblets from the next frame on.
+
+        Raises
+        ------
+        ValueError
+            The colouring has values for another number of streamlines.
+        """
+        self._put(fiblets)
+
+    @property
+    def line_width(self) -> float:
+        """Width of the lines in pixels of the window."""
+        return self._line_width
+
+    @line_width.setter
+    def line_width(self, pixels: float) -> None:
+        self._line_width = Style(line_width=float(pixels)).line_width
+        self._actor_modified()
+
+    @property
+    def _width(self) -> float:
+        return self._line_width
+
+    @property
+    def options(self) -> EngineOptions:
+        """Pipeline and culling; set another `EngineOptions` to change them from the next frame on."""
+        options: EngineOptions = self._options
+        return options
+
+    @options.setter
+    def options(self, options: EngineOptions) -> None:
+        self._options = options
+        self._actor_modified()
+
+    @property
+    def filtering(self) -> Any:
+        """`pvfiblets.engine.fiblets.filter_textures.Filter` of what is there to be drawn; None for everything."""
+        return self._filtering
+
+    @filtering.setter
+    def filtering(self, wanted: Any) -> None:
+        self._filtering = wanted
+        self._actor_modified()
+
+    def _engine(self, context: WindowContext, slot: Slot) -> Any:
+        before = slot.renderer
+        engine = super()._engine(context, slot)
+        if engine is not before:
+            slot.versions.pop("filtering", None)
+        if slot.versions.get("filtering") is not self._filtering:
+            engine.filtering = slot.versions["filtering"] = self._filtering
+        return engine
+
+    def pick_at(
+        self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
+    ) -> tuple[int, float] | None:
+        """Return the streamline nearest to a pixel of what was drawn last.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 2
+            How many pixels away a line may be.
+
+        Returns
+        -------
+        tuple of int and float, or None
+            Streamline id and position along it: the index of the point before, plus the fraction of
+            the segment. None where there is no fiblet. Other actors in front are not looked at.
+        """
+        return self._pick(x, y, renderer=renderer, tolerance=tolerance, what="ids")
+
+    def region_flags(self, region: Any, sampling: float | None = None) -> Any:
+        """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
+
+        Parameters
+        ----------
+        region, sampling
+            Data coordinates; as in `pvfiblets.query.passing.region_flags`, which gives the same answer.
+
+        Returns
+        -------
+        numpy.ndarray
+            (n_streamlines,) uint8.
+        """
+        for context in contexts_with(self):
+            slot = context.slots[self._address]
+            current = slot.versions.get("drawn") is self._drawn
+            if slot.renderer is not None and current and context.alive and hasattr(slot.renderer, "query"):
+                context.window.MakeCurrent()
+                with context.foreign():
+                    return slot.renderer.query(region, sampling)
+        from pvfiblets.query.passing import region_flags
+
+        return region_flags(self._drawn, region, sampling)

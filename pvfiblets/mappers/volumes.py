@@ -1,0 +1,295 @@
+"""`VolumeMapper`: a volume that rays are cast through, as geometry of an ordinary VTK actor.
+
+The engine (`pvfiblets.engine.volumes`) puts into its G-buffer what each pixel's ray meets. A surface is drawn by VTK
+among its opaque actors, with its lights on the surface's normals. Light and peaks are drawn in its translucent pass,
+when all that is opaque is there, so that rays end at it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from pvfiblets.engine.gbuffer import EMPTY
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.engine_mapper import CutMapper
+from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.line_tubes import SurfaceNormals
+from pvfiblets.mappers.picking import Shown, shown_by
+from pvfiblets.mappers.scene import others_opaque
+from pvfiblets.mappers.shader_effects import styled
+from pvfiblets.mappers.windows import Slot, WindowContext, gl_viewport
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.view import Style
+    from pvfiblets.volumes import RaycastVolume
+    from pvfiblets.volumes.interactive_quality import InteractiveQuality
+    from pvfiblets.volumes.options import RaycastOptions
+
+__all__ = ["RayHit", "VolumeMapper", "volume_renderer"]
+
+_LIGHT = "light"  # what the engine has in the place of a number at every point
+
+
+def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
+    """Make the engine's renderer of a volume; the default ``renderer_factory``.
+
+    Raises
+    ------
+    EngineError
+        Memory does not suffice, or the volume is larger than this OpenGL's textures.
+    """
+    from pvfiblets.engine.volumes import VolumeRenderer
+
+    return VolumeRenderer(ctx, volume, **options)
+
+
+@dataclass(frozen=True, eq=False)
+class RayHit:
+    """What a pixel shows of a volume.
+
+    Attributes
+    ----------
+    voxel : tuple of 3 ints
+        The nearest voxel.
+    position : numpy.ndarray
+        ``(3,)`` float64 mm, in the data's coordinates: where the ray meets the surface, where its first light comes
+        from, or where its peak is.
+    value : float
+        Of the surface or the peak; of light that of the voxel.
+    """
+
+    voxel: tuple[int, int, int]
+    position: npt.NDArray[np.float64]
+    value: float
+
+
+class VolumeMapper(CutMapper):
+    """Mapper that draws a `RaycastVolume` through VTK's own lights, passes, clipping planes and selection.
+
+    Parameters
+    ----------
+    volume : RaycastVolume
+        What to draw.
+    casting : RaycastOptions
+        How.
+    colouring : Colouring, optional
+        Of surfaces and peaks: ``'solid'``, or ``'point_value'`` of any source, whose values are those of the volume. By
+        default white. Light has the colours of its transfer function.
+    renderer_factory : callable, optional
+        Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`.
+
+    Attributes
+    ----------
+    coarser : InteractiveQuality or None
+        How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
+
+    Notes
+    -----
+    Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at
+    the farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and all of
+    the volume's light lies over what its first part is in front of.
+
+    Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
+
+    Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.
+    """
+
+    _NAME = "VolumeMapper"
+
+    def __init__(
+        self,
+        volume: RaycastVolume,
+        casting: RaycastOptions,
+        *,
+        colouring: Colouring | None = None,
+        renderer_factory: Callable[..., Any] = volume_renderer,
+    ) -> None:
+        self._casting = casting
+        self.coarser: InteractiveQuality | None = None
+        super().__init__(volume, colouring=_plain(casting), options=Options(), renderer_factory=renderer_factory)
+        self.show(casting, colouring)
+
+    @property
+    def volume(self) -> RaycastVolume:
+        """What is drawn."""
+        volume: RaycastVolume = self._drawn
+        return volume
+
+    def set_volume(self, volume: RaycastVolume) -> None:
+        """Draw another volume from the next frame on."""
+        self._put(volume)
+        self._actor_modified()
+
+    @property
+    def casting(self) -> RaycastOptions:
+        """How rays are cast; set another `RaycastOptions` to change it, which keeps the colours as far as it can."""
+        return self._casting
+
+    @casting.setter
+    def casting(self, casting: RaycastOptions) -> None:
+        same = (casting.mode == "composite") == (self._casting.mode == "composite")
+        self.show(casting, self._colouring if same else None)
+
+    def show(self, casting: RaycastOptions, colouring: Colouring | None = None) -> None:
+        """Change both from the next frame on.
+
+        Parameters
+        ----------
+        casting : RaycastOptions
+        colouring : Colouring, optional
+            White when left out; of light it is left out.
+
+        Raises
+        ------
+        ValueError
+            The colours are none that the mode has.
+        """
+        colouring = _plain(casting) if colouring is None else colouring
+        _check(casting, colouring)
+        self._casting = casting
+        CutMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
+        surface = casting.mode == "isosurface"
+        if surface != ("normals" in self._extras):
+            self.set_extra("normals", SurfaceNormals() if surface else None)
+
+    @property
+    def colouring(self) -> Colouring:
+        """Where the colours of surfaces and peaks come from."""
+        return self._colouring
+
+    @colouring.setter
+    def colouring(self, colouring: Colouring) -> None:
+        self.show(self._casting, colouring)
+
+    def pick_at(self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 0) -> RayHit | None:
+        """Return what a pixel of the picture that was drawn last shows of the volume.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixel of the window, from its lower left corner, as VTK's events give it.
+        renderer : vtkRenderer, optional
+            Which renderer's picture to look into; by default the one that was drawn last.
+        tolerance : int, default 0
+            How many pixels away the volume may be.
+
+        Returns
+        -------
+        RayHit or None
+            None where nothing of the volume is. Other actors are not looked at.
+        """
+        shown = shown_by(self, renderer)
+        if shown is None or tolerance < 0:
+            return None
+        column, row = (int(place) for place in np.floor(shown.to_viewport((x, y))))
+        reach = int(tolerance * shown.enlarged.max())
+        width, height = shown.drawn.viewport[2:]
+        left, lower = max(column - reach, 0), max(row - reach, 0)
+        area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
+        if min(area[2:]) < 1:
+            return None
+        shown.context.window.MakeCurrent()
+        with shown.context.foreign():
+            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
+            ctx = shown.context.ctx
+            depth, owner = (_read(ctx, texture, area, "u4")[..., 0] for texture in (buffer.depth, buffer.owner))
+            values = _read(ctx, buffer.position, area, "f4")[..., 1]
+        rows, columns = np.nonzero(depth != EMPTY)
+        distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
+        if not len(rows) or distance.min() > reach * reach:
+            return None
+        best = np.lexsort((depth[rows, columns], distance))[0]
+        at = rows[best], columns[best]
+        voxel = tuple(int(index) for index in np.unravel_index(int(owner[at]), self.volume.shape, order="F"))
+        light = shown.drawn.style.casting.mode == "composite"
+        value = self.volume.values[voxel] if light else values[at]
+        place = _place(shown, (columns[best] + left, rows[best] + lower), int(depth[at]))
+        return RayHit((voxel[0], voxel[1], voxel[2]), place, float(value))
+
+    @property
+    def _width(self) -> float:
+        return 1.0
+
+    @property
+    def _translucent(self) -> bool:
+        return self._casting.mode != "isosurface" or super()._translucent
+
+    def _outside(
+        self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
+    ) -> Any:
+        # What VTK selects are props, each by the nearest depth that it has: rays need not end.
+        if renderer.GetSelector() is not None or self.actor is None or not others_opaque(renderer, self.actor):
+            return None
+        depth = slot.outside_depth(context.ctx)
+        found = depth.copy(viewport, moved=True)
+        return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
+
+    def _draw(self, program: Any) -> None:
+        """Draw nothing where an enlarged picture, which is drawn tile by tile, has no part of a renderer in a tile."""
+        actor = self.actor
+        if actor is not None and min(gl_viewport(self._active.find(actor).GetRenderWindow())[2:]) < 1:
+            program.SetUniform2i("fibletSize", (0, 0))
+            return
+        super()._draw(program)
+
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:  # noqa: ARG002
+        from pvfiblets.engine.volumes import VolumeStyle
+
+        casting = self._casting
+        if self.coarser is not None and _in_motion(renderer):
+            casting = self.coarser.of(casting)
+        style = VolumeStyle(casting=casting, values=self._colouring.point_source)
+        return styled(style, self._extras.values())
+
+
+def _in_motion(renderer: vtkRenderer) -> bool:
+    """Whether the window wants pictures at the rate of interaction.
+
+    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
+    """
+    window = renderer.GetRenderWindow()
+    interactor = window.GetInteractor()
+    still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
+    return bool(window.GetDesiredUpdateRate() > still)
+
+
+def _plain(casting: RaycastOptions) -> Colouring:
+    """Colours without any choice."""
+    if casting.mode == "composite":
+        return Colouring("point_rgb", source=_LIGHT, see_through=True)
+    return Colouring("solid")
+
+
+def _check(casting: RaycastOptions, colouring: Colouring) -> None:
+    light = casting.mode == "composite"
+    known = ("point_rgb",) if light else ("solid", "point_value")
+    if colouring.mode not in known:
+        instead = "light has the colours of casting.transfer: leave colouring out" if light else f"choose of {known}"
+        raise ValueError(f"the colouring of mode {casting.mode!r} is {colouring.mode!r}; {instead}")
+
+
+def _place(shown: Shown, pixel: tuple[int, int], key: int) -> npt.NDArray[np.float64]:
+    """Return where the depth of a pixel lies, mm."""
+    view = shown.drawn.view
+    x, y = (2.0 * (np.asarray(pixel) + 0.5) / view.size - 1.0).tolist()
+    far = (EMPTY - key) / 2.0**32
+    place = np.linalg.solve(view.model_view_projection, [x, y, 1.0 - 2.0 * far, 1.0])
+    found: npt.NDArray[np.float64] = place[:3] / place[3]
+    return found
+
+
+def _read(ctx: Any, texture: Any, area: tuple[int, int, int, int], dtype: str) -> Any:
+    """Read a rectangle of a texture as (height, width, components)."""
+    framebuffer = ctx.framebuffer([texture])
+    try:
+        data = framebuffer.read(viewport=area, components=texture.components, dtype=dtype, alignment=1)
+    finally:
+        framebuffer.release()
+    return np.frombuffer(data, dtype=dtype).reshape(area[3], area[2], -1)

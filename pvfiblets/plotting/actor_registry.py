@@ -1,0 +1,223 @@
+"""The life cycle of a plotter's actors whose drawing is this package's.
+
+A component of PyVista's (:class:`~pvfiblets.plotting.fiblets.component.FibletsComponent`) lives as long as
+its plotter. It knows every actor that it added, raises errors that drawing met from the call that
+rendered, keeps scalar bars in step, and gives GPU memory back when an actor is removed and when the
+plotter closes.
+"""
+
+from __future__ import annotations
+
+import functools
+import weakref
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Concatenate, Generic, ParamSpec, Protocol, TypeVar, cast
+
+import pyvista as pv
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+def same_as(
+    method: Callable[Concatenate[Any, _P], _R],
+) -> Callable[[Callable[..., Any]], Callable[Concatenate[Any, _P], _R]]:
+    """Give a method the arguments, types and docs of one of another class, for people and for type checkers."""
+    return cast("Any", functools.wraps(method))
+
+
+class Registered(Protocol):
+    """What an actor must have to be kept; besides, it is a :class:`pyvista.Actor`."""
+
+    name: Any
+    prop: Any
+    mapper: Any
+    user_matrix: Any
+
+    @property
+    def memory_address(self) -> str:
+        """What VTK knows it by."""
+        ...
+
+    @property
+    def scalars_title(self) -> str | None:
+        """What its scalar bar says; None if it needs none."""
+        ...
+
+    @property
+    def shows_labels(self) -> bool:
+        """Whether its scalar bar names numbers."""
+        ...
+
+    def watch(self, bar_changed: Any) -> None:
+        """Call that whenever another scalar bar is needed."""
+        ...
+
+    def entered(self, renderer: Any) -> None:
+        """Be told that a renderer draws it from now on."""
+        ...
+
+    def release(self, window: Any = None) -> None:
+        """Give back the GPU memory that it has in a window, or in all."""
+        ...
+
+    def raise_pending(self) -> None:
+        """Raise what drawing stored, once."""
+        ...
+
+    def explain(self) -> dict[str, Any]:
+        """Return what its drawing costs."""
+        ...
+
+
+A = TypeVar("A", bound=Registered)
+
+
+@dataclass
+class _Bar:
+    """Whether an actor wants a scalar bar, how, and which one it has."""
+
+    show: bool
+    arguments: dict[str, Any]
+    title: str | None = None
+    labels: bool = False
+
+
+class ActorRegistry(Generic[A]):
+    """The part of a component that keeps actors of one kind."""
+
+    _plotter: Any
+
+    def _init_keeping(self, plotter: pv.BasePlotter) -> None:
+        self._plotter = weakref.proxy(plotter)
+        self._actors: list[A] = []
+        self._renderers: dict[str, tuple[Any, int]] = {}
+        self._bars: dict[str, _Bar] = {}
+
+    def __iter__(self) -> Iterator[A]:
+        return iter(tuple(self._actors))
+
+    def __len__(self) -> int:
+        return len(self._actors)
+
+    def explain(self) -> list[dict[str, Any]]:
+        """Return what each actor's drawing costs.
+
+        Returns
+        -------
+        list of dict
+            One entry of the actor's own ``explain()`` per actor, with its ``name``.
+        """
+        return [{"name": actor.name, **actor.explain()} for actor in self]
+
+    def _enter(
+        self,
+        actor: A,
+        *,
+        name: str | None,
+        label: str | None,
+        show_scalar_bar: bool | None,
+        scalar_bar_args: dict[str, Any] | None,
+        pickable: bool,
+        user_matrix: Any,
+        reset_camera: bool | None,
+        render: bool,
+    ) -> A:
+        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it.
+
+        Where an argument is refused, the actor is not left behind.
+        """
+        if label is not None and not isinstance(label, str):
+            raise TypeError(f"label is a {type(label).__name__}; give a string")
+        if scalar_bar_args is not None and not isinstance(scalar_bar_args, dict):
+            raise TypeError(f"scalar_bar_args is {scalar_bar_args!r}; give a dict of arguments of add_scalar_bar")
+        if user_matrix is not None:
+            actor.user_matrix = user_matrix
+        if show_scalar_bar is None:
+            show_scalar_bar = self._plotter.theme.show_scalar_bar
+        if reset_camera is None and self._plotter.camera_set:
+            reset_camera = False
+        renderer = self._plotter.renderer
+        self._plotter.add_actor(
+            actor, name=name, pickable=pickable, reset_camera=reset_camera, render=False
+        )
+        self._track(actor, renderer)
+        if label is not None:
+            self._add_label(actor, label, renderer)
+        self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
+        try:
+            self._update_bar(actor)
+        except Exception:
+            self._plotter.remove_actor(actor, render=False)
+            raise
+        actor.watch(self._update_bar)
+        if render:
+            self._plotter.render()
+        return actor
+
+    # Life cycle ---------------------------------------------------------------------------------
+
+    def _track(self, actor: A, renderer: Any) -> None:
+        self._actors.append(actor)
+        actor.entered(renderer)
+        address = renderer.GetAddressAsString("")
+        if address not in self._renderers:
+            # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
+            tag = renderer.AddObserver("ModifiedEvent", self._release_removed)
+            self._renderers[address] = (renderer, tag)
+        # Registered current here, since `clear_on_render_callbacks` drops what others registered.
+        self._plotter.add_on_render_callback(self._raise_pending)
+
+    def _release_removed(self, *_: Any) -> None:
+        """Give back the GPU memory of actors that are in none of the plotter's renderers."""
+        for actor in self:
+            if not any(renderer.HasViewProp(actor) for renderer, _ in self._renderers.values()):
+                self._forget(actor)
+
+    def _forget(self, actor: A) -> None:
+        self._actors.remove(actor)
+        self._bars.pop(actor.memory_address, None)
+        actor.watch(None)
+        actor.release(self._plotter.render_window)
+
+    def _raise_pending(self, _plotter: Any = None) -> None:
+        for actor in self:
+            actor.raise_pending()
+
+    def __plotter_close__(self) -> None:
+        """Release everything; PyVista calls this before the render window goes."""
+        for renderer, tag in self._renderers.values():
+            renderer.RemoveObserver(tag)
+        self._renderers.clear()
+        for actor in self:
+            self._forget(actor)
+
+    # Scalar bars and legend ---------------------------------------------------------------------
+
+    def _update_bar(self, actor: A) -> None:
+        """Add, replace or remove the actor's scalar bar so that it says what the picture shows."""
+        state = self._bars[actor.memory_address]
+        wanted = actor.scalars_title if state.show else None
+        if wanted is not None:
+            wanted = state.arguments.get("title", wanted)
+        if wanted == state.title and actor.shows_labels == state.labels:
+            return
+        if state.title is not None:
+            # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
+            bars = self._plotter.scalar_bars
+            bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
+            # But not one that was given a place, both x and y.
+            if state.title in bars and not bars._scalar_bar_mappers[state.title]:  # noqa: SLF001
+                bars.remove_scalar_bar(state.title, render=False)
+        if wanted is not None:
+            self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
+            usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}
+            arguments = {**usual, **state.arguments, "title": wanted}
+            self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
+        state.title, state.labels = wanted, actor.shows_labels
+
+    def _add_label(self, actor: A, label: str, renderer: Any) -> None:
+        face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
+        entry = (face, label, pv.Color(actor.prop.color))
+        renderer._labels[actor.memory_address] = entry  # noqa: SLF001 - as add_mesh does

@@ -1,0 +1,171 @@
+"""What a user chose of a tractogram, as the engine draws by it: a mask of streamlines, bits of points, a region.
+
+Everything that is chosen is joined by *and*. Nothing here knows an actor or a window: asking the GPU is somebody
+else's function, given where it is needed.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from functools import reduce
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pvfiblets.query.predicates import Predicate, passes
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.engine.fiblets.filter_textures import Filter
+    from pvfiblets.regions import Region
+
+__all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range", "in_groups", "unique_name"]
+
+
+@dataclass(frozen=True, eq=False)
+class Criterion:
+    """A range of values outside of which nothing is shown.
+
+    Attributes
+    ----------
+    name : str
+    what : Any
+        What was asked for: a name, an array, a ``Distance``.
+    values : Any
+        :class:`pvfiblets.query.measures.Values`.
+    range : tuple of float
+        Both ends included.
+    keep_nan : bool
+        Whether NaN is shown.
+    """
+
+    name: str
+    what: Any
+    values: Any
+    range: tuple[float, float]
+    keep_nan: bool
+
+    def within(self) -> tuple[Any, float, float, bool]:
+        """What :mod:`pvfiblets.query.bits` asks for."""
+        return self.values, *self.range, self.keep_nan
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """A condition on streamlines, and where it holds."""
+
+    name: str
+    predicate: Predicate
+    mask: np.ndarray
+
+
+@dataclass
+class Choices:
+    """All that a user chose; see :class:`~pvfiblets.plotting.fiblets.filtering.Filtering`."""
+
+    criteria: dict[str, Criterion] = field(default_factory=dict)
+    conditions: dict[str, Condition] = field(default_factory=dict)
+    clips: dict[str, Region] = field(default_factory=dict)
+    subset: np.ndarray | None = None
+    groups: tuple[str, ...] | None = None
+    ids: np.ndarray | None = None
+    # Bits of the points, and the criteria that they are of: these stay while others change.
+    _words: tuple[tuple[Criterion, ...], np.ndarray] | None = None
+
+    def copy(self) -> Choices:
+        """The same choices, to be changed on their own."""
+        return replace(
+            self,
+            criteria=dict(self.criteria),
+            conditions=dict(self.conditions),
+            clips=dict(self.clips),
+        )
+
+    def mask(self, fiblets: FibletSet) -> np.ndarray | None:
+        """Which streamlines are shown, (n_streamlines,) bool; None for all."""
+        masks = [condition.mask for condition in self.conditions.values()]
+        if per_streamline := self._of_kind("streamline"):
+            from pvfiblets.query.bits import streamline_mask
+
+            masks.append(streamline_mask(fiblets, [c.within() for c in per_streamline]))
+        masks += [mask for mask in (self.subset, self.ids) if mask is not None]
+        if self.groups is not None:
+            masks.append(in_groups(fiblets, self.groups))
+        return reduce(operator.and_, masks) if masks else None
+
+    def points(self, fiblets: FibletSet) -> np.ndarray | None:
+        """Bits of the points that are shown, uint32, in coded order; None for all."""
+        per_point = self._of_kind("point")
+        if not per_point:
+            return None
+        if self._words is None or self._words[0] != per_point:
+            from pvfiblets.query.bits import point_words
+
+            self._words = per_point, point_words(fiblets, [c.within() for c in per_point])
+        return self._words[1]
+
+    def _of_kind(self, kind: str) -> tuple[Criterion, ...]:
+        return tuple(c for c in self.criteria.values() if c.values.kind == kind)
+
+    def filter(self, fiblets: FibletSet) -> Filter | None:
+        """What the engine is told; None where everything is shown."""
+        from pvfiblets.engine.fiblets.filter_textures import Filter
+
+        mask, points = self.mask(fiblets), self.points(fiblets)
+        return None if mask is None and points is None else Filter(mask, points)
+
+    def region(self) -> Region | None:
+        """All cuts in one region; None for none."""
+        return reduce(operator.and_, self.clips.values()) if self.clips else None
+
+
+def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
+    """Which streamlines are in any of some groups, (n_streamlines,) bool.
+
+    Raises
+    ------
+    KeyError
+        If there is no such group; the message lists those that there are.
+    """
+    mask = np.zeros(fiblets.n_streamlines, bool)
+    for name in names:
+        if name not in fiblets.groups:
+            there = ", ".join(repr(group) for group in fiblets.groups) or "none"
+            raise KeyError(f"there is no group {name!r}; there are: {there}")
+        mask[np.asarray(fiblets.groups[name])] = True
+    return mask
+
+
+OPEN = (-math.inf, math.inf)
+
+
+def checked_range(limits: Any) -> tuple[float, float]:
+    """Return both ends of a range; an end that is None is open.
+
+    Raises
+    ------
+    ValueError
+        If these are not two numbers in rising order; infinite ones will do.
+    """
+    try:
+        low, high = (end if given is None else float(given) for given, end in zip(limits, OPEN, strict=True))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"range is {limits!r}; give two numbers, (low, high), None for an open end") from error
+    if math.isnan(low) or math.isnan(high) or low > high:
+        raise ValueError(f"range is ({low:g}, {high:g}); give two numbers, the low one first")
+    return low, high
+
+
+def as_predicate(condition: Any, make_region: Callable[[Any], Region]) -> Predicate:
+    """Return a predicate; of a region alone, that of streamlines which pass through it."""
+    return condition if isinstance(condition, Predicate) else passes(make_region(condition))
+
+
+def unique_name(taken: Iterable[str], stem: str) -> str:
+    """Return the first of ``stem 1``, ``stem 2`` … that is not taken."""
+    taken = set(taken)
+    return next(name for i in range(1, len(taken) + 2) if (name := f"{stem} {i}") not in taken)
+

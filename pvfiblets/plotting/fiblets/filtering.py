@@ -1,0 +1,334 @@
+"""Which streamlines, and which parts of them, an actor shows: criteria, regions, groups, subsets, and cuts.
+
+Choices add up: a streamline is shown where all of them agree. What is not shown is culled on the GPU, not only hidden,
+and nothing is compressed or copied anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from pvfiblets.plotting.clipping import Clipping, without
+from pvfiblets.plotting.fiblets.filter_state import (
+    Choices,
+    Condition,
+    Criterion,
+    as_predicate,
+    checked_range,
+    in_groups,
+    unique_name,
+)
+from pvfiblets.plotting.region_sources import as_region
+from pvfiblets.query.predicates import select
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.plotting.fiblets.actor import PlottedMapper
+    from pvfiblets.query.predicates import Predicate
+    from pvfiblets.regions import Region
+
+
+class Filtering(Clipping):
+    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that chooses what is there to be drawn."""
+
+    _mapper: PlottedMapper
+
+    def _init_filtering(self) -> None:
+        self._choices = Choices()
+
+    # Values -------------------------------------------------------------------------------------
+
+    @property
+    def criteria(self) -> Mapping[str, tuple[float, float]]:
+        """Ranges of all criteria, by name; to change one, call :meth:`criterion` again."""
+        return MappingProxyType({name: c.range for name, c in self._choices.criteria.items()})
+
+    def criterion(
+        self,
+        what: Any,
+        range: Any,  # noqa: A002 - the word users look for
+        *,
+        keep_nan: bool = False,
+        name: str | None = None,
+    ) -> str:
+        """Show only what has values in a range.
+
+        Parameters
+        ----------
+        what : str, array or Distance
+            ``"length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"`` or any number
+            per streamline: streamlines are shown or not. ``"curvature"``, ``"arc_length"`` or any
+            number per point: of a streamline those segments are shown both points of which are in
+            range. An array with one number per streamline, or per point; or
+            :class:`pvfiblets.regions.Distance` to a region or a point (mm). The name of a
+            criterion that there is changes that one's range.
+        range : (float, float)
+            Least and greatest value that is shown; infinite ends, and None, are open.
+        keep_nan : bool, default: False
+            Whether to show what has no value.
+        name : str, optional
+            Replaces the criterion of the same name. By default that of the values; the same array
+            or distance again changes its range, another one is one more criterion.
+
+        Returns
+        -------
+        str
+            The name.
+
+        Raises
+        ------
+        KeyError
+            If there are no such values; the message lists those that there are.
+        ValueError
+            If the range is none, or an array has the wrong length.
+        """
+        low, high = checked_range(range)
+        known = self._choices.criteria
+        if name is None and not isinstance(what, str):
+            name = next((known_as for known_as, c in known.items() if _same(c.what, what)), None)
+        if isinstance(what, str) and what in known and name in (None, what):
+            values, name, what = known[what].values, what, known[what].what
+        elif name in known and _same(known[name].what, what):
+            values = known[name].values
+        else:
+            from pvfiblets.query.measures import measure
+
+            values = measure(self._data, what)
+        if name is None:
+            name = values.name if isinstance(what, str) else unique_name(known, values.name)
+        criterion = Criterion(name, what, values, (low, high), bool(keep_nan))
+        self._choose(criteria={**known, name: criterion})
+        return name
+
+    def remove_criterion(self, name: str | None = None) -> None:
+        """Take a criterion back by its `name`, or all of them."""
+        self._choose(criteria=without(self._choices.criteria, name, "criterion"))
+
+    # Regions ------------------------------------------------------------------------------------
+
+    def include(self, condition: Any, *, name: str | None = None) -> str:
+        """Show only streamlines for which a condition holds.
+
+        Parameters
+        ----------
+        condition : Predicate or region-like
+            ``regions.passes(…)``, ``regions.ends_in(…)``, ``regions.stays_in(…)`` and what ``&``,
+            ``|`` and ``~`` make of them. A region alone, a closed mesh, a label volume or six
+            bounds stand for the streamlines that pass through it. In data coordinates.
+        name : str, optional
+            Replaces the condition of the same name.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`remove_condition`.
+        """
+        return self._add_condition(as_predicate(condition, as_region), name, "include")
+
+    def exclude(self, condition: Any, *, name: str | None = None) -> str:
+        """Hide streamlines for which a condition holds; parameters and result as for :meth:`include`."""
+        return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
+
+    @property
+    def conditions(self) -> Mapping[str, Predicate]:
+        """Conditions that streamlines fulfil to be shown, by name."""
+        return MappingProxyType({n: c.predicate for n, c in self._choices.conditions.items()})
+
+    def remove_condition(self, name: str | None = None) -> None:
+        """Take a condition back by its `name`, or all of them."""
+        self._choose(conditions=without(self._choices.conditions, name, "condition"))
+
+    def streamlines_where(self, condition: Any) -> np.ndarray:
+        """Return the streamlines for which a condition holds.
+
+        Parameters
+        ----------
+        condition : Predicate or region-like
+            As for :meth:`include`.
+
+        Returns
+        -------
+        numpy.ndarray
+            (n_streamlines,) bool, shown or not. The GPU is asked where it can be, and gives the
+            same answer.
+        """
+        return select(self._data, as_predicate(condition, as_region), flags=self._mapper.region_flags)
+
+    # Subsets ------------------------------------------------------------------------------------
+
+    def subset(self, amount: float | None = None, *, seed: int = 0, every: int | None = None) -> None:
+        """Show some streamlines only, whatever they are.
+
+        Parameters
+        ----------
+        amount : float or int, optional
+            A share below 1, or a number of streamlines, drawn at random.
+        seed : int, default: 0
+            Other seeds draw others. A smaller amount is a part of a larger one of the same seed.
+        every : int, optional
+            Streamlines 0, n, 2n and so on, instead.
+
+        Raises
+        ------
+        ValueError
+            If the amount or ``every`` is out of range, or both are given. Neither shows all again.
+        """
+        self._choose(subset=_subset(self._data.n_streamlines, amount, seed, every))
+
+    @property
+    def groups_shown(self) -> tuple[str, ...] | None:
+        """Names of the groups that are shown, None for all streamlines, in a group or not."""
+        return self._choices.groups
+
+    @groups_shown.setter
+    def groups_shown(self, names: Iterable[str] | None) -> None:
+        wanted = None if names is None else tuple([names] if isinstance(names, str) else names)
+        if wanted is not None:
+            in_groups(self._data, wanted)
+        self._choose(groups=wanted)
+
+    def show_only(self, ids: Any) -> None:
+        """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
+        mask = None
+        if ids is not None:
+            from pvfiblets.codec.decompress import select_streamlines
+
+            mask = np.zeros(self._data.n_streamlines, bool)
+            mask[select_streamlines(self._data.n_streamlines, ids)] = True
+        self._choose(ids=mask)
+
+    @property
+    def shown(self) -> np.ndarray:
+        """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
+        mask = self._choices.mask(self._data)
+        return np.ones(self._data.n_streamlines, bool) if mask is None else mask.copy()
+
+    def show_all(self) -> None:
+        """Take all criteria, conditions, subsets and cuts back."""
+        self._choices = Choices()
+        self._apply(filtering=True, cuts=True)
+
+    # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _cuts(self) -> Mapping[str, Region]:
+        return self._choices.clips
+
+    def _cut(self, clips: dict[str, Region]) -> None:
+        self._choose(clips=clips)
+
+    @property
+    def _data(self) -> FibletSet:
+        return cast("FibletSet", self.fiblets)  # type: ignore[attr-defined]  # of the actor
+
+    def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
+        known = self._choices.conditions
+        name = unique_name(known, stem) if name is None else name
+        mask = select(self._data, predicate, flags=self._mapper.region_flags)
+        self._choose(conditions={**known, name: Condition(name, predicate, mask)})
+        return name
+
+    def _choose(self, **changes: Any) -> None:
+        """Make choices; one that is refused leaves all as they were."""
+        before, self._choices = self._choices, self._choices.copy()
+        for key, value in changes.items():
+            setattr(self._choices, key, value)
+        try:
+            self._apply(filtering=set(changes) != {"clips"}, cuts="clips" in changes)
+        except Exception:
+            self._choices = before
+            raise
+
+    def _apply(self, *, filtering: bool, cuts: bool) -> None:
+        if cuts:
+            self._mapper.region = self._choices.region()
+        if filtering:
+            self._mapper.filtering = self._choices.filter(self._data)
+
+    def _values_of_criterion(self, scalars: Any) -> Any:
+        """Return what a criterion was made of, where its name colours; all else as it is."""
+        if isinstance(scalars, str) and scalars in self._choices.criteria:
+            return self._choices.criteria[scalars].what
+        return scalars
+
+    def _choose_as(self, other: Filtering) -> None:
+        """Take over the choices of another actor of the same fiblets."""
+        self._choices = other._choices.copy()
+        self._apply(filtering=True, cuts=True)
+
+    def _choices_for(self, fiblets: FibletSet) -> Choices:
+        """Make the choices anew for other fiblets; nothing changes yet."""
+        from pvfiblets.query.measures import measure
+
+        old = self._choices
+        criteria = {}
+        for name, c in old.criteria.items():
+            try:
+                values = measure(fiblets, c.what)
+            except (KeyError, ValueError) as error:
+                raise type(error)(
+                    f"criterion {name!r} does not fit these fiblets: {error.args[0]}; remove_criterion({name!r}) first"
+                ) from error
+            criteria[name] = Criterion(name, c.what, values, c.range, c.keep_nan)
+        conditions = {
+            name: Condition(name, c.predicate, select(fiblets, c.predicate)) for name, c in old.conditions.items()
+        }
+        same = fiblets.n_streamlines == self._data.n_streamlines
+        groups = old.groups if old.groups and set(old.groups) <= set(fiblets.groups) else None
+        return Choices(
+            criteria=criteria,
+            conditions=conditions,
+            clips=old.clips,
+            groups=groups,
+            subset=old.subset if same else None,
+            ids=old.ids if same else None,
+        )
+
+    def _rechoose(self, choices: Choices) -> None:
+        self._choices = choices
+        self._apply(filtering=True, cuts=False)
+
+    def _explain_choices(self) -> dict[str, Any]:
+        """What is chosen, for ``explain()``."""
+        choices = self._choices
+        mask = choices.mask(self._data)
+        total = self._data.n_streamlines
+        return {
+            "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
+            "criteria": dict(self.criteria),
+            "conditions": list(choices.conditions),
+            "clips": list(choices.clips),
+            "groups_shown": choices.groups,
+        }
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two criteria are of the same values: arrays by identity, distances by what they are to."""
+    from pvfiblets.query.measures import Distance
+
+    return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
+
+
+def _subset(count: int, amount: float | None, seed: int, every: int | None) -> np.ndarray | None:
+    """Return (count,) bool, None for all."""
+    if amount is not None and every is not None:
+        raise ValueError(f"amount is {amount} and every is {every}; give one of them")
+    if every is not None:
+        if every < 1 or int(every) != every:
+            raise ValueError(f"every is {every}; give a whole number above zero")
+        return np.arange(count) % int(every) == 0
+    if amount is None:
+        return None
+    whole = isinstance(amount, (int, np.integer)) and not isinstance(amount, bool)
+    if whole and not 0 <= amount <= count:
+        raise ValueError(f"amount is {amount}; there are {count} streamlines")
+    if not whole and not 0.0 <= float(amount) <= 1.0:
+        raise ValueError(f"amount is {amount}; give a share from 0 to 1, or a whole number")
+    wanted = int(amount) if whole else round(float(amount) * count)
+    mask = np.zeros(count, bool)
+    mask[np.random.default_rng(seed).permutation(count)[:wanted]] = True
+    return mask

@@ -1,0 +1,275 @@
+"""Which numbers colour an actor: by name or as an array, per point or per streamline.
+
+A name is looked up among the arrays that the fiblets carry and then among the built-in ones, which
+are computed from the geometry and stored nowhere. An array is recognised by its length. Arrays
+with three or four columns are colours, all others are numbers for a colour map.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.mappers.colouring import Mode
+from pvfiblets.query.measures import COMPUTED, Distance, measure
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+ORIENTATION = "orientation"
+GROUP = "group"
+BUILT_IN = tuple(dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)))
+UNITS = {
+    "length": "length [mm]",
+    "radius": "radius [mm]",
+    "curvature": "curvature [1/mm]",
+    "arc_length": "arc length [mm]",
+    "mean_curvature": "mean curvature [1/mm]",
+    "end_distance": "distance of ends [mm]",
+    "n_points": "points",
+    "coding_error": "coding error [mm]",
+    "distance": "distance [mm]",
+}
+UNNAMED = "Data"
+
+_SAMPLE = 2000  # streamlines whose points give curvature its default range
+
+
+@dataclass(frozen=True)
+class Scalars:
+    """Numbers or colours found for an actor.
+
+    Parameters
+    ----------
+    name : str
+        For the scalar bar, and for the engine where ``kind`` is ``"point_value"``.
+    kind : {"orientation", "streamline_rgb", "streamline_scalar", "point_value", "point_rgb"}
+        How the mapper has to use them.
+    values : array, optional
+        (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
+    range : tuple of float
+        Least and largest finite value.
+    positive : float
+        Least value above zero, where a logarithmic scale may begin.
+    categories : dict, optional
+        Of numbers that are labels: what each stands for.
+    volume : VolumeSource, optional
+        To be sampled at the points, where ``kind`` is ``"point_value"``.
+    see_through : bool
+        Whether some of the colours of ``"point_rgb"`` have an alpha below 1.
+    """
+
+    name: str
+    kind: Mode
+    values: np.ndarray | None = None
+    range: tuple[float, float] = (0.0, 1.0)
+    positive: float = 1e-6
+    volume: VolumeSource | None = None
+    categories: dict[int, str] | None = None
+    see_through: bool = False
+
+    @property
+    def mapped(self) -> bool:
+        """Whether a colour map turns these into colours, so that a scalar bar makes sense."""
+        return self.kind in ("streamline_scalar", "point_value")
+
+    @property
+    def title(self) -> str:
+        """What the scalar bar says."""
+        return UNITS.get(self.name, self.name)
+
+    def distinct(self, fiblets: FibletSet) -> int:
+        """Return how many different numbers there are, NaN not counted; at least 1.
+
+        Raises
+        ------
+        ValueError
+            If they come of the geometry at every point, as arc length and curvature do.
+        """
+        if self.categories is not None:
+            return max(len(self.categories), 1)
+        if self.volume is not None:
+            return max(self.volume.distinct, 1)
+        if self.values is not None:
+            return max(int(np.unique(self.values[~np.isnan(self.values)]).size), 1)
+        if self.name not in fiblets.per_point:
+            raise ValueError(
+                f"{self.name!r} has no categories; give categories=False, or the number of colours "
+                "as n_colors"
+            )
+        stored = fiblets.per_point[self.name]
+        return max(int(np.count_nonzero(np.bincount(stored.codes)[: stored.levels])), 1)
+
+
+def find_scalars(
+    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None
+) -> Scalars:
+    """Find what ``scalars`` means for ``fiblets``.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        The data.
+    scalars : str, array, VolumeSource, Distance or None
+        A name, one value or colour per streamline, a volume to be sampled, or what distances are
+        to; ``None`` means orientation.
+
+    Returns
+    -------
+    Scalars
+        The numbers or colours.
+
+    Raises
+    ------
+    KeyError
+        If no array has that name; the message lists those that exist.
+    ValueError
+        If an array has neither one value nor one colour per streamline.
+    """
+    if scalars is None:
+        return Scalars(ORIENTATION, "orientation")
+    if isinstance(scalars, VolumeSource):
+        low, high = scalars.range
+        return Scalars(
+            scalars.name, "point_value", None, (low, high), scalars.least_positive, scalars
+        )
+    if isinstance(scalars, Distance):
+        values = measure(fiblets, scalars)
+        return per_streamline(values.name, values.array(), fiblets.n_streamlines)
+    if not isinstance(scalars, str):
+        return per_streamline(UNNAMED, scalars, fiblets.n_streamlines)
+    if scalars in fiblets.per_point:
+        stored = fiblets.per_point[scalars]
+        low, high = stored.lo, stored.hi
+        smallest = max(low, (high - low) / stored.levels, 1e-30)
+        return Scalars(scalars, "point_value", None, (low, high), smallest)
+    if scalars in fiblets.per_streamline:
+        return per_streamline(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines)
+    if scalars == ORIENTATION:
+        return Scalars(ORIENTATION, "orientation")
+    if scalars == "length":
+        return per_streamline("length", fiblets.lengths(), fiblets.n_streamlines)
+    if scalars == "arc_length":
+        longest = _longest(fiblets)
+        return Scalars("arc_length", "point_value", None, (0.0, longest or 1.0), fiblets.step)
+    if scalars == "curvature":
+        least, most = _curvature_range(fiblets)
+        return Scalars("curvature", "point_value", None, (least, most), most / 1e3)
+    if scalars in COMPUTED["streamline"]:
+        return per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
+    if scalars == GROUP:
+        return by_group(fiblets)
+    if scalars == "coding_error":
+        raise KeyError(
+            "the coding error is known only while streamlines are compressed: give "
+            "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
+        )
+    raise KeyError(missing_message(fiblets, scalars))
+
+
+def by_group(fiblets: FibletSet) -> Scalars:
+    """Number the streamlines by the first of the groups that they are in; NaN for those in none.
+
+    Raises
+    ------
+    KeyError
+        If there are no groups.
+    """
+    if not fiblets.groups:
+        raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
+    numbers = np.full(fiblets.n_streamlines, np.nan)
+    for index, members in reversed(list(enumerate(fiblets.groups.values()))):
+        numbers[np.asarray(members)] = index
+    found = per_streamline(GROUP, numbers, fiblets.n_streamlines)
+    names = dict(enumerate(fiblets.groups))
+    return replace(found, range=(-0.5, len(names) - 0.5), categories=names)
+
+
+def missing_message(fiblets: FibletSet, name: str) -> str:
+    """Say that there is no array ``name``, which there are, and what to do."""
+    def listed(names: Any) -> str:
+        return ", ".join(repr(str(n)) for n in names) or "none"
+
+    return (
+        f"there is no array {name!r}. Per point: {listed(fiblets.per_point)}; "
+        f"per streamline: {listed(fiblets.per_streamline)}; built in: {listed(BUILT_IN)}. "
+        f"Per-point arrays of a file are kept only when asked for: per_point=[{name!r}]"
+    )
+
+
+def per_streamline(name: str, values: Any, n_streamlines: int, *, whole: str = "streamline") -> Scalars:
+    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called.
+
+    Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
+    """
+    values = np.asarray(values)
+    if values.ndim == 2 and values.shape[1] == 1:
+        values = values[:, 0]
+    if values.shape[:1] != (n_streamlines,) or values.ndim > 2 or values.dtype.kind not in "buif":
+        raise ValueError(
+            f"scalars {name!r} have shape {values.shape} and type {values.dtype}; expected "
+            f"{n_streamlines} numbers, one per {whole}, or as many rows of 3 or 4 colour parts"
+        )
+    if values.ndim == 1:
+        numbers = values.astype(np.float64)
+        finite = numbers[np.isfinite(numbers)]
+        if not len(finite):
+            return Scalars(name, "streamline_scalar", numbers)
+        positive = finite[finite > 0.0]
+        return Scalars(
+            name,
+            "streamline_scalar",
+            numbers,
+            (float(finite.min()), float(finite.max())),
+            float(positive.min()) if len(positive) else 1e-6,
+        )
+    if values.shape[1] not in (3, 4):
+        raise ValueError(
+            f"scalars {name!r} have {values.shape[1]} columns; expected 1 (numbers), or 3 or 4 "
+            "(colours). Pick a column, or take a norm, first"
+        )
+    colours = values
+    if values.dtype.kind == "f":
+        if np.nanmin(colours, initial=0.0) < 0.0 or np.nanmax(colours, initial=0.0) > 1.0:
+            raise ValueError(
+                f"colours {name!r} lie between {np.nanmin(colours):g} and "
+                f"{np.nanmax(colours):g}; floats must lie between 0 and 1, or give uint8"
+            )
+        colours = np.round(np.nan_to_num(colours) * 255.0)
+    elif colours.size and (colours.min() < 0 or colours.max() > 255):
+        raise ValueError(f"colours {name!r} must lie between 0 and 255")
+    return Scalars(name, "streamline_rgb", np.ascontiguousarray(colours, dtype=np.uint8))
+
+
+def _longest(fiblets: FibletSet) -> float:
+    """Return the length, mm, of the longest of those streamlines that have the most points.
+
+    With constant steps that is the longest of all; else it is near enough for a colour range, and
+    costs the same for a billion points as for a million.
+    """
+    counts = np.diff(fiblets.offsets())
+    if not counts.size:
+        return 0.0
+    most = np.argpartition(counts, -min(_SAMPLE, counts.size))[-_SAMPLE:]
+    return float(fiblets.decompress(most).lengths().max())
+
+
+def _curvature_range(fiblets: FibletSet) -> tuple[float, float]:
+    """Return 0 and the 98th percentile of curvature (1/mm) on an even sample of streamlines."""
+    count = min(_SAMPLE, fiblets.n_streamlines)
+    ids = np.unique(np.linspace(0, fiblets.n_streamlines - 1, count).astype(np.int64))
+    sample = fiblets.decompress(ids)
+    moves = np.diff(sample.points.astype(np.float64), axis=0)
+    inside = np.ones(len(moves), bool)
+    inside[sample.offsets[1:-1][sample.offsets[1:-1] <= len(moves)] - 1] = False
+    sizes = np.linalg.norm(moves, axis=1)
+    both = inside[1:] & inside[:-1] & (sizes[1:] > 0.0) & (sizes[:-1] > 0.0)
+    if not both.any():
+        return 0.0, 1.0
+    cross = np.linalg.norm(np.cross(moves[:-1], moves[1:]), axis=1)
+    turn = np.arctan2(cross, np.einsum("ij,ij->i", moves[:-1], moves[1:]))[both]
+    curvature = turn / (0.5 * (sizes[1:] + sizes[:-1]))[both]
+    return 0.0, float(np.percentile(curvature, 98.0)) or 1.0

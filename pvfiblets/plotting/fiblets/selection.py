@@ -1,0 +1,367 @@
+"""Streamlines that a user singled out: highlighted, counted, measured, saved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.mappers.highlight import Highlight
+from pvfiblets.mappers.picking import Layer
+from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
+from pvfiblets.plotting.fiblets.profiles import SelectionMeasures
+from pvfiblets.plotting.report import added_up
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.fiblets.selection_overlay import Standout
+
+MODES = ("replace", "add", "remove", "toggle")
+_AS_BEFORE: Any = object()
+
+
+@dataclass(frozen=True)
+class SelectionStyle:
+    """How selected streamlines stand out.
+
+    Attributes
+    ----------
+    color : tuple of 3 floats or None
+        RGB of those selected; ``None`` leaves them their own colours.
+    width : float or None
+        Pixels; ``None`` draws them as wide as all.
+    dim : float
+        How much of the others' colours gives way to the background, 0 to 1.
+    as_tubes : bool
+        Whether they are drawn as tubes.
+    radius : float
+        Of the tubes, mm.
+    silhouette : tuple of 3 floats or None
+        RGB of an outline around them.
+    """
+
+    color: tuple[float, ...] | None = None
+    width: float | None = None
+    dim: float = 0.8
+    as_tubes: bool = False
+    radius: float = 0.5
+    silhouette: tuple[float, float, float] | None = None
+
+
+class Selecting(SelectionMeasures):
+    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that keeps a selection."""
+
+    _mapper: Any
+    _scalars: Scalars | None
+    fiblets: FibletSet
+
+    def _init_selection(self) -> None:
+        self._selected: np.ndarray | None = None
+        self._selection_style = SelectionStyle()
+        self._standout: Standout | None = None
+
+    # Picking ------------------------------------------------------------------------------------
+
+    @property
+    def picking_layers(self) -> list[Layer]:
+        """Mappers whose pixels show this actor's streamlines."""
+        layers = [Layer(self._mapper)]
+        return layers if self._standout is None else [*layers, self._standout.layer]
+
+    @property
+    def active_scalars(self) -> Scalars | None:
+        """What colours the actor, as found; ``None`` for one colour."""
+        return self._scalars
+
+    def pick_box(self, box: Any, *, through: bool = False, renderer: Any = None) -> Picked | None:
+        """Return the streamlines in a rectangle of the window.
+
+        Parameters
+        ----------
+        box : (float, float, float, float)
+            Two opposite corners ``(x0, y0, x1, y1)``: pixels, counted from the lower left corner of
+            the window; those on the edges belong to it.
+        through : bool, default: False
+            Hidden ones too. Else only those that are seen: the ids are those of the picture.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If ``box`` is not four finite numbers.
+        """
+        return self._pick(checked_box(box), through, 0.0, renderer)
+
+    def pick_polygon(
+        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: Any = None
+    ) -> Picked | None:
+        """Return the streamlines in a polygon in the window.
+
+        Parameters
+        ----------
+        points : array_like
+            ``(k, 2)`` corners, pixels counted from the lower left corner of the window. It closes
+            itself; inside is by the even-odd rule. One corner is a point, two are a line.
+        through : bool, default: False
+            Hidden ones too.
+        tolerance : float, default: 0.0
+            Pixels that a streamline may be away.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If the corners are not finite pairs of numbers.
+        """
+        return self._pick(points, through, tolerance, renderer)
+
+    def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
+        from pvfiblets.query.screen import checked_polygon
+
+        find = everything if through else visible
+        corners = checked_polygon(points)
+        return find(self, corners, tolerance=tolerance, renderer=renderer)  # type: ignore[arg-type]  # of the actor
+
+    # The selection ------------------------------------------------------------------------------
+
+    @property
+    def selection(self) -> np.ndarray:
+        """``(n,)`` int64: ids of the selected streamlines, rising."""
+        if self._selected is None:
+            return np.zeros(0, np.int64)
+        return np.flatnonzero(self._selected).astype(np.int64)
+
+    @selection.setter
+    def selection(self, ids: Any) -> None:
+        self.select(ids)
+
+    def select(
+        self, ids: Any, *, mode: str = "replace", as_tubes: bool = _AS_BEFORE, radius: float = _AS_BEFORE
+    ) -> None:
+        """Select streamlines.
+
+        Parameters
+        ----------
+        ids : array_like, slice or Picked
+            Numbers (negative ones count from the end), a mask ``(n_streamlines,)`` of bool, a slice,
+            or what was picked.
+        mode : {"replace", "add", "remove", "toggle"}
+            What becomes of the present selection.
+        as_tubes : bool, optional
+            Whether what is selected is drawn as tubes from now on, see :meth:`selection_style`.
+        radius : float, optional
+            Of the tubes, mm.
+
+        Raises
+        ------
+        IndexError
+            If an id is out of range or a mask has the wrong length.
+        ValueError
+            If there is no such mode or radius.
+        """
+        from pvfiblets.codec.decompress import select_streamlines
+
+        if mode not in MODES:
+            raise ValueError(f"mode is {mode!r}; choose one of {', '.join(MODES)}")
+        chosen = np.zeros(self.fiblets.n_streamlines, np.bool_)
+        given = ids.ids if isinstance(ids, Picked) else ids
+        chosen[select_streamlines(self.fiblets.n_streamlines, given)] = True
+        if self._selected is not None and mode != "replace":
+            before = self._selected
+            chosen = {"add": before | chosen, "remove": before & ~chosen, "toggle": before ^ chosen}[mode]
+        elif mode == "remove":
+            chosen[:] = False
+        if as_tubes is not _AS_BEFORE or radius is not _AS_BEFORE:
+            self.selection_style(as_tubes=as_tubes, radius=radius)
+        self._select(chosen)
+
+    def deselect(self, ids: Any = None) -> None:
+        """Take streamlines out of the selection, or all of them; ``ids`` as for :meth:`select`."""
+        if ids is None:
+            self._select(None)
+        else:
+            self.select(ids, mode="remove")
+
+    def invert_selection(self) -> None:
+        """Select what is not selected, and the other way round."""
+        nothing = np.zeros(self.fiblets.n_streamlines, np.bool_)
+        self._select(~(nothing if self._selected is None else self._selected))
+
+    def grow_selection(self, distance: float) -> None:
+        """Add the streamlines that begin and end near the ends of a selected one.
+
+        Parameters
+        ----------
+        distance : float
+            mm: both ends lie within it of the two ends of one of those selected, either way round.
+
+        Raises
+        ------
+        ValueError
+            If it is not a length above 0.
+        """
+        from pvfiblets.query.endpoints import similar_ends
+
+        self.select(similar_ends(self.fiblets, self.selection, distance), mode="add")
+
+    def _select(self, selected: np.ndarray | None) -> None:
+        self._selected = selected if selected is not None and selected.any() else None
+        self._show_selection()
+
+    # How it looks -------------------------------------------------------------------------------
+
+    def selection_style(
+        self,
+        *,
+        color: Any = _AS_BEFORE,
+        width: float | None = _AS_BEFORE,
+        dim: float = _AS_BEFORE,
+        as_tubes: bool = _AS_BEFORE,
+        radius: float = _AS_BEFORE,
+        silhouette: Any = _AS_BEFORE,
+    ) -> SelectionStyle:
+        """Change how selected streamlines stand out; what is not given stays as it is.
+
+        Parameters
+        ----------
+        color : color-like or None
+            Of those selected; ``None`` leaves them their own colours.
+        width : float or None
+            Pixels; ``None`` draws them as wide as all.
+        dim : float
+            How much of the colours of all others gives way to the background, 0 to 1.
+        as_tubes : bool
+            Draw them as tubes that bend smoothly through their points. (Straight from point to
+            point where the actor is cut by a region, filtered point by point or coloured by a
+            volume, and where more than 400,000 points are selected.)
+        radius : float
+            Of the tubes, mm.
+        silhouette : bool or color-like
+            An outline around them, white where ``True``.
+
+        Returns
+        -------
+        SelectionStyle
+            As it is now.
+
+        Raises
+        ------
+        ValueError
+            If a number has no meaning; all stays as it was.
+        """
+        style = self._selection_style
+        if color is not _AS_BEFORE:
+            style = replace(style, color=None if color is None else pv.Color(color).float_rgb)
+        if width is not _AS_BEFORE:
+            if width is not None and not 1.0 <= float(width) <= 64.0:
+                raise ValueError(f"width is {width!r}; give pixels from 1 to 64, or None")
+            style = replace(style, width=None if width is None else float(width))
+        if dim is not _AS_BEFORE:
+            if not 0.0 <= float(dim) <= 1.0:
+                raise ValueError(f"dim is {dim!r}; give a number from 0 to 1")
+            style = replace(style, dim=float(dim))
+        if as_tubes is not _AS_BEFORE:
+            style = replace(style, as_tubes=bool(as_tubes))
+        if radius is not _AS_BEFORE:
+            if not 0.0 < float(radius) < float("inf"):
+                raise ValueError(f"radius is {radius!r}; give a length in mm above 0")
+            style = replace(style, radius=float(radius))
+        if silhouette is not _AS_BEFORE:
+            outline = "white" if silhouette is True else silhouette
+            style = replace(style, silhouette=pv.Color(outline).float_rgb if _is_colour(outline) else None)
+        if style != self._selection_style:
+            self._selection_style = style
+            self._show_selection()
+        return style
+
+    def _show_selection(self) -> None:
+        """Bring the picture up to date; an empty selection leaves nothing behind."""
+        selected, style = self._selected, self._selection_style
+        highlight = silhouette = None
+        if selected is not None and (style.dim > 0.0 or style.color is not None):
+            highlight = Highlight(selected, style.color, style.dim)
+        apart = selected is not None and (style.width is not None or style.as_tubes)
+        if selected is not None and style.silhouette is not None and not apart:
+            from pvfiblets.mappers.shading import Silhouette
+
+            silhouette = Silhouette(selected, style.silhouette)
+        for name, extra in (("selection", highlight), ("selection silhouette", silhouette)):
+            if extra is not None or name in self._mapper.extras:
+                self._mapper.set_extra(name, extra)
+        if self._standout is not None:
+            self._standout.leave()
+            self._standout = None
+        if apart:
+            self._standout = self._make_standout(style)
+
+    def _make_standout(self, style: SelectionStyle) -> Standout:
+        from pvfiblets.plotting.fiblets.selection_overlay import Standout
+
+        width = self._mapper.line_width if style.width is None else style.width
+        radius = style.radius if style.as_tubes else None
+        return Standout(
+            self,  # type: ignore[arg-type]  # as above
+            self.selection,
+            color=style.color,
+            width=width,
+            radius=radius,
+            outline=style.silhouette,
+        )
+
+    def entered(self, renderer: Any) -> None:
+        """Be told that a renderer draws the actor from now on."""
+        if self._standout is not None:
+            self._standout.enter(renderer)
+
+    def raise_pending(self) -> None:
+        """Raise what drawing stored, once (`FibletMapper.raise_pending`)."""
+        self._mapper.raise_pending()
+        if self._standout is not None:
+            self._standout.mapper.raise_pending()
+
+    def release(self, window: Any = None) -> None:
+        """Give back the GPU memory that the actor has in a window, or in all."""
+        self._mapper.release(window)
+        if self._standout is not None:
+            self._standout.leave_with_owner()
+            self._standout.mapper.release(window)
+
+    def _select_like(self, other: Selecting) -> None:
+        """Take over the selection of another actor of the same fiblets."""
+        self._selection_style = other._selection_style
+        self._select(None if other._selected is None else other._selected.copy())
+
+    def _explain_selection(self) -> dict[str, Any]:
+        """How many are selected; where they are drawn apart, wider or as tubes, what that takes."""
+        apart = None if self._standout is None else added_up(self._standout.mapper.explain())
+        return {
+            "streamlines": len(self.selection),
+            "passes": [] if apart is None else apart["passes"],
+            "features": [] if apart is None else apart["features"],
+            "gpu_bytes": 0 if apart is None else apart["gpu_bytes"],
+        }
+
+    def _reselect(self) -> None:
+        """Follow other fiblets: ids of as many streamlines stay, else nothing is selected."""
+        if self._selected is not None and len(self._selected) != self.fiblets.n_streamlines:
+            self._selected = None
+        self._show_selection()
+
+
+def _is_colour(outline: Any) -> bool:
+    return outline is not None and outline is not False

@@ -1,0 +1,178 @@
+"""From whatever a user holds to a :class:`~pvfiblets.codec.FibletSet`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets import formats
+from pvfiblets.codec.fibletset import FibletSet
+from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.plotting.fiblets.scalars import UNNAMED
+from pvfiblets.plotting.fiblets.volume_sources import as_volume
+from pvfiblets.query.measures import Distance, measure
+from pvfiblets.streamlines import Streamlines
+
+CODING_ERROR = "coding_error"
+Colours: TypeAlias = str | np.ndarray | VolumeSource | Distance | None
+
+
+def as_fiblets(
+    source: Any,
+    *,
+    scalars: Any = None,
+    per_point: Iterable[str] = (),
+    max_error: float | None = None,
+    progress: bool = False,
+    **options: Any,
+) -> tuple[FibletSet, Colours]:
+    """Compress ``source`` unless it is compressed already.
+
+    Parameters
+    ----------
+    source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
+        What to draw.
+    scalars : str, array or volume, optional
+        If this names, or is, per-point data of ``source``, that is kept; for volumes see
+        :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
+    per_point : iterable of str
+        Further per-point arrays to keep, for a later change of the actor's ``scalars``.
+    max_error : float, optional
+        Greatest distance (mm) between a given and a drawn point; a tenth of a step by default.
+    progress : bool, default: False
+        Show a progress bar.
+    **options
+        Further arguments of :func:`pvfiblets.codec.compress`.
+
+    Returns
+    -------
+    fiblets : FibletSet
+        The compressed data.
+    scalars : str or array or None
+        What to pass on to :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
+
+    Raises
+    ------
+    TypeError
+        If ``source`` is something else.
+    """
+    volume = as_volume(scalars)
+    scalars = scalars if volume is None else volume
+    if isinstance(source, (str, os.PathLike)):
+        path = Path(source)
+        if path.suffix.lower() == ".fiblets":
+            source = FibletSet.open(path)
+        else:
+            source = formats.read(path, progress=progress)
+    if isinstance(source, FibletSet):
+        if max_error is not None or options:
+            given = ", ".join(sorted([*options, *(["max_error"] if max_error is not None else [])]))
+            raise ValueError(
+                f"{given} cannot be applied: the source is compressed already. Give it where the source is compressed"
+            )
+        return with_point_values(source, scalars)
+    streamlines = as_streamlines(source)
+    keep = list(per_point)
+    if isinstance(scalars, str):
+        if scalars in streamlines.per_point:
+            keep.append(scalars)
+    elif scalars is not None and volume is None and not isinstance(scalars, Distance):
+        values = np.asarray(scalars)
+        if len(values) == streamlines.n_points != len(streamlines):
+            streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
+            keep.append(UNNAMED)
+            scalars = UNNAMED
+    from pvfiblets.codec.compress import compress  # what is compressed already needs no compiler
+
+    fiblets = compress(
+        streamlines,
+        max_error=max_error,
+        per_point=tuple(dict.fromkeys(keep)),
+        progress=progress,
+        **options,
+    )
+    if isinstance(scalars, str) and scalars == CODING_ERROR and CODING_ERROR not in fiblets.per_point:
+        error = measure(fiblets, CODING_ERROR, original=streamlines)
+        fiblets = _with_coded(fiblets, CODING_ERROR, error.array())
+    return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
+
+
+def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colours]:
+    """Store ``scalars`` with the fiblets if they are an array with one number per point.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        Stays as it is.
+    scalars : str or array or None
+        Anything but an array of ``n_points`` numbers is passed through.
+
+    Returns
+    -------
+    fiblets : FibletSet
+        The same, or one that shares its arrays and has one per-point array more.
+    scalars : str, array, VolumeSource or None
+        The name of that array, a volume in one form, or ``scalars`` itself.
+    """
+    volume = as_volume(scalars)
+    if volume is not None:
+        return fiblets, volume
+    if scalars is None or isinstance(scalars, str):
+        return fiblets, scalars
+    if isinstance(scalars, Distance):
+        if scalars.per == "streamline":
+            return fiblets, scalars
+        found = measure(fiblets, scalars)
+        return _with_coded(fiblets, found.name, found.array()), found.name
+    values = np.asarray(scalars)
+    if values.shape != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
+        return fiblets, values
+    return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
+
+
+def _with_coded(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
+    """Return a set with one more number per point, in the order in which points are coded."""
+    numbers = values.astype(np.float64)
+    finite = numbers[np.isfinite(numbers)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
+    stored = {**fiblets.per_point, name: quantise_values(numbers, low, high)}
+    return replace(fiblets, per_point=stored)
+
+
+def as_streamlines(source: Any) -> Streamlines:
+    """Return streamlines from anything uncompressed that a user may hold.
+
+    Raises
+    ------
+    TypeError
+        If ``source`` is none of the known kinds.
+    """
+    if isinstance(source, Streamlines):
+        return source[:]
+    if isinstance(source, pv.DataSet) or hasattr(source, "IsA"):
+        dataset = pv.wrap(source)
+        if not isinstance(dataset, pv.PolyData):
+            raise TypeError(
+                f"source is a {type(dataset).__name__}; of VTK's datasets only PolyData with "
+                "lines can be drawn as fiblets"
+            )
+        return Streamlines.from_polydata(dataset)
+    if isinstance(source, np.ndarray) and source.ndim == 2:
+        source = [source]
+    if isinstance(source, (Sequence, Iterable)) and not isinstance(source, (str, bytes)):
+        arrays = [np.asarray(line) for line in source]
+        for index, line in enumerate(arrays):
+            if line.ndim != 2 or line.shape[1] != 3:
+                raise TypeError(f"item {index} of source has shape {line.shape}; expected (n, 3) points")
+        return Streamlines.from_list(arrays)
+    raise TypeError(
+        f"source is a {type(source).__name__}; expected a path, FibletSet, Streamlines, PolyData "
+        "with lines, or a list of (n, 3) arrays"
+    )

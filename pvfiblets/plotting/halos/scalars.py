@@ -1,0 +1,330 @@
+"""From whatever a user holds to lines and points with halos, and which of their numbers colour and filter them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from pvfiblets.halos import HaloLines, HaloPoints
+from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
+from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
+
+ARC_LENGTH, LENGTH = "arc_length", "length"
+BUILT_IN = (ORIENTATION, ARC_LENGTH, LENGTH)
+"""Of lines. Points have nothing but what they were given."""
+
+Drawn: TypeAlias = HaloLines | HaloPoints
+
+
+@dataclass(frozen=True)
+class Held:
+    """What an actor draws, with the numbers that colour and filter it.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        With all values at points that are needed.
+    scalars : str or array, optional
+        What colours it, for :func:`find_scalars`.
+    filter_by : str, optional
+        Which of its values filter.
+    line_values : mapping of str to array
+        A row for each line.
+    """
+
+    drawn: Drawn
+    scalars: Any = None
+    filter_by: str | None = None
+    line_values: Mapping[str, Any] = field(default_factory=dict)
+
+
+def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: Any = None) -> Held:
+    """Return the lines that a source means, and what colours and filters them.
+
+    Parameters
+    ----------
+    source : Any
+        A path, HaloLines, or what :func:`pvfiblets.halos.build.as_halo_lines` takes.
+    scalars, filter_by : str or array, optional
+        A name that is built in (`BUILT_IN`), data of the source, or an array for it.
+    rgb : bool, default: False
+        Whether floats of three or four columns are colours.
+
+    Returns
+    -------
+    Held
+    """
+    if isinstance(source, HaloLines):
+        return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
+    source = _read_lines(source)
+    stored, filters = (None if _computed(source, what) else what for what in (scalars, filter_by))
+    try:
+        lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
+    except ValueError as error:
+        raise _unknown(source, (stored, filters), error) from None
+    held = _named(Held(lines, stored, _filter_name(filters), line_values))
+    if stored is not scalars:
+        held = coloured(held, scalars)
+    return held if filters is filter_by else filtered(held, filter_by)
+
+
+def as_points(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: Any = None) -> Held:
+    """Return the points that a source means, and what colours and filters them.
+
+    Parameters
+    ----------
+    source : Any
+        A path of whatever :func:`pyvista.read` reads, HaloPoints, or what
+        :func:`pvfiblets.halos.build.as_halo_points` takes.
+    scalars, filter_by : str or array, optional
+        Data of the source, or an array for it.
+    rgb : bool, default: False
+        Whether floats of three or four columns are colours.
+
+    Returns
+    -------
+    Held
+    """
+    if isinstance(source, HaloPoints):
+        return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
+    if isinstance(source, (str, os.PathLike)):
+        import pyvista as pv
+
+        source = pv.read(source)
+    try:
+        points = as_halo_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+    except ValueError as error:
+        raise _unknown(source, (scalars, filter_by), error) from None
+    return _named(Held(points, scalars, _filter_name(filter_by)))
+
+
+def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
+    """Have something else colour what is held; numbers at points are stored with it.
+
+    Parameters
+    ----------
+    held : Held
+        Stays as it is.
+    scalars : str or array, optional
+        A name, or a row of numbers or a colour for each point, or for each line.
+    rgb : bool, optional
+        Whether floats of three or four columns are colours; by default they are.
+
+    Returns
+    -------
+    Held
+
+    Raises
+    ------
+    ValueError
+        If an array has no such shape.
+    """
+    drawn = held.drawn
+    if scalars is None or isinstance(scalars, str):
+        if isinstance(scalars, str) and scalars == ARC_LENGTH and isinstance(drawn, HaloLines):
+            drawn = _with_arc_length(drawn)
+        return replace(held, drawn=drawn, scalars=scalars)
+    rgb = _columns(scalars) > 1 if rgb is None else rgb
+    if isinstance(drawn, HaloPoints):
+        return _named(replace(held, drawn=as_halo_points(drawn, scalars=scalars, rgb=rgb), scalars=scalars))
+    lines, line_values = as_halo_lines(drawn, scalars=scalars, rgb=rgb)
+    return _named(replace(held, drawn=lines, scalars=scalars, line_values={**held.line_values, **line_values}))
+
+
+def filtered(held: Held, filter_by: Any) -> Held:
+    """Have something else filter what is held; its numbers are stored with it, a row for each point.
+
+    Parameters
+    ----------
+    held : Held
+        Stays as it is.
+    filter_by : str or array, optional
+        A name, or a number for each point, or for each line; of lines also ``"arc_length"`` and ``"length"``.
+
+    Returns
+    -------
+    Held
+
+    Raises
+    ------
+    KeyError
+        If nothing has that name.
+    ValueError
+        If an array has no such shape, or is of colours.
+    """
+    drawn = held.drawn
+    if filter_by is None:
+        return replace(held, filter_by=None)
+    if not isinstance(filter_by, str):
+        if isinstance(drawn, HaloPoints):
+            return replace(held, drawn=as_halo_points(drawn, filter_by=filter_by), filter_by=FILTER)
+        return replace(held, drawn=as_halo_lines(drawn, filter_by=filter_by).lines, filter_by=FILTER)
+    if filter_by in drawn.values:
+        if drawn.values[filter_by].ndim > 1:
+            raise ValueError(f"filter_by is {filter_by!r}, which are colours; name numbers, or give an array of them")
+        return replace(held, filter_by=filter_by)
+    if isinstance(drawn, HaloLines) and filter_by in held.line_values:
+        return replace(held, drawn=_with(drawn, filter_by, held.line_values[filter_by]), filter_by=filter_by)
+    if isinstance(drawn, HaloLines) and filter_by == ARC_LENGTH:
+        return replace(held, drawn=_with_arc_length(drawn), filter_by=filter_by)
+    if isinstance(drawn, HaloLines) and filter_by == LENGTH:
+        return replace(held, drawn=_with(drawn, LENGTH, line_lengths(drawn)), filter_by=filter_by)
+    raise KeyError(_missing("filter_by", filter_by, held))
+
+
+def find_scalars(held: Held) -> Scalars | None:
+    """Find the numbers or colours by which something is coloured.
+
+    Parameters
+    ----------
+    held : Held
+
+    Returns
+    -------
+    Scalars or None
+        ``None`` for one colour.
+
+    Raises
+    ------
+    KeyError
+        If nothing has that name; the message lists what there is.
+    ValueError
+        If an array has neither one value nor one colour per line.
+    """
+    choice, drawn = held.scalars, held.drawn
+    if choice is None:
+        return None
+    if not isinstance(choice, str):
+        return per_streamline(UNNAMED, choice, drawn.n_streamlines, whole="line")
+    if choice in drawn.values:
+        return _at_points(choice, drawn.values[choice])
+    if choice in held.line_values:
+        return per_streamline(choice, held.line_values[choice], drawn.n_streamlines, whole="line")
+    if isinstance(drawn, HaloLines) and choice == ORIENTATION:
+        return Scalars(ORIENTATION, "orientation")
+    if isinstance(drawn, HaloLines) and choice == LENGTH:
+        return per_streamline(LENGTH, line_lengths(drawn), drawn.n_lines, whole="line")
+    raise KeyError(_missing("scalars", choice, held))
+
+
+def line_lengths(lines: HaloLines) -> np.ndarray:
+    """Return the length of each line.
+
+    Parameters
+    ----------
+    lines : HaloLines
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n_lines,)`` float64, mm.
+    """
+    along = np.concatenate([_along(lines), np.zeros(1)])
+    lengths = np.where(np.diff(lines.offsets) > 0, along[lines.offsets[1:] - 1], 0.0)
+    return np.asarray(lengths)
+
+
+def _along(lines: HaloLines) -> np.ndarray:
+    """``(n_points,)`` mm from the first point of each point's line."""
+    steps = np.zeros(lines.n_points)
+    if lines.n_points > 1:
+        steps[1:] = np.linalg.norm(np.diff(lines.points.astype(np.float64), axis=0), axis=1)
+    counts = np.diff(lines.offsets)
+    first = lines.offsets[:-1][counts > 0]
+    steps[first] = 0.0
+    total = np.cumsum(steps)
+    return np.asarray(total - np.repeat(total[first], counts[counts > 0]))
+
+
+def _with_arc_length(lines: HaloLines) -> HaloLines:
+    return lines if ARC_LENGTH in lines.values else replace(lines, values={**lines.values, ARC_LENGTH: _along(lines)})
+
+
+def _with(lines: HaloLines, name: str, numbers: np.ndarray) -> HaloLines:
+    """Lines with one more number for each of their points, the same all along a line."""
+    if numbers.ndim > 1:
+        raise ValueError(f"filter_by is {name!r}, which are colours; name numbers, or give an array of them")
+    return replace(lines, values={**lines.values, name: np.repeat(numbers, np.diff(lines.offsets))})
+
+
+def _columns(scalars: Any) -> int:
+    """Numbers in a row of an array, or of the first of several arrays."""
+    if isinstance(scalars, (list, tuple)) and len(scalars) and np.ndim(scalars[0]) == 2:
+        return np.shape(scalars[0])[1]
+    try:
+        shape = np.shape(scalars)
+    except ValueError:  # arrays of unlike lengths, each with a number in each row
+        return 1
+    return shape[1] if len(shape) == 2 else 1
+
+
+def _at_points(name: str, values: np.ndarray) -> Scalars:
+    if values.ndim == 2:
+        return Scalars(name, "point_rgb", see_through=bool((values[:, 3] < 1.0).any()))
+    finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    if not len(finite):
+        return Scalars(name, "point_value")
+    positive = finite[finite > 0]
+    least = float(positive.min()) if len(positive) else 1e-6
+    return Scalars(name, "point_value", None, (float(finite.min()), float(finite.max())), least)
+
+
+def _named(held: Held) -> Held:
+    """Call numbers that came without a name what scalar bars call such; those of lines stay the array that they are."""
+    if held.scalars is None or isinstance(held.scalars, str):
+        return held
+    line_values = dict(held.line_values)
+    if SCALARS in line_values:
+        return replace(held, scalars=line_values.pop(SCALARS), line_values=line_values)
+    values = dict(held.drawn.values)
+    values[UNNAMED] = values.pop(SCALARS)
+    return replace(held, drawn=replace(held.drawn, values=values), scalars=UNNAMED)
+
+
+def _filter_name(filter_by: Any) -> str | None:
+    return filter_by if filter_by is None or isinstance(filter_by, str) else FILTER
+
+
+def _read_lines(source: Any) -> Any:
+    """Return the data of a file; anything else as it is."""
+    if not isinstance(source, (str, os.PathLike)):
+        return source
+    from pvfiblets import formats
+    from pvfiblets.codec.fibletset import FibletSet
+
+    return FibletSet.open(source) if os.fspath(source).lower().endswith(".fiblets") else formats.read(source)
+
+
+def _computed(source: Any, what: Any) -> bool:
+    """Whether that is a name of numbers that are computed of lines; data of that name goes before them."""
+    return isinstance(what, str) and what in BUILT_IN and not _has(source, what)
+
+
+def _has(source: Any, name: str) -> bool:
+    """Whether a source has numbers of that name."""
+    if hasattr(source, "GetPointData"):
+        return any(data.GetArray(name) is not None for data in (source.GetPointData(), source.GetCellData()))
+    return any(name in getattr(source, where, ()) for where in ("per_point", "per_streamline"))
+
+
+def _unknown(source: Any, names: tuple[Any, Any], error: ValueError) -> Exception:
+    """Return the error of a name that is not there as PyVista has it; any other as it is."""
+    if any(isinstance(name, str) and not _has(source, name) for name in names):
+        return KeyError(str(error))
+    return error
+
+
+def _missing(what: str, name: str, held: Held) -> str:
+    """Say that there are no numbers ``name``, and which there are."""
+    known: dict[str, Any] = {"at points": held.drawn.values}
+    if isinstance(held.drawn, HaloLines):
+        known |= {"per line": held.line_values, "built in": BUILT_IN if what == "scalars" else BUILT_IN[1:]}
+    listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
+    return (
+        f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. Of a source only what was asked for "
+        "is kept: give an array, or add the source anew with it"
+    )

@@ -1,0 +1,1 @@
+"""``plotter.add_spline_tubes(...)``: the component, its actor, and the numbers that colour it."""

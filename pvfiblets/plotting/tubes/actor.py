@@ -1,0 +1,363 @@
+"""The actor that ``plotter.add_spline_tubes`` returns: an ordinary PyVista actor with live colours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.shading import Silhouette
+from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
+from pvfiblets.plotting.coloured import Coloured
+from pvfiblets.plotting.mapper import Plotted
+from pvfiblets.plotting.report import added_up
+from pvfiblets.plotting.shading import SurfaceShading
+from pvfiblets.plotting.tubes.scalars import find_tube_scalars, with_built_in, with_node_values
+from pvfiblets.tubes.spline_tubes import SplineTubes
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.colours import ColourSettings
+    from pvfiblets.plotting.fiblets.scalars import Scalars
+
+
+_OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
+
+
+class PlottedSplines(Plotted, TubeMapper):
+    """A mapper of spline tubes with scalar bars.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    """
+
+
+class _OfLines:
+    """A setting that only lines have; asking a surface for it says what to use."""
+
+    def __init__(self, instead: str) -> None:
+        self._instead = instead
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, actor: Any, kind: type | None = None) -> Any:
+        return self if actor is None else self._refuse()
+
+    def __set__(self, actor: Any, value: Any) -> None:
+        self._refuse()
+
+    def _refuse(self) -> NoReturn:
+        raise AttributeError(f"{self._name} is for lines, and spline tubes are surfaces; {self._instead}")
+
+
+class TubeActor(Coloured, SurfaceShading, pv.Actor):
+    """Tubes of varying radius around Hermite splines, ray cast to their exact surface.
+
+    Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
+    ``pickable``, ``prop`` with its ``specular`` and so on). The properties below may be set at any
+    time and take effect at the next render.
+
+    Parameters
+    ----------
+    tubes : SplineTubes
+        What to draw.
+    scalars : str or array, optional
+        As for :attr:`scalars`.
+    settings : ColourSettings, optional
+        Colour map and colours.
+    opacity : float, default: 1.0
+        Of all tubes.
+    lighting : bool, optional
+        Shade the tubes by the scene's lights; the theme's by default.
+    name : str, optional
+        Under which the plotter knows the actor.
+    theme : pyvista theme, optional
+        Gives what is not given.
+    options : TubeOptions, optional
+        How rays are cast.
+
+    Notes
+    -----
+    Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020).
+    """
+
+    illuminated = _OfLines("lighting, and prop.specular, shade them")
+    tube_shading = _OfLines("lighting shades them as the round bodies that they are")
+    tube_radius = _OfLines("every node has its radius: set tubes to others")
+    line_width = _OfLines("min_width is the width in pixels that they take at least")
+    halos = _OfLines("silhouette draws a line around them")
+
+    def __init__(
+        self,
+        tubes: SplineTubes,
+        *,
+        scalars: str | np.ndarray | None = None,
+        settings: ColourSettings | None = None,
+        opacity: float = 1.0,
+        lighting: bool | None = None,
+        name: str | None = None,
+        theme: Any = None,
+        options: TubeOptions | None = None,
+    ) -> None:
+        theme = pv.global_theme if theme is None else theme
+        self._tubes, scalars = with_node_values(_checked(tubes), scalars)
+        self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
+        self._init_colours(scalars, settings, theme)
+        self._init_shading()
+        mapper = PlottedSplines(self._shown, options=options)
+        super().__init__(prop=pv.Property(theme=theme), name=name)
+        self._mapper = mapper  # VTK keeps the C++ half only
+        mapper.attach(self)
+        self._init_looks(opacity, lighting)
+        self._recolour()
+
+    def __repr__(self) -> str:
+        colours = "one colour" if self._scalars is None else self._scalars.name
+        return f"<{type(self).__name__} {self.name!r}: {self._tubes!r}, coloured by {colours}>"
+
+    # Data ---------------------------------------------------------------------------------------
+
+    @property
+    def tubes(self) -> SplineTubes:
+        """What is drawn; others may be put in their place.
+
+        Numbers that are computed, such as ``"radius"`` as scalars, are computed anew.
+        """
+        return self._tubes
+
+    @tubes.setter
+    def tubes(self, tubes: SplineTubes) -> None:
+        tubes, choice = with_node_values(_checked(tubes), self._choice)
+        shown = with_built_in(tubes, choice)
+        found = self._find(shown, choice)
+        self._draw(tubes, shown)
+        self._choice = choice
+        self._show(found)
+
+    @property
+    def scalars(self) -> str | np.ndarray | None:
+        """What colours the actor; ``None`` for one colour.
+
+        The name of ``tubes.values`` or ``tubes.tube_values``; ``"radius"``, ``"arc_length"`` (mm
+        from the tube's first node), ``"length"`` (mm, of the whole tube), ``"orientation"`` (the
+        absolute direction as red, green, blue); or an array with one number or one colour (3 or 4
+        columns) per node or per tube.
+        """
+        return self._choice
+
+    @scalars.setter
+    def scalars(self, scalars: Any) -> None:
+        tubes, scalars = with_node_values(self._tubes, scalars)
+        shown = with_built_in(self._shown if tubes is self._tubes else tubes, scalars)
+        found = self._find(shown, scalars)
+        if shown is not self._shown:
+            self._draw(tubes, shown)
+        self._colour_by(scalars, found)
+
+    def copy(self, deep: bool = True) -> TubeActor:
+        """Return another actor that draws the same tubes with the same colours and place.
+
+        Parameters
+        ----------
+        deep : bool, default: True
+            Give the copy a property of its own; else both share one. A mapper serves one actor,
+            so each has its own in any case; the tubes are shared.
+
+        Returns
+        -------
+        TubeActor
+            Not in any plotter yet.
+        """
+        twin = TubeActor(
+            self._tubes,
+            scalars=self._choice,
+            settings=replace(self._settings),
+            theme=self._theme,
+            options=self._mapper.options,
+        )
+        twin.prop = self.prop.copy() if deep else self.prop
+        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
+        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
+        twin.visibility, twin.pickable = self.visibility, self.pickable
+        twin._shade_surface_like(self)
+        twin.silhouette = self.silhouette
+        return twin
+
+    def explain(self) -> dict[str, Any]:
+        """Return what is active for this actor and what it costs, over all windows that show it.
+
+        Returns
+        -------
+        dict
+            ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
+            shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
+            their sum; ``tubes_total``, ``segments_total``; ``primitives``: triangles of the last
+            redraw without culling, 0 before the first; ``silhouettes``, ``solver``, ``iterations``,
+            ``culling``: those in use, ``None`` before the first picture.
+        """
+        report = self._mapper.explain()
+        total = added_up(report)
+        del total["fiblets"]
+        windows = report["windows"]
+        latest = windows[-1] if windows else {}
+        return {
+            **total,
+            "tubes_total": self._tubes.n_tubes,
+            "segments_total": self._tubes.n_segments,
+            "primitives": sum(window.get("primitives", 0) for window in windows),
+            "silhouettes": self._mapper.pipeline_in_use,
+            "solver": latest.get("solver"),
+            "iterations": latest.get("iterations"),
+            "culling": latest.get("culling"),
+        }
+
+    def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
+        """Return the segment at a window pixel, and where along it the pixel lies.
+
+        Parameters
+        ----------
+        x, y : int
+            Pixel, counted from the lower left corner.
+
+        Returns
+        -------
+        tuple of (int, float) or None
+            Row of ``tubes.segments``, and the segment's parameter from 0 to 1 whose sphere the
+            pixel shows; ``tubes.tubes`` says which tube the segment belongs to. ``None`` where no
+            tube of this actor was drawn.
+        """
+        return self._mapper.pick_at(x, y)
+
+    @property
+    def silhouette(self) -> dict[str, Any] | bool:
+        """An outline around tubes: ``True`` for all in white, a dict of what shall differ, or ``False``.
+
+        ``color`` (``"white"``); ``width`` (2.0): pixels, 1 to 16; ``tubes`` (``None``): numbers of
+        those around which it goes, or a mask ``(n_tubes,)``; all where it is ``None``.
+        """
+        return self._shades.get("silhouette", False)
+
+    @silhouette.setter
+    def silhouette(self, wanted: Mapping[str, Any] | bool | None) -> None:
+        if wanted is None or wanted is False:
+            self._shades.pop("silhouette", None)
+            self._mapper.set_extra("silhouette", None)
+            return
+        if wanted is not True and not isinstance(wanted, Mapping):
+            raise ValueError(f"silhouette is {wanted!r}; give True, False or a dict of settings")
+        settings = {**_OUTLINE, **({} if wanted is True else wanted)}
+        if unknown := sorted(set(settings) - set(_OUTLINE)):
+            raise ValueError(f"silhouette has no settings {unknown}; it has {list(_OUTLINE)}")
+        chosen = np.full(self._tubes.n_tubes, settings["tubes"] is None)
+        if settings["tubes"] is not None:
+            given = np.asarray(settings["tubes"])
+            try:
+                chosen[given if given.size else given.astype(np.int64)] = True
+            except IndexError as error:
+                raise IndexError(
+                    f"tubes of the silhouette are {settings['tubes']!r}; give numbers from 0 to "
+                    f"{len(chosen) - 1}, or a mask of {len(chosen)}"
+                ) from error
+        color = pv.Color(settings["color"]).float_rgb
+        self._mapper.set_extra("silhouette", Silhouette(chosen, color, settings["width"]))
+        self._shades["silhouette"] = settings
+
+    # How it is drawn ----------------------------------------------------------------------------
+
+    @property
+    def silhouettes(self) -> str:
+        """What covers the pixels whose rays are tried.
+
+        ``"auto"``, ``"rectangles"``, ``"boxes"`` or ``"pulled-boxes"``; the picture is the same.
+        """
+        return self._mapper.options.silhouettes
+
+    @silhouettes.setter
+    def silhouettes(self, silhouettes: str) -> None:
+        self._change(silhouettes=silhouettes)
+
+    @property
+    def solver(self) -> str:
+        """How roots are searched: ``"auto"``, ``"bisection"``, ``"illinois"``, ``"itp"`` or ``"newton"``."""
+        return self._mapper.options.solver
+
+    @solver.setter
+    def solver(self, solver: str) -> None:
+        self._change(solver=solver)
+
+    @property
+    def iterations(self) -> int | None:
+        """Steps of one search at most; ``None`` for the solver's own number."""
+        return self._mapper.options.iterations
+
+    @iterations.setter
+    def iterations(self, iterations: int | None) -> None:
+        self._change(iterations=iterations)
+
+    @property
+    def min_width(self) -> float:
+        """Pixels that a tube takes at least, however thin and far it is; 0 leaves thin ones as they are."""
+        return self._mapper.options.min_width
+
+    @min_width.setter
+    def min_width(self, min_width: float) -> None:
+        self._change(min_width=min_width)
+
+    @property
+    def culling(self) -> str | None:
+        """How segments behind others are found out: ``"two-phase"``, or ``None``; the picture is the same."""
+        return self._mapper.options.culling
+
+    @culling.setter
+    def culling(self, culling: str | None) -> None:
+        self._change(culling=culling)
+
+    # What a component asks ----------------------------------------------------------------------
+
+    def entered(self, renderer: Any) -> None:
+        """Be told that a renderer draws the actor from now on."""
+
+    def raise_pending(self) -> None:
+        """Raise what drawing stored, once."""
+        self._mapper.raise_pending()
+
+    def release(self, window: Any = None) -> None:
+        """Give back the GPU memory that the actor has in a window, or in all."""
+        self._mapper.release(window)
+
+    # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _drawn(self) -> SplineTubes:
+        return self._shown
+
+    def _change(self, **options: Any) -> None:
+        self._mapper.options = replace(self._mapper.options, **options)
+
+    def _draw(self, tubes: SplineTubes, shown: SplineTubes) -> None:
+        """Give the mapper other tubes, ``shown``; colours for another number of tubes go first."""
+        if tubes.n_tubes != self._tubes.n_tubes:
+            self._mapper.colouring = Colouring("solid")
+        self._mapper.set_tubes(shown)
+        before, self._tubes, self._shown = self._tubes, tubes, shown
+        outline = self.silhouette
+        if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
+            self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
+
+    def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
+        return None if choice is None else find_tube_scalars(tubes, choice)
+
+
+def _checked(tubes: Any) -> SplineTubes:
+    if not isinstance(tubes, SplineTubes):
+        raise TypeError(
+            f"tubes are a {type(tubes).__name__}; give SplineTubes, which pvfiblets.tubes.build.as_spline_tubes "
+            "makes of lines"
+        )
+    return tubes

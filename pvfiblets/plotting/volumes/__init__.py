@@ -1,0 +1,1 @@
+"""``plotter.add_raycast_volume(...)``: the component, its actor, and its transfer function."""

@@ -1,0 +1,245 @@
+"""What is asked of streamlines: conditions on where their points lie, joined by ``&``, ``|`` and ``~``.
+
+A condition is about the *points* of the decoded streamlines. Where these are far apart, as in linearised streamlines, a
+streamline may cross a small region without a point in it; ``sampling`` then tests positions in between as well.
+
+A streamline without points passes nothing, ends nowhere and stays nowhere; ``~passes(region)`` therefore holds for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from .region import Region
+
+if TYPE_CHECKING:
+    from ..codec.fibletset import FibletSet
+
+__all__ = [
+    "ALL",
+    "ANY",
+    "FIRST",
+    "LAST",
+    "Condition",
+    "Ends",
+    "FlagsOf",
+    "Predicate",
+    "ends_in",
+    "passes",
+    "select",
+    "stays_in",
+]
+
+ANY, ALL, FIRST, LAST = 1, 2, 4, 8
+"""Flags of a streamline for a region: some point lies in it, every point does, the first does, the last does."""
+
+Mask = npt.NDArray[np.bool_]
+Flags = npt.NDArray[np.uint8]
+Ends = Literal["any", "both", "first", "last"]
+FlagsOf = Callable[[Region, float | None], Flags]
+"""What gives a region's flags of every streamline, as :func:`.passing.region_flags` does."""
+
+_Key = tuple[Region, float | None]
+
+
+class Predicate:
+    """A condition on streamlines; immutable, equal and hashed by content."""
+
+    def __and__(self, other: Predicate) -> Predicate:
+        return _Joined(self, other, "&") if isinstance(other, Predicate) else NotImplemented
+
+    def __or__(self, other: Predicate) -> Predicate:
+        return _Joined(self, other, "|") if isinstance(other, Predicate) else NotImplemented
+
+    def __invert__(self) -> Predicate:
+        return _Not(self)
+
+    def __bool__(self) -> bool:
+        raise TypeError("a condition is neither true nor false; join conditions with &, | and ~, not with and, or, not")
+
+    def conditions(self) -> Iterator[Condition]:
+        """Yield what it is made of."""
+        raise NotImplementedError
+
+    def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
+        """Return where it holds, ``(n_streamlines,)`` bool, from the flags of the conditions' regions."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Condition(Predicate):
+    """How a streamline lies to one region.
+
+    Attributes
+    ----------
+    region : Region
+    needed : int
+        Flags of :mod:`.passing`.
+    every : bool
+        Whether all of these flags must be set, or any one.
+    sampling : float or None
+        mm.
+    """
+
+    region: Region
+    needed: int
+    every: bool = False
+    sampling: float | None = None
+
+    def conditions(self) -> Iterator[Condition]:  # noqa: D102 - Predicate's
+        yield self
+
+    def holds(self, flags: Callable[[Condition], Flags]) -> Mask:  # noqa: D102 - Predicate's
+        found = flags(self) & np.uint8(self.needed)
+        return found == self.needed if self.every else found != 0
+
+
+@dataclass(frozen=True)
+class _Joined(Predicate):
+    a: Predicate
+    b: Predicate
+    how: Literal["&", "|"]
+
+    def conditions(self) -> Iterator[Condition]:
+        yield from self.a.conditions()
+        yield from self.b.conditions()
+
+    def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
+        a, b = self.a.holds(flags), self.b.holds(flags)
+        return a & b if self.how == "&" else a | b
+
+
+@dataclass(frozen=True)
+class _Not(Predicate):
+    a: Predicate
+
+    def conditions(self) -> Iterator[Condition]:
+        yield from self.a.conditions()
+
+    def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
+        return ~self.a.holds(flags)
+
+
+def passes(region: Region, *, sampling: float | None = None) -> Predicate:
+    """Streamlines of which some point lies in the region.
+
+    Parameters
+    ----------
+    region : Region
+        mm.
+    sampling : float, optional
+        mm: test positions between points too, so that no two on a segment are farther apart than that.
+
+    Raises
+    ------
+    TypeError
+        If the region is none.
+    ValueError
+        If the sampling is not a length above 0.
+    """
+    return Condition(_region(region, "passes"), ANY, sampling=_sampling(sampling))
+
+
+def stays_in(region: Region, *, sampling: float | None = None) -> Predicate:
+    """Streamlines all of whose points lie in the region; parameters and errors as for :func:`passes`."""
+    return Condition(_region(region, "stays_in"), ALL, sampling=_sampling(sampling))
+
+
+def ends_in(region: Region, which: Ends = "any") -> Predicate:
+    """Streamlines whose first or last points lie in the region.
+
+    Parameters
+    ----------
+    region : Region
+        mm.
+    which : {'any', 'both', 'first', 'last'}
+        Which of the two.
+
+    Raises
+    ------
+    TypeError
+        If the region is none.
+    ValueError
+        If there is no such choice of ends.
+    """
+    if which not in get_args(Ends):
+        raise ValueError(f"which is {which!r}; give one of {', '.join(map(repr, get_args(Ends)))}")
+    needed = {"first": FIRST, "last": LAST}.get(which, FIRST | LAST)
+    return Condition(_region(region, "ends_in"), needed, every=which == "both")
+
+
+def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = None) -> Mask:
+    """Choose the streamlines for which a condition holds.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        In memory or mapped; it is decoded where its fiblets' bounds leave the answer open.
+    predicate : Predicate
+        Made of :func:`passes`, :func:`ends_in`, :func:`stays_in`. Each distinct region is gone through once.
+    flags : callable, optional
+        ``(region, sampling) -> uint8 (n_streamlines,)``, instead of :func:`.passing.region_flags`: the GPU's.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n_streamlines,)`` bool.
+
+    Raises
+    ------
+    TypeError
+        If the predicate is none.
+    ValueError, FormatError
+        As :func:`.passing.region_flags`.
+    """
+    if not isinstance(predicate, Predicate):
+        hint = "; ask passes(region), ends_in(region) or stays_in(region)" if isinstance(predicate, Region) else ""
+        raise TypeError(f"a {type(predicate).__name__} is no condition on streamlines{hint}")
+    needed = _needed(predicate)
+    found: dict[_Key, Flags] = {}
+    for (region, sampling), bits in needed.items():
+        if flags is not None:
+            found[region, sampling] = flags(region, sampling)
+        else:
+            from .passing import region_flags
+
+            found[region, sampling] = region_flags(fiblets, region, sampling, bits=bits)
+    return predicate.holds(lambda condition: found[_key(condition, needed)])
+
+
+def _needed(predicate: Predicate) -> dict[_Key, int]:
+    """Flags that are needed of each region and sampling."""
+    bits: dict[_Key, int] = {}
+    # Ends are points whatever lies between them: they are asked along with another condition on their region.
+    for condition in sorted(predicate.conditions(), key=_asks_for_ends):
+        key = _key(condition, bits)
+        bits[key] = bits.get(key, 0) | condition.needed
+    return bits
+
+
+def _asks_for_ends(condition: Condition) -> bool:
+    return not condition.needed & (ANY | ALL)
+
+
+def _key(condition: Condition, there: dict[_Key, int]) -> _Key:
+    key = (condition.region, condition.sampling)
+    if _asks_for_ends(condition) and key not in there:
+        return next((other for other in there if other[0] == condition.region), key)
+    return key
+
+
+def _region(region: Any, name: str) -> Region:
+    if not isinstance(region, Region):
+        raise TypeError(f"{name} needs a region such as pvfiblets.regions.Sphere(center, radius), got {region!r}")
+    return region
+
+
+def _sampling(sampling: float | None) -> float | None:
+    from .passing import check_sampling
+
+    return check_sampling(sampling) or None

@@ -1,0 +1,83 @@
+"""`InteractiveQuality`: how much less is looked at while the camera moves, so that pictures follow the hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from numbers import Real
+from typing import Any
+
+from .options import RaycastOptions
+
+__all__ = ["COARSEST_STEP", "InteractiveQuality"]
+
+COARSEST_STEP = 4.0
+"""Times the step at a quality of a quarter and less; 1 / quality above."""
+
+LARGEST_STEP = 1e3  # of RaycastOptions
+
+
+@dataclass(frozen=True)
+class InteractiveQuality:
+    """What is changed of a casting.
+
+    Parameters
+    ----------
+    step : float, default: 1
+        Times the step, 1 or more. Light that is integrated beforehand keeps its step, and with it its table, unless
+        ``exactly``.
+    sparse : int, default: 1
+        Pixels between first rays, 1, 2 or 4; more, if the casting has more.
+    exactly : bool, default: False
+        Whether light that is integrated beforehand has longer steps too; its table is then made for these as well.
+    """
+
+    step: float = 1.0
+    sparse: int = 1
+    exactly: bool = False
+
+    @classmethod
+    def of_quality(cls, quality: Any) -> InteractiveQuality | None:
+        """Return what a quality means, and None for 1.
+
+        Parameters
+        ----------
+        quality : float or mapping
+            From 0 to 1, or ``step`` and ``sparse``.
+
+        Raises
+        ------
+        ValueError
+            If it is something else; the message says what was expected.
+        """
+        if isinstance(quality, Mapping):
+            if unknown := set(quality) - {"step", "sparse"}:
+                raise ValueError(f"interactive_quality has {sorted(map(str, unknown))}; give 'step' and 'sparse'")
+            step, sparse = quality.get("step", 1.0), quality.get("sparse", 1)
+            if not _is_number(step) or not 1.0 <= step <= LARGEST_STEP:
+                raise ValueError(f"interactive_quality['step'] is {step!r}; give a factor of 1 or more")
+            if sparse not in (1, 2, 4):
+                raise ValueError(f"interactive_quality['sparse'] is {sparse!r}; give 1, 2 or 4 pixels")
+            return None if (step, sparse) == (1, 1) else cls(float(step), int(sparse), exactly=True)
+        if not _is_number(quality) or not 0.0 <= quality <= 1.0:
+            raise ValueError(
+                f"interactive_quality is {quality!r}; give a number from 0 to 1, or "
+                "{'step': factor, 'sparse': pixels}"
+            )
+        if quality == 1.0:
+            return None
+        return cls(min(1.0 / max(quality, 1e-3), COARSEST_STEP), 2 if quality > 1.0 / COARSEST_STEP else 4)
+
+    def of(self, casting: RaycastOptions) -> RaycastOptions:
+        """Return the casting while the camera moves."""
+        integrator, light = casting.integrator, casting.mode == "composite"
+        if integrator == "adaptive":
+            integrator = "preintegrated"
+        kept = light and integrator == "preintegrated" and not self.exactly
+        step = casting.step if kept else min(casting.step * self.step, LARGEST_STEP)
+        return replace(casting, step=step, sparse=max(casting.sparse, self.sparse), integrator=integrator)
+
+
+def _is_number(given: Any) -> bool:
+    return isinstance(given, Real) and not isinstance(given, bool) and math.isfinite(given)

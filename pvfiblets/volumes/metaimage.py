@@ -1,0 +1,147 @@
+"""Reading volumes from MetaImage files (``.mhd``, ``.mha``).
+
+VTK's reader is not used: it crashes on damaged headers, and it transposes the directions, which MetaImage lists axis
+by axis. ITK, whose format this is, means LPS+ by its coordinates. Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.errors import FormatError
+
+from .packed_numbers import Packing, data_file, numbers
+
+__all__ = ["read_metaimage"]
+
+TYPES = {
+    "MET_CHAR": "i1", "MET_UCHAR": "u1", "MET_SHORT": "i2", "MET_USHORT": "u2", "MET_INT": "i4", "MET_UINT": "u4",
+    "MET_LONG": "i4", "MET_ULONG": "u4", "MET_LONG_LONG": "i8", "MET_ULONG_LONG": "u8", "MET_FLOAT": "f4",
+    "MET_DOUBLE": "f8",
+}  # fmt: skip
+LONGEST_HEADER = 1 << 16
+PLACES = ("offset", "position", "origin")
+DIRECTIONS = ("transformmatrix", "orientation", "rotation")
+
+Array = npt.NDArray[np.float64]
+
+
+def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
+    """Read a volume.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        The file, or of data kept apart its header.
+
+    Returns
+    -------
+    values : ndarray
+        ``(nx, ny, nz)``, of the file's type.
+    affine : ndarray
+        ``(4, 4)`` voxel indices to mm, RAS+.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file, or the one of its data, is not there.
+    FormatError
+        If it is not such a file, is damaged, or has other than three axes or more than one number per voxel.
+    """
+    path = Path(path)
+    fields, size = _fields(path)
+    dims = _numbers(path, fields, ("dimsize",), None)
+    if dims is None:
+        raise FormatError(path, None, "no field DimSize", "a MetaImage header with one")
+    channels = fields.get("elementnumberofchannels", "1").strip()
+    if len(dims) != 3 or channels != "1":
+        raise FormatError(
+            path, None, f"{len(dims)} axes and {channels} numbers per voxel",
+            "three axes and one number per voxel: save one of its volumes or components",
+        )  # fmt: skip
+    if not all(n >= 1 and n == int(n) for n in dims.tolist() if math.isfinite(n)) or not np.isfinite(dims).all():
+        raise FormatError(path, None, f"DimSize = {fields['dimsize']}", "three whole numbers above 0")
+    shape = [int(n) for n in dims.tolist()]
+    return _data(path, fields, size, shape).reshape(shape, order="F"), _affine(path, fields)
+
+
+def _data(path: Path, fields: dict[str, str], size: int, shape: list[int]) -> npt.NDArray[Any]:
+    """All numbers of the file in one row."""
+    word = fields.get("elementtype", "none").upper()
+    if word not in TYPES:
+        raise FormatError(path, None, f"ElementType = {word}", f"one of {', '.join(TYPES)}")
+    msb = _true(fields, "binarydatabyteordermsb") or _true(fields, "elementbyteordermsb")
+    dtype = np.dtype(TYPES[word]).newbyteorder(">" if msb else "<")
+    named, start = fields.get("elementdatafile", "LOCAL"), size
+    if named.upper().split()[:1] == ["LIST"] or "%" in named:
+        raise FormatError(path, None, f"ElementDataFile = {named}", "data in one file: join them first")
+    place = path
+    if named.upper() != "LOCAL":
+        place, start = data_file(path, named), 0
+    text = fields.get("headersize", "0")
+    if not text.removeprefix("-").isdecimal() or int(text[:18]) < -1:
+        raise FormatError(path, None, f"HeaderSize = {text}", "-1, or a number of bytes")
+    skip = int(text[:18]) if place is not path else 0
+    if "binarydata" in fields and not _true(fields, "binarydata"):
+        return numbers(place, start, math.prod(shape), dtype, "ascii")
+    packing: Packing = "zlib" if _true(fields, "compresseddata") else "raw"
+    if packing == "zlib":
+        start, skip = start + max(skip, 0), 0
+    return numbers(place, start, math.prod(shape), dtype, packing, skip)
+
+
+def _true(fields: dict[str, str], name: str) -> bool:
+    return fields.get(name, "False")[:1].upper() in ("T", "1")
+
+
+def _fields(path: Path) -> tuple[dict[str, str], int]:
+    """The header's fields, names in lower case, and its bytes."""
+    fields: dict[str, str] = {}
+    with path.open("rb") as file:
+        read = 0
+        while read < LONGEST_HEADER:
+            line = file.readline(LONGEST_HEADER)
+            read += len(line)
+            name, equals, value = line.decode("latin-1").partition("=")
+            if not equals:
+                if line.strip():
+                    raise FormatError(path, file.tell() - len(line), repr(line[:40]), "a line 'Field = value'")
+                if not line:
+                    break
+                continue
+            fields[name.strip().lower()] = value.strip()
+            if name.strip().lower() == "elementdatafile":  # always the last
+                break
+        return fields, file.tell()
+
+
+def _numbers(path: Path, fields: dict[str, str], names: tuple[str, ...], n: int | None) -> Array | None:
+    """Numbers of the first of these fields that is there."""
+    name = next((name for name in names if name in fields), None)
+    if name is None:
+        return None
+    try:
+        found = np.array([float(word) for word in fields[name].split()])
+    except ValueError:
+        found = np.zeros(0)
+    if len(found) != n if n else len(found) == 0:
+        raise FormatError(path, None, f"{name} = {fields[name]}", f"{n or 'some'} numbers")
+    return found
+
+
+def _affine(path: Path, fields: dict[str, str]) -> Array:
+    spacing = _numbers(path, fields, ("elementspacing", "elementsize"), 3)
+    directions = _numbers(path, fields, DIRECTIONS, 9)
+    origin = _numbers(path, fields, PLACES, 3)
+    affine = np.eye(4)
+    columns = np.eye(3) if directions is None else directions.reshape(3, 3).T
+    affine[:3, :3] = columns * (1.0 if spacing is None else spacing)
+    affine[:3, 3] = 0.0 if origin is None else origin
+    affine[:2] *= -1.0  # LPS+ to RAS+
+    return affine

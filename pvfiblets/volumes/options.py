@@ -1,0 +1,175 @@
+"""`RaycastOptions`: how rays are cast through a volume, as one value that a redraw is decided on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .volume import FILTERS
+
+if TYPE_CHECKING:
+    from .transfer import Transfer
+
+__all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "REFINEMENTS", "RaycastOptions"]
+
+MODES = ("isosurface", "composite", "mip", "local-mip")
+"""What a ray shows: a surface, all that it passes through, the greatest value, or the first peak above a threshold."""
+
+REFINEMENTS = ("none", "regula-falsi", "newton")
+"""How the place of a crossing is refined (paper: equations 3 and 4)."""
+
+INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
+"""How the rendering equation is integrated over a step."""
+
+MAX_VALUES = 8
+"""Isosurfaces of one volume."""
+
+MOST_STEPS = 30_000
+"""Steps of a ray up to which flat voxels may shorten them: software OpenGL ends a loop after 65,535 turns."""
+
+LARGEST = (2.0 - 2.0**-23) * 2.0**127
+"""The largest number that float32 holds."""
+
+
+@dataclass(frozen=True)
+class RaycastOptions:
+    """How rays are cast.
+
+    Parameters
+    ----------
+    mode : str
+        Of `MODES`.
+    values : tuple of float
+        Where surfaces are, 1 to `MAX_VALUES` of them, for ``'isosurface'``; each ray shows the first that it meets.
+    transfer : Transfer, optional
+        Colours and opacities by value, for ``'composite'``.
+    threshold : float
+        The least value of a peak, for ``'local-mip'``.
+    low, high : float
+        Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
+    step : float
+        Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` says what it is of voxels that are far from cubes.
+    jitter : bool
+        Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
+    filter : str
+        Of :data:`pvfiblets.volumes.volume.FILTERS`.
+    refine : str
+        Of `REFINEMENTS`.
+    iterations : int
+        Steps of the refinement, 1 to 64.
+    integrator : str
+        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` where one look-up a step is enough, takes steps in parts
+        over which values bend, as at edges from voxel to voxel, and halves them until their halves agree where colours
+        are steep or dense (:mod:`pvfiblets.volumes.steepness`).
+    octree : bool
+        Whether nodes in which there is nothing to see are skipped. It changes no pixel.
+    homogeneous : float
+        Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
+    recon : bool
+        Whether nodes in which neither colour nor opacity changes with the value, as their bounds say, are not
+        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does.
+    sparse : int
+        A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where
+        what the first ones found differs (section III.D). Things thinner than that may be missed.
+    sparse_threshold : float
+        By how much it may differ: colours and opacities from 0 to 1, values over the range of colours, and the cosine
+        of an angle between normals by its distance from 1.
+    stop : float
+        Opacity at which a ray ends, above 0 and at most 1.
+    box : tuple of float, optional
+        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: only what lies in it is there.
+
+    Raises
+    ------
+    ValueError
+        If a choice is none or a number is out of its range; the message names it.
+
+    Notes
+    -----
+    Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.
+    """
+
+    mode: str = "isosurface"
+    values: tuple[float, ...] = ()
+    transfer: Transfer | None = None
+    threshold: float = -math.inf
+    low: float = -math.inf
+    high: float = math.inf
+    step: float = 0.5
+    jitter: bool = False
+    filter: str = "trilinear"
+    refine: str = "regula-falsi"
+    iterations: int = 5
+    integrator: str = "adaptive"
+    octree: bool = True
+    homogeneous: float = 0.0
+    recon: bool = False
+    sparse: int = 1
+    sparse_threshold: float = 0.05
+    stop: float = 0.999
+    box: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in (
+            ("mode", MODES), ("filter", FILTERS), ("refine", REFINEMENTS), ("integrator", INTEGRATORS)
+        ):  # fmt: skip
+            if getattr(self, name) not in known:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; choose one of {known}")
+        object.__setattr__(self, "values", tuple(float(value) for value in self.values))
+        right = 1 <= len(self.values) <= MAX_VALUES and all(abs(value) <= LARGEST for value in self.values)
+        if self.mode == "isosurface" and not right:
+            raise ValueError(
+                f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers that float32 holds"
+            )
+        if self.mode == "composite" and self.transfer is None:
+            raise ValueError("mode 'composite' needs transfer: colours and opacities by value")
+        if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:
+            raise ValueError(f"the thresholds are {self.low} and {self.high}; give the lower one first")
+        self._check("step", lambda: 1e-3 <= self.step <= 1e3, "a number of voxels from 0.001 to 1000")
+        self._check("stop", lambda: 0.0 < self.stop <= 1.0, "an opacity above 0, at most 1")
+        self._check("homogeneous", lambda: 0.0 <= self.homogeneous < math.inf, "a difference of values, 0 or more")
+        self._check("sparse", lambda: self.sparse in (1, 2, 4), "1, 2 or 4 pixels")
+        self._check("sparse_threshold", lambda: 0.0 <= self.sparse_threshold <= 1.0, "a number from 0 to 1")
+        self._check("iterations", lambda: self.iterations in range(1, 65), "a whole number from 1 to 64")
+        if math.isnan(self.threshold):
+            raise ValueError("threshold is nan; give a number")
+        if self.box is not None:
+            try:
+                box = tuple(float(side) for side in self.box)
+            except (TypeError, ValueError):
+                box = ()
+            if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
+                raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
+            object.__setattr__(self, "box", box)
+
+    def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
+        """Return the length of a step, mm.
+
+        Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
+        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
+        a ray through the whole volume took more than `MOST_STEPS` then.
+
+        Parameters
+        ----------
+        spacing : array_like
+            ``(3,)`` mm between voxels along each axis.
+        shape : tuple of int
+            Voxels along each axis.
+        """
+        lengths = np.asarray(spacing, np.float64)
+        mean, least = self.step * float(lengths.mean()), max(self.step, 1.0) * float(lengths.min())
+        through = float(np.linalg.norm(lengths * shape))
+        return min(mean, max(least, through / MOST_STEPS))
+
+    def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
+        try:
+            fine = bool(right())
+        except (TypeError, ValueError):  # what cannot be compared
+            fine = False
+        if not fine:
+            raise ValueError(f"{name} is {getattr(self, name)!r}; give {expected}")

@@ -1,0 +1,157 @@
+// The per-point value of the G-buffer, if the style asks for one; without, nothing of this file is left but a zero.
+//
+//   stored       one or two bytes per point; code c means chunk_values.x + chunk_values.y * c, the largest means NaN
+//   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
+//   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
+//                anchor, because the segment before an anchor is another fiblet's
+//   volume       fiblets/data/volume.glsl at every point, looked up for the pixels that are written
+//
+// `step` and `rest` are t in steps from point to point, where a segment stands for a whole fiblet (far views).
+// value_of_point(i) serves stages that hand values on with points: that of the point which start_values() came to last, but 0
+// where fragments look it up. pvfiblets/engine/fiblets/point_values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
+
+#include "fiblets/data/values.glsl"
+
+#if FEATURE_VALUES_STORED
+uint values_first;
+uint values_last;  // index within the fiblet of the last point that a segment of it reaches
+
+// Two codes of 16 bits or four of 8 to a word. A chunk's points are fewer than 2^32, their bits are not.
+uint value_code(uint segment) {
+    uint bits = chunk_bases.y, point = values_first + min(segment, values_last);
+    uint shift = bits == 8u ? 2u : 1u, within = point & ((1u << shift) - 1u);
+    return bitfieldExtract(value_word(point >> shift), int(within * bits), int(bits));
+}
+
+void begin_values(uint f) {
+    values_first = first_point_of(f);
+    values_last = fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u);
+}
+
+void start_values(uint segment, vec3 delta, float steps) {}
+
+float value_along(uint segment, float t, uint step, float rest) {
+    segment += step;
+    t = rest;
+    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << chunk_bases.y) - 1u;
+    if (a == invalid || b == invalid) {
+        a = b = t < 0.5 ? a : b;
+        if (a == invalid) return uintBitsToFloat(0x7FC00000u);
+    }
+    return chunk_values.x + chunk_values.y * mix(float(a), float(b), t);
+}
+
+float value_of_point(uint i) { return 0.0; }
+
+#elif FEATURE_VALUES_ARC_LENGTH
+// Of a fiblet of constant step; 0 for others.
+float whole_length(uvec3 words) {
+    return fiblet_kind(words) == KIND_DIRECTION ? float(fiblet_last(words)) * step_length(words) : 0.0;
+}
+
+float arc_from;
+float arc_to;
+
+uint arc_fiblet;
+
+void begin_values(uint f) {
+    arc_fiblet = f;
+    arc_from = arc_to = start_value(f);
+}
+
+// A whole fiblet drawn as one segment is longer than that: its length is that of its steps.
+void start_values(uint segment, vec3 delta, float steps) {
+    arc_from = arc_to;
+    if (steps <= 1.0) arc_to += length(delta);
+    else if (!ends(arc_fiblet)) arc_to = start_value(arc_fiblet + 1u);
+    else arc_to += max(length(delta), whole_length(decoding_words(arc_fiblet)));
+}
+
+float value_along(uint segment, float t, uint step, float rest) { return mix(arc_from, arc_to, t); }
+
+float value_of_point(uint i) { return arc_to; }
+
+vec2 values_at_ends(uint segment) { return vec2(arc_from, arc_to); }
+
+#elif FEATURE_VALUES_CURVATURE
+#include "fiblets/attributes/turn.glsl"
+
+float curvatures[FIBLET_MAX_POINTS + 1u];
+
+// Curvature at a point needs the segment after it: the fiblet is decoded once before it is drawn.
+void begin_values(uint f) {
+    bool end = ends(f);
+    walk_begin(f);
+    curvatures[0] = start_value(f);
+    curvatures[walk.last + 1u] = end ? 0.0 : start_value(f + 1u);
+    vec3 before = vec3(0.0);
+    for (uint i = 1u; i <= walk.last; ++i) {
+        walk_next(i);
+        if (i > 1u) curvatures[i - 1u] = turn(before, walk_delta);
+        before = walk_delta;
+    }
+    if (walk.last > 0u) {
+        if (!end) curvatures[walk.last] = turn(before, anchor_local(f + 1u) - walk_point);
+        else curvatures[walk.last] = curvatures[walk.last - 1u];
+    }
+}
+
+void start_values(uint segment, vec3 delta, float steps) {}
+
+float value_along(uint segment, float t, uint step, float rest) {
+    return mix(curvatures[segment + step], curvatures[segment + step + 1u], rest);
+}
+
+float value_of_point(uint i) { return curvatures[i]; }
+
+vec2 values_at_ends(uint segment) { return vec2(curvatures[segment], curvatures[segment + 1u]); }
+
+#elif FEATURE_VALUES_VOLUME
+#include "fiblets/data/volume.glsl"
+#include "culling/bounds.glsl"
+
+vec3 volume_from;
+vec3 volume_to;
+float volume_steps;
+vec2 volume_values_at;   // values at both, where they are
+bvec2 volume_known;
+
+void begin_values(uint f) {
+    volume_from = volume_to = anchor_local(f);
+    volume_known = bvec2(false);
+}
+
+float value_of_point(uint i) {
+    if (!volume_known.y) volume_values_at.y = volume_at(volume_to);
+    volume_known.y = true;
+    return volume_values_at.y;
+}
+
+// The walk is at the segment's end.
+void start_values(uint segment, vec3 delta, float steps) {
+    volume_from = volume_to;
+    volume_to = walk_point;
+    volume_steps = steps;
+    volume_values_at.x = volume_values_at.y;
+    volume_known = bvec2(volume_known.y, false);
+}
+
+float value_along(uint segment, float t, uint step, float rest) {
+    if (volume_steps > 1.0) return volume_between(volume_from, volume_to, volume_steps, step, rest);
+    if (!volume_known.x) volume_values_at.x = volume_at(volume_from);
+    volume_known.x = true;
+    return value_between(volume_values_at.x, value_of_point(segment + 1u), rest);
+}
+
+// Of a whole fiblet drawn as one segment, where fragments look it up.
+float value_along_capsule(uint f, float steps, uint step, float rest) {
+    Capsule capsule = capsule_of(f);
+    return volume_between(capsule.a, capsule.b, steps, step, rest);
+}
+
+#else
+void begin_values(uint f) {}
+void start_values(uint segment, vec3 delta, float steps) {}
+float value_along(uint segment, float t, uint step, float rest) { return 0.0; }
+float value_of_point(uint i) { return 0.0; }
+#endif

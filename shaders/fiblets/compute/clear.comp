@@ -1,0 +1,37 @@
+// Empties the G-buffer's depth, the owner of every pixel, and the lengths of all lists. With atomics of 64 bits depth and
+// owners come later (fiblets/compute/split.comp), and their words are emptied.
+
+#version 430
+#if FEATURE_INT64_ATOMICS
+#extension GL_ARB_gpu_shader_int64 : require
+#extension GL_NV_shader_atomic_int64 : require
+#endif
+layout(local_size_x = {{ group_size }}) in;
+
+#include "frame/blocks.glsl"
+#include "frame/groups.glsl"
+#include "fiblets/compute/visibility_bits.glsl"
+#if FEATURE_INT64_ATOMICS
+#include "fiblets/compute/nearest.glsl"
+#endif
+
+layout(r32ui, binding = 0) writeonly uniform uimage2D depth_image;
+layout(r32ui, binding = 1) writeonly uniform uimage2D owner_image;
+
+uniform uint argument_count;  // words
+
+void main() {
+    uint row = group_index();
+    if (row == 0u) {
+        for (uint i = gl_LocalInvocationIndex; i < argument_count; i += gl_WorkGroupSize.x) marks[argument_base + i] = 0u;
+    }
+    if (row >= uint(viewport.y)) return;
+    for (uint x = gl_LocalInvocationIndex; x < uint(viewport.x); x += gl_WorkGroupSize.x) {
+#if FEATURE_INT64_ATOMICS
+        nearest[pixel_index(ivec2(x, row))] = nearest_word(0xFFFFFFFFu, 0xFFFFFFFFu);
+#else
+        imageStore(depth_image, ivec2(x, row), uvec4(0xFFFFFFFFu));
+        imageStore(owner_image, ivec2(x, row), uvec4(0xFFFFFFFFu));
+#endif
+    }
+}

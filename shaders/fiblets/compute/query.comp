@@ -1,0 +1,135 @@
+// Asks of every streamline where its points lie. Three passes over a batch of fiblets, one invocation each:
+//   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed. A streamline's first point is an
+//                anchor; its last is no farther from the rounded end vector than the rounding (Capsule.slip), or asked for
+//   SIFT         of those, list the ones whose streamline's answer is still open: not where it has points inside and points
+//                outside by now, unless its last point is asked for
+//   DECODE       the points of these, until the streamline's answer is settled
+// Lists keep neighbouring invocations busy alike.
+//
+// Points are tested as balls of the radius by which float32 may have moved them (walk_margin). A point that this leaves
+// undecided counts as unsure; where that matters to its streamline, pvfiblets/engine/fiblets/region_query.py has it settled in float64.
+//
+// With `sampling`, positions between points are tested too: a segment of length L is cut into ceil(L / sampling) equal
+// pieces. Where rounding may change their number, or they are more than SAMPLES, the segment is unsure as a whole.
+//
+// A byte per streamline, by rank from the chunk's first; pvfiblets/engine/fiblets/region_query.py has the same bits.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "culling/bounds.glsl"
+#include "fiblets/decode/sequential.glsl"
+#include "regions/classify.glsl"
+#include "frame/groups.glsl"
+
+layout(std430, binding = 5) buffer Answers { uint answers[]; };
+layout(std430, binding = 7) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size; an entry may have the bit
+
+const uint LAST_ASKED = 0x80000000u;  // a chunk has fewer fiblets
+const uint CLASSIFY = 0u, SIFT = 1u, DECODE = 2u;
+
+uniform uint stage;
+
+uniform uint batch_first;
+uniform uint batch_size;   // fiblets from batch_first on
+uniform float sampling;  // mm; 0: points alone
+
+const uint INSIDE = 1u, OUTSIDE = 2u, UNSURE = 4u, FIRST_INSIDE = 8u, FIRST_UNSURE = 16u, LAST_INSIDE = 32u, LAST_UNSURE = 64u;
+const uint SETTLED = INSIDE | OUTSIDE;
+const float EPSILON = 1.1920929e-7;
+const float SAMPLES = 1024.0;
+
+uint place_of(int side) { return side > 0 ? INSIDE : side < 0 ? OUTSIDE : UNSURE; }
+
+// How far point i of the walk may lie from where float64 has it (mm). The anchor has three roundings, every addition to it
+// half a unit of the last place; each product of frames turns all that follows by a few units (4 i (i + 1) in all, taken
+// three times); exp2() of the lattice's edge may err by 40 units.
+float walk_margin(uint i) {
+    float n = float(i), run, drift;
+    if (walk.kind == KIND_DIRECTION) {
+        run = n * walk.step;
+        drift = 12.0 * (n + 1.0) * run;
+    } else {
+        run = distance(walk_point, walk_anchor);
+        drift = 40.0 * run;
+    }
+    return EPSILON * ((n + 8.0) * (length(walk_anchor) + run) + drift);
+}
+
+// Positions on a segment, its ends left out; `margin` is that of its ends.
+uint between(vec3 a, vec3 b, float margin) {
+    int whole = region_of_capsule(a, b, margin);
+    if (whole != 0) return place_of(whole);
+    float share = distance(a, b) / sampling, slack = 2.0 * margin / sampling + 1.0e-5 * share;
+    float pieces = ceil(share - slack);
+    if (!(pieces == ceil(share + slack) && pieces <= SAMPLES)) return UNSURE;
+    float wider = margin + 8.0 * EPSILON * (length(a) + length(b));
+    uint found = 0u;
+    for (float k = 1.0; k < pieces && found != (SETTLED | UNSURE); k += 1.0) {
+        found |= place_of(region_of_ball(mix(a, b, k / pieces), wider));
+    }
+    return found;
+}
+
+uint decoded_answer(uint f, bool last, uint known) {
+    bool settled = (known & SETTLED) == SETTLED;
+    walk_begin(f);
+    uint found = 0u;
+    float margin = 0.0;
+    for (uint i = 0u; i <= walk.last; ++i) {  // the anchor itself was tried before, but its margin is asked for
+        vec3 before = walk_point;
+        float margin_before = margin;
+        if (i > 0u) walk_next(i);
+        bool at_last = last && i == walk.last;
+        if (settled && !at_last) {
+            if (last) continue;
+            break;
+        }
+        margin = walk_margin(i);
+        if (i == 0u && !at_last) continue;
+        int side = region_of_ball(walk_point, margin);
+        found |= place_of(side);
+        if (at_last) found |= side > 0 ? LAST_INSIDE : side == 0 ? LAST_UNSURE : 0u;
+        if (sampling > 0.0 && i > 0u && !settled) found |= between(before, walk_point, max(margin, margin_before));
+        settled = ((known | found) & SETTLED) == SETTLED;
+    }
+    if (sampling > 0.0 && !settled && !ends(f)) {
+        vec3 next = anchor_local(f + 1u);
+        found |= between(walk_point, next, max(margin, 8.0 * EPSILON * length(next)));
+    }
+    return found;
+}
+
+void main() {
+    uint slot = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (slot >= (stage == CLASSIFY ? batch_size : counts[stage - 1u])) return;
+    uint f = stage == CLASSIFY ? batch_first + slot : lists[(stage == SIFT ? 0u : batch_size) + slot];
+    bool last_asked = (f & LAST_ASKED) != 0u;
+    f &= ~LAST_ASKED;
+    uint rank = rank_of(f) - chunk_bases.x, shift = 8u * (rank & 3u);
+    uint known = (answers[rank >> 2] >> shift) & 255u, found = 0u;
+    bool open = (known & SETTLED) != SETTLED || last_asked;
+    if (stage == CLASSIFY) {
+        Capsule c = capsule_of(f);
+        int side = region_of_capsule(c.a, c.b, c.r);
+        bool first = begins(f), last = ends(f);
+        if (side != 0) {
+            found = side < 0 ? OUTSIDE : INSIDE | (first ? FIRST_INSIDE : 0u) | (last ? LAST_INSIDE : 0u);
+        } else {
+            float margin = 8.0 * EPSILON * (length(c.a) + length(c.b));
+            side = region_of_ball(c.a, margin);
+            found = place_of(side);
+            if (first) found |= side > 0 ? FIRST_INSIDE : side == 0 ? FIRST_UNSURE : 0u;
+            if (last && (side = region_of_ball(c.b, c.slip + margin)) != 0) {
+                found |= place_of(side) | (side > 0 ? LAST_INSIDE : 0u);
+                last = false;
+            }
+            lists[atomicAdd(counts[0], 1u)] = last ? f | LAST_ASKED : f;
+        }
+    } else if (stage == SIFT) {
+        if (open) lists[batch_size + atomicAdd(counts[1], 1u)] = lists[slot];
+    } else if (open) {
+        found = decoded_answer(f, last_asked, known);
+    }
+    if ((found & ~known) != 0u) atomicOr(answers[rank >> 2], found << shift);
+}

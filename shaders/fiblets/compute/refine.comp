@@ -1,0 +1,18 @@
+// Takes out of the plan what is hidden, second test: the capsule in pieces (culling/hidden.glsl), of what the first one left.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "culling/hidden.glsl"
+#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/bits.glsl"
+
+uint bits_of(uint word) { return mark_of(word, REST + part); }
+
+void main() {
+    for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
+        uint f = nth_fiblet(k);
+        if (f == NO_FIBLET) break;
+        if (!hidden_in_pieces(capsule_of(f))) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + KEPT], 1u << (f & 31u));
+    }
+}

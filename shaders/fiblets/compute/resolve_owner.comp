@@ -1,0 +1,54 @@
+// Second drawing pass: which fiblet owns each pixel, and what the pixel shows. Candidates are drawn again; where a sample's
+// depth is the one that the first pass kept, its fiblet takes the pixel.
+//
+// Ties (equal depth keys in one pixel) go to the fiblet with the smallest index: a picture does not depend on the order
+// in which a driver runs groups. Every tied fiblet is a candidate, because it came nearest or tied when it was drawn. One
+// that takes a pixel from another may have written it before that one did: it is marked, and settle.comp writes it again.
+//
+// A fiblet that took a pixel is seen: the next picture begins with it.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "fiblets/raster/segments.glsl"
+
+#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/bits.glsl"
+#include "fiblets/attributes/pixel.glsl"
+
+uint bits_of(uint word) { return taken_again(word, part); }
+
+layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
+layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
+layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
+layout(rg32f, binding = 3) writeonly uniform image2D position_image;
+#include "fiblets/compute/cross_line.glsl"
+
+uint owner;
+bool kept;
+bool tied;
+
+void plot(ivec2 pixel, float z, float s, uint segment) {
+    if (depth_key(z) != imageLoad(depth_image, pixel).x || !new_surface(pixel, segment)) return;
+    kept = true;
+    uint before = imageAtomicMin(owner_image, pixel, owner);
+    if (before < owner) return;
+    if (before > owner && before != NO_FIBLET) tied = true;
+    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
+    store_across(pixel);
+}
+
+void main() {
+    for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
+        uint f = nth_fiblet(k);
+        if (f == NO_FIBLET) break;
+        owner = chunk.y + f;
+        kept = tied = false;
+        begin_pixels(f);
+        draw_fiblet(f);
+        uint word = (owner >> 5) * WORDS, bit = 1u << (f & 31u);
+        if (kept) atomicOr(marks[word + SEEN], bit);
+        if (tied) atomicOr(marks[word + TIED], bit);
+    }
+}

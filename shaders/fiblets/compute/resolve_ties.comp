@@ -1,0 +1,40 @@
+// Last drawing pass: fiblets that took the same pixel as another are drawn once more, and each writes the pixels that it
+// owns. No two invocations write the same one. With atomics of 64 bits it is the only one after depth.comp: it draws all
+// fiblets that own a pixel.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "fiblets/raster/segments.glsl"
+
+#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/bits.glsl"
+#include "fiblets/attributes/pixel.glsl"
+
+uint bits_of(uint word) { return taken_again(word, part); }
+
+layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
+layout(r32ui, binding = 1) readonly uniform uimage2D owner_image;
+layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
+layout(rg32f, binding = 3) writeonly uniform image2D position_image;
+#include "fiblets/compute/cross_line.glsl"
+
+uint owner;
+
+void plot(ivec2 pixel, float z, float s, uint segment) {
+    if (imageLoad(owner_image, pixel).x != owner || depth_key(z) != imageLoad(depth_image, pixel).x) return;
+    if (!new_surface(pixel, segment)) return;
+    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
+    store_across(pixel);
+}
+
+void main() {
+    for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
+        uint f = nth_fiblet(k);
+        if (f == NO_FIBLET) break;
+        owner = chunk.y + f;
+        begin_pixels(f);
+        draw_fiblet(f);
+    }
+}

@@ -1,0 +1,36 @@
+// Where the driver has atomics of 64 bits (fiblets/compute/nearest.glsl): from words to the G-buffer's depth and owners. When all is
+// drawn, owners are marked: settle.comp writes their pixels, and the next picture begins with them.
+//
+// A work group per row of pixels. A run of pixels with the same owner marks it once.
+
+#version 450
+#extension GL_ARB_gpu_shader_int64 : require
+#extension GL_NV_shader_atomic_int64 : require
+layout(local_size_x = {{ group_size }}) in;
+
+#include "frame/blocks.glsl"
+#include "frame/groups.glsl"
+#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/nearest.glsl"
+
+layout(r32ui, binding = 0) writeonly uniform uimage2D depth_image;
+layout(r32ui, binding = 1) writeonly uniform uimage2D owner_image;
+
+uniform uint marking;
+
+void main() {
+    uint row = group_index();
+    if (row >= uint(viewport.y)) return;
+    for (uint x = gl_LocalInvocationIndex; x < uint(viewport.x); x += gl_WorkGroupSize.x) {
+        uint at = pixel_index(ivec2(x, row));
+        uint key = key_of(nearest[at]), fiblet = fiblet_of(nearest[at]);
+        imageStore(depth_image, ivec2(x, row), uvec4(key));
+        imageStore(owner_image, ivec2(x, row), uvec4(fiblet));
+        if (marking == 0u || key == 0xFFFFFFFFu) continue;
+        if (x > 0u && fiblet_of(nearest[at - 1u]) == fiblet) continue;
+        uint mark = (fiblet >> 5) * WORDS, bit = 1u << (fiblet & 31u);
+        if ((marks[mark + SEEN] & bit) != 0u) continue;
+        atomicOr(marks[mark + SEEN], bit);
+        atomicOr(marks[mark + CANDIDATES], bit);
+    }
+}

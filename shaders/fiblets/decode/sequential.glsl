@@ -1,0 +1,93 @@
+// One invocation decodes one fiblet, point after point, in registers (paper: Schertzer et al. 2022, section 3.3.1 and
+// appendix B; the lattice kinds are this program's own).
+//
+// Symbols (words.glsl has those of the frames)
+//   P            position, local millimetres; P_0 is the anchor
+//   delta        P_i - P_(i-1), exact where P itself has lost digits
+//   K            position on the integer lattice of edge h around the anchor
+//   lo, n        a lattice code counts the cells of a box of n.x * n.y * n.z steps whose least corner is lo
+//
+// Algorithm
+//   direction:   q <- q T[cap][code] from the third point on; P <- P + step (q X)
+//   lattice:     c = code; K <- K + lo + (c mod n.x, c / n.x mod n.y, c / (n.x n.y)); P = P_0 + h K
+//
+// Use: walk_begin(f), then walk_next(i) for i = 1, 2, ... walk.last, in order. Everything is `precise`: the pass that
+// finds the nearest depth and the pass that looks for it again must compute the very same bits.
+
+#include "fiblets/decode/words.glsl"
+
+struct Walk {
+    uint last;     // index of the last point
+    uint kind;
+    uint byte;     // where the next code stands
+    uint cap;      // cap angle, and the scale of its rotations
+    float scale;
+    float step;    // mm; of the lattice: its edge
+    uint width;    // bytes per lattice code
+    uvec2 n;
+    ivec3 lo;
+    ivec3 k;
+};
+
+Walk walk;
+precise vec3 walk_anchor;
+precise vec3 walk_point;
+precise vec3 walk_delta;
+precise vec4 walk_frame;
+
+void walk_begin(uint f) {
+    uvec3 words = decoding_words(f);
+    walk_anchor = anchor_local(f);
+    walk_point = walk_anchor;
+    walk_delta = vec3(0.0);
+    walk.last = fiblet_last(words);
+    walk.kind = fiblet_kind(words);
+    walk.byte = first_code(f, words);
+#if FEATURE_DIRECTION
+    walk.cap = fiblet_cap(words);
+    walk.scale = rotation_scale(walk.cap);
+    walk.step = step_length(words);
+    walk_frame = first_frame(fiblet_shape(words));
+#endif
+#if FEATURE_LATTICE
+    if (walk.kind != KIND_DIRECTION) {
+        walk.k = ivec3(0);
+        walk.step = steps.z * exp2(-float(fiblet_cap(words)));
+        int shape = int(fiblet_shape(words));
+        walk.lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
+        walk.n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);
+        walk.width = walk.kind;
+#if FEATURE_WIDE_LATTICE
+        if (walk.kind == KIND_WIDE && walk.last > 0u) {
+            walk.lo = ivec3(codes_at(walk.byte), codes_at(walk.byte + 4u), codes_at(walk.byte + 8u));
+            walk.n = uvec2(codes_at(walk.byte + 12u), codes_at(walk.byte + 16u));
+            walk.width = fiblet_step(words) & 7u;
+            walk.byte += FIBLET_WIDE_HEADER;
+        }
+#endif
+    }
+#endif
+}
+
+// Moves to point i.
+void walk_next(uint i) {
+#if FEATURE_LATTICE
+    if (walk.kind != KIND_DIRECTION) {
+        uint code = codes_at(walk.byte) & (0xFFFFFFFFu >> (32u - 8u * walk.width));
+        walk.byte += walk.width;
+        uint row = code / walk.n.x;
+        ivec3 cell = walk.lo + ivec3(code - row * walk.n.x, row % walk.n.y, row / walk.n.y);
+        walk.k += cell;
+        walk_delta = walk.step * vec3(cell);
+        walk_point = walk_anchor + walk.step * vec3(walk.k);
+        return;
+    }
+#endif
+#if FEATURE_DIRECTION
+    if (i > 1u) {
+        walk_frame = turned(walk_frame, rotation(walk.cap, code_at(walk.byte + i - 2u), walk.scale));
+    }
+    walk_delta = walk.step * rotated_x(walk_frame);
+    walk_point += walk_delta;
+#endif
+}

@@ -1,0 +1,67 @@
+// The decoding half of a record, the codes and the direction table, and the helpers that both ways to decode share:
+// one fiblet by one invocation (fiblets/decode/sequential.glsl) or by a work group together (fiblets/decode/parallel.glsl).
+//
+// Symbols (paper, section 3.3.2 and appendices A and B)
+//   X            (1, 0, 0)
+//   q            frame as a unit quaternion (x, y, z, w): q turns X to the direction of the segment
+//   T[cap][code] the rotation that a code stands for: the smallest one that turns X to its direction, hence without
+//                an x component, which makes a product 12 multiplications instead of 16. A word holds y and z as 16-bit
+//                integers times the cap angle's scale; w follows from the unit length
+
+#include "fiblets/decode/record.glsl"
+#include "fiblets/data/decoding.glsl"
+
+uvec3 decoding_words(uint f) { return uvec3(decoding_word(3u * f), decoding_word(3u * f + 1u), decoding_word(3u * f + 2u)); }
+
+// First byte of a fiblet's codes, counted from the chunk's first.
+uint first_code(uint f, uvec3 words) { return page_words(f >> FIBLET_PAGE_BITS).y + fiblet_code(words); }
+
+uint code_at(uint byte) { return bitfieldExtract(code_word(byte >> 2), int(byte & 3u) * 8, 8); }
+
+// Four bytes from any byte position, least significant first.
+uint codes_at(uint byte) {
+    uint word = byte >> 2, shift = (byte & 3u) * 8u;
+    uint low = code_word(word);
+    return shift == 0u ? low : (low >> shift) | (code_word(word + 1u) << (32u - shift));
+}
+
+float rotation_scale(uint cap) { return rotation_scales[cap >> 2][cap & 3u]; }
+
+// T of a cap angle and a code, given the cap angle's scale.
+vec4 rotation(uint cap, uint code, float scale) {
+    int word = int(rotation_word((cap << 8u) + code));
+    precise vec2 t = scale * vec2(bitfieldExtract(word, 0, 16), bitfieldExtract(word, 16, 16));
+    precise float w = sqrt(1.0 - t.x * t.x - t.y * t.y);
+    return vec4(0.0, t, w);
+}
+
+float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }
+
+float step_length(uvec3 words) { return steps.x + float(fiblet_step(words)) * (steps.y / FIBLET_STEP_LEVELS); }
+
+// The first direction's frame, M_0 of the paper. The octahedron's fold is decided on the integers, so that rounding
+// cannot choose another frame than the encoder's.
+vec4 first_frame(uint shape) {
+    int u = bitfieldExtract(int(shape), 0, 16), v = bitfieldExtract(int(shape), 16, 16);
+    bool forward = abs(u) + abs(v) <= int(FIBLET_DIRECTION_SCALE);
+    precise vec2 s = vec2(float(u), float(v)) / FIBLET_DIRECTION_SCALE;
+    precise float x = 1.0 - abs(s.x) - abs(s.y);
+    precise vec3 d = forward ? vec3(x, s)
+                             : vec3(x, (1.0 - abs(s.y)) * sign_of(u), (1.0 - abs(s.x)) * sign_of(v));
+    d = d / sqrt(dot(d, d));
+    precise vec3 h = forward ? vec3(1.0 + d.x, -d.z, d.y) : vec3(1.0 - d.x, d.z, -d.y);  // w, y, z
+    h = h / sqrt(dot(h, h));
+    return forward ? vec4(0.0, h.y, h.z, h.x) : vec4(h.y, 0.0, h.x, -h.z);
+}
+
+vec3 rotated_x(vec4 q) {
+    precise vec3 d = vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.w * q.z), 2.0 * (q.x * q.z - q.w * q.y));
+    return d;
+}
+
+// a then, in its frame, a code's rotation t (t.x = 0).
+vec4 turned(vec4 a, vec4 t) {
+    precise vec4 q = vec4(a.x * t.w + a.y * t.z - a.z * t.y, a.w * t.y - a.x * t.z + a.y * t.w,
+                          a.w * t.z + a.x * t.y + a.z * t.w, a.w * t.w - a.y * t.y - a.z * t.z);
+    return q;
+}

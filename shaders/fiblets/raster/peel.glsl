@@ -1,0 +1,67 @@
+// Layers: of every pixel only what lies behind the layers drawn so far (pvfiblets/engine/fiblets/depth_peeling.py). Layer k shows the
+// nearest depth key behind that of layer k - 1; of several fiblets at the same key a pixel shows one.
+//
+// A wide line or a tube covers a pixel by many segments, one after the other, each at a depth of its own: they are one
+// surface, of which a pixel blends the nearest only. What belongs to an earlier layer's surface is told by its place:
+//
+//   place        of a streamline, in points: segment k stands for the places first + k ... first + k + steps
+//   reach        points that two widths of the line take, by the pixels that this segment takes. Half a width away on
+//                either side a straight line covers the pixel still, a bent one for longer. A line seen end on has no
+//                pixels to a point: all of it is one surface.
+//
+// Use: begin_peel() for a fiblet, peel_segment() for a segment, then behind_layers() and new_surface() for every pixel.
+// Bounds, not places, are compared: all passes find the same.
+
+#if FEATURE_PEEL
+#if FEATURE_TEXTURE_DATA
+uniform usampler2DArray peeled_depth;
+#else
+layout(binding = 29) uniform usampler2DArray peeled_depth;
+#endif
+uniform int peeled_layers;  // so far
+#if FEATURE_WIDE_LINES
+#if FEATURE_TEXTURE_DATA
+uniform usampler2DArray peeled_ids;
+uniform sampler2DArray peeled_position;
+#else
+layout(binding = 30) uniform usampler2DArray peeled_ids;
+layout(binding = 31) uniform sampler2DArray peeled_position;
+#endif
+#endif
+
+const float WIDTHS = 2.0;
+
+uint peel_streamline;
+float peel_first;      // place of the fiblet's first point
+float peel_steps;      // of the segment, from point to point
+precise float peel_reach;
+
+void begin_peel(uint streamline, float first_point) {
+    peel_streamline = streamline;
+    peel_first = first_point;
+}
+
+// a, b: its ends in the window; r: half the width.
+void peel_segment(vec2 a, vec2 b, float r, float steps) {
+    precise vec2 run = b - a;
+    peel_steps = steps;
+    peel_reach = 2.0 * WIDTHS * r * max(steps, 1.0) / max(length(run), 1e-3);
+}
+
+bool behind_layers(ivec2 pixel, uint key) {
+    return key > texelFetch(peeled_depth, ivec3(pixel, peeled_layers - 1), 0).x;
+}
+#endif
+
+// Whether what is drawn there is no part of an earlier layer's surface. It is asked last, of what would show.
+bool new_surface(ivec2 pixel, uint segment) {
+#if FEATURE_PEEL && FEATURE_WIDE_LINES
+    precise float from = peel_first + float(segment), to = from + peel_steps;
+    for (int layer = 0; layer < peeled_layers; ++layer) {
+        if (texelFetch(peeled_ids, ivec3(pixel, layer), 0).x != peel_streamline) continue;
+        float there = texelFetch(peeled_position, ivec3(pixel, layer), 0).x;
+        if (max(from - there, there - to) <= peel_reach) return false;
+    }
+#endif
+    return true;
+}

@@ -1,0 +1,52 @@
+// The points that a fiblet is drawn by, one after the other: its own and the next fiblet's first, or, from far enough
+// (is_one_segment() of culling/bounds.glsl), the ends of its capsule. fiblets/raster/segments.glsl does the same for the compute
+// pipeline and must agree.
+//
+// Use: begin_polyline(f); then next_point(i) for i = 1 .. polyline.count, after each of which walk_point and walk_delta hold
+// the end and the run of segment i - 1.
+
+#include "fiblets/decode/sequential.glsl"
+#include "culling/bounds.glsl"
+#include "fiblets/data/point_mask.glsl"
+
+struct Polyline {
+    uint last;     // points up to this one are decoded, the one after it is `next`
+    uint count;    // segments; a single point is a segment of no length
+    float steps;   // from point to point that a segment stands for: 1, or 0 for a single point, or all of a far fiblet's
+    bool begin;    // the streamline begins here
+    bool end;      // and ends here
+    vec3 next;
+};
+
+Polyline polyline;
+
+void begin_polyline(uint f) {
+    begin_point_mask(f);
+    polyline.begin = begins(f);
+    polyline.end = ends(f);
+#if FEATURE_LEVEL_OF_DETAIL
+    Capsule capsule = capsule_of(f);
+    if (is_one_segment(capsule) && all_points_shown()) {
+        walk_point = capsule.a;
+        polyline.last = 0u;
+        polyline.count = 1u;
+        polyline.steps = float(fiblet_last(decoding_words(f)) + (polyline.end ? 0u : 1u));
+        polyline.next = capsule.b;
+        return;
+    }
+#endif
+    walk_begin(f);
+    polyline.last = walk.last;
+    polyline.count = walk.last + (polyline.end && walk.last > 0u ? 0u : 1u);
+    polyline.steps = polyline.end && walk.last == 0u ? 0.0 : 1.0;
+    polyline.next = polyline.end ? walk_anchor : anchor_local(f + 1u);
+}
+
+void next_point(uint i) {
+    if (i <= polyline.last) {
+        walk_next(i);
+    } else {
+        walk_delta = polyline.next - walk_point;
+        walk_point = polyline.next;
+    }
+}

@@ -1,0 +1,21 @@
+// Pipeline `tessellation`, thin lines: one end of a segment's part (fiblets/raster/thin.glsl).
+
+#version 430
+
+#include "fiblets/tessellation/segment.glsl"
+#include "fiblets/raster/thin.glsl"
+#include "fiblets/raster/write_varyings.glsl"
+
+void main() {
+    Segment segment = this_segment();
+    Piece piece;
+    if (!segment.drawn || !piece_of(segment.from.xyz, segment.to.xyz, segment.start, segment.cap, piece)) {
+        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside, at both ends
+        return;
+    }
+    Thin line = thin_line(piece);
+    gl_Position = at_start ? line.first : line.last;
+    Handed handed = Handed(segment.ids, patch_ids.y, patch_first, segment.index, segment.steps,
+                           vec2(segment.from.w, segment.to.w));
+    hand_over(handed, piece, segment.from.xyz, segment.to.xyz);
+}

@@ -1,0 +1,121 @@
+// What each pixel shows of the segment that won it: the textures of pvfiblets/engine/gbuffer.py.
+// Paper: Russig et al. 2020, section 3.2, "Shading": the normal is that of the sphere at t.
+//
+// Pixels that show nothing do not come here (screen/near.vert).
+//
+// The ray and the half are made once more, for the pixel's own segment; t is known. Of a cut, t is that whose sphere holds the
+// cut's point deepest: looked for among sixteen, then between the neighbours of the best.
+
+#version 430
+
+#include "frame/blocks.glsl"
+#include "frame/clip_planes.glsl"
+#include "tubes/segment.glsl"
+#include "tubes/ray.glsl"
+#include "codec/layout.glsl"
+#include "frame/tangent.glsl"
+
+uniform usampler2D hits;
+#if FEATURE_TUBE_VALUES
+uniform samplerBuffer value_texels;      // value and derivative of each node
+#endif
+#if FEATURE_TUBE_COLOURS
+uniform samplerBuffer colour_texels;     // RGBA of each node, then its derivatives
+#endif
+
+layout(location = 0) out uint shown_depth;
+layout(location = 1) out uint shown_owner;
+layout(location = 2) out uvec2 shown_ids;
+layout(location = 3) out vec2 shown_position;
+layout(location = 4) out uint shown_normal;
+#if FEATURE_TUBE_COLOURS
+layout(location = 5) out vec4 shown_colour;
+#endif
+
+float inside(vec4 p0, vec4 p1, vec4 p2, vec3 at, float t) {
+    vec4 p = quadratic(p0, p1, p2, t);
+    return distance(p.xyz, at) - p.w;
+}
+
+float deepest(vec4 p0, vec4 p1, vec4 p2, vec3 at) {
+    int best = 0;
+    float least = 3e38;
+    for (int k = 0; k <= 16; ++k) {
+        float depth = inside(p0, p1, p2, at, float(k) / 16.0);
+        if (depth < least) {
+            least = depth;
+            best = k;
+        }
+    }
+    float lo = max(float(best - 1) / 16.0, 0.0), hi = min(float(best + 1) / 16.0, 1.0);
+    for (int k = 0; k < 12; ++k) {
+        float a = mix(lo, hi, 0.382), b = mix(lo, hi, 0.618);
+        if (inside(p0, p1, p2, at, a) < inside(p0, p1, p2, at, b)) hi = b;
+        else lo = a;
+    }
+    return 0.5 * (lo + hi);
+}
+
+#if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
+// The same two quadratics as of positions and radii, of values n and derivatives m by the segment's parameter.
+vec4 blended(vec4 n_i, vec4 m_i, vec4 n_j, vec4 m_j, bool second, float t) {
+    vec4 a2 = n_i + tube_scale.y * m_i, b2 = n_j - tube_scale.y * m_j, middle = 0.5 * (a2 + b2);
+    return second ? quadratic(middle, b2, n_j, t) : quadratic(n_i, a2, middle, t);
+}
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec2 hit = texelFetch(hits, pixel, 0).xy;
+    Segment s = segment_of(int(hit.x));
+    bool second = (hit.y >> 24u & 1u) != 0u;
+    uint kind = hit.y >> 25u & 3u;
+    vec4 p0 = second ? junction(s) : s.a1, p1 = second ? s.b2 : s.a2, p2 = second ? s.b3 : junction(s);
+    Seen seen = seen_centre(s);
+    Ray ray = ray_through(gl_FragCoord.xy, s.centre, s.size, seen);
+    float t = (float(hit.y & 0xFFFFFFu) + 0.5) / 16777216.0;
+    vec3 normal = -ray.d;
+    float l = 0.0;
+#if FEATURE_CLIP_PLANES
+    if (kind == 3u) {
+        vec3 plane = clip_planes[hit.y >> 27u].xyz;
+        float height = clip_height_of(int(hit.y >> 27u), s.centre) / s.size + dot(plane, ray.o);
+        l = -height / dot(plane, ray.d);
+        t = deepest(p0, p1, p2, ray.o + l * ray.d);
+        normal = -plane;
+    }
+#endif
+    vec4 p = quadratic(p0, p1, p2, t);
+    vec3 tangent = mix(p1.xyz - p0.xyz, p2.xyz - p1.xyz, t);
+    if (dot(tangent, tangent) < 1e-16) tangent = p2.xyz - p0.xyz;
+    if (dot(tangent, tangent) < 1e-16) tangent = s.b3.xyz - s.a1.xyz;
+    if (kind != 3u) {
+        vec3 v = ray.o - p.xyz;
+        float along = dot(ray.d, v);
+        vec3 beside = v - along * ray.d;                           // from the axis to the ray, across it
+        float s2 = sqrt(max(p.w * p.w - dot(beside, beside), 0.0));
+        l = -along + (kind == 2u ? s2 : -s2);
+        vec3 out_of = beside + (kind == 2u ? s2 : -s2) * ray.d;    // to the point that shows: r long
+        float r = length(out_of);
+        if (r > 0.0) normal = out_of / r;
+        if (kind == 2u) normal = -normal;                          // the wall from inside
+    }
+    shown_depth = key_along(ray, s, seen, l);
+    shown_owner = hit.x;
+    shown_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
+    shown_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);
+    shown_normal = packed_direction(normal);
+#if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
+    uvec4 nodes = texelFetch(segment_texels, int(hit.x));
+    float chord = tube_scale.w > 0.0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0;
+#endif
+#if FEATURE_TUBE_VALUES
+    vec2 v_i = texelFetch(value_texels, int(nodes.x)).xy, v_j = texelFetch(value_texels, int(nodes.y)).xy;
+    shown_position.y = blended(vec4(v_i.x), vec4(v_i.y * chord), vec4(v_j.x), vec4(v_j.y * chord), second, t).x;
+#endif
+#if FEATURE_TUBE_COLOURS
+    vec4 c_i = texelFetch(colour_texels, 2 * int(nodes.x)), c_j = texelFetch(colour_texels, 2 * int(nodes.y));
+    vec4 d_i = chord * texelFetch(colour_texels, 2 * int(nodes.x) + 1), d_j = chord * texelFetch(colour_texels, 2 * int(nodes.y) + 1);
+    shown_colour = clamp(blended(c_i, d_i, c_j, d_j, second, t), 0.0, 1.0);
+#endif
+}

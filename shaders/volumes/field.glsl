@@ -1,0 +1,47 @@
+// The field between the voxels, by one of three reconstruction filters.
+// Paper: Lesar 2015, section III.A; the third, tricubic, is Catmull and Rom's cubic along each axis.
+
+uniform sampler3D voxels;
+
+float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / ray_size.xyz, 0.0).x; }
+
+#if FEATURE_VOLUME_NEAREST
+float value_at(vec3 p) {
+    return texelFetch(voxels, clamp(ivec3(floor(p + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1), 0).x * ray_values.x + ray_values.y;
+}
+#elif FEATURE_VOLUME_TRICUBIC
+// Along an axis, four weights at three places: the middle two have one sign, and a linear texture weighs them.
+void cubic(float p, out vec3 place, out vec3 weight) {
+    float i = floor(p), x = p - i, y = 1.0 - x;
+    float w0 = -0.5 * x * y * y, w3 = -0.5 * y * x * x, w2 = x * (0.5 + 2.0 * x - 1.5 * x * x), w1 = 1.0 - w0 - w2 - w3;
+    place = vec3(i - 1.0, i + w2 / (w1 + w2), i + 2.0);
+    weight = vec3(w0, w1 + w2, w3);
+}
+
+float value_at(vec3 p) {
+    vec3 px, py, pz, wx, wy, wz;
+    cubic(p.x, px, wx);
+    cubic(p.y, py, wy);
+    cubic(p.z, pz, wz);
+    float sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j) {
+            vec3 row = vec3(read_linear(vec3(px.x, py[j], pz[k])), read_linear(vec3(px.y, py[j], pz[k])),
+                            read_linear(vec3(px.z, py[j], pz[k])));
+            sum += wz[k] * wy[j] * dot(row, wx);
+        }
+    }
+    return sum * ray_values.x + ray_values.y;
+}
+#else
+float value_at(vec3 p) { return read_linear(p) * ray_values.x + ray_values.y; }
+#endif
+
+// By mm, from central differences of one voxel (section III.A), one-sided at the box's faces.
+vec3 gradient_at(vec3 p) {
+    vec3 low = max(p - 1.0, 0.0), high = min(p + 1.0, ray_size.xyz - 1.0);
+    vec3 g = vec3(value_at(vec3(high.x, p.yz)) - value_at(vec3(low.x, p.yz)),
+                  value_at(vec3(p.x, high.y, p.z)) - value_at(vec3(p.x, low.y, p.z)),
+                  value_at(vec3(p.xy, high.z)) - value_at(vec3(p.xy, low.z))) / (high - low);
+    return g.x * ray_to_voxels[0].xyz + g.y * ray_to_voxels[1].xyz + g.z * ray_to_voxels[2].xyz;
+}

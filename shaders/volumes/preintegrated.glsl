@@ -1,0 +1,109 @@
+// Light of steps that are integrated beforehand, between two values; where values bend, of shorter ones.
+// This work is based on: Engel, Kraus and Ertl, "High-quality pre-integrated volume rendering using hardware-accelerated
+// pixel shading" (2001).
+//
+// Symbols
+//   front, back  values at a step's ends
+//   slope        by how much the value changed in the step before, over the length of a whole one
+//   bend         by how much it changes now, less the slope
+//
+// Between its ends a step's value is linear. Lines through samples lie beside a curve on the side that it bends to, everywhere, and
+// errors add up. Lines nearest to it (least squares) pass its samples at a twelfth of the bend on the other side: both ends are
+// moved by that of the front, and the mean over many steps is right to the fourth order, at no sample more.
+//
+// That is of no help at an edge between two cells, where the value turns at once: what the step's line is off by depends on where in
+// it the edge is. There is one if the bend is large; then the step is taken again in parts, and so are those that follow as long
+// as their last part bends. A kink D at a share x of the step shows as (1 - x) D, and its line is off by x (1 - x) D / 2 at most:
+// what hardly shows is hardly off.
+
+uniform sampler2D segments;       // of a step: premultiplied colour and opacity by the values at both ends; above, of a part
+#if FEATURE_VOLUME_FINER
+uniform float allowed_bend;
+uniform vec2 opaque_values;       // what is lower than the first or higher than the second is not seen
+const float PARTS = float({{ parts }});
+#define SHORTEST (step / PARTS)
+#else
+#define SHORTEST step
+#endif
+
+const float MOVED = 1.0 / 12.0, UNKNOWN = 3e38;
+
+vec4 light_of_step(float front, float back, float row) {
+    float size = float(textureSize(segments, 0).x), middle = 0.5 * (front + back);
+    vec2 place = (vec2(place_of(front), place_of(back)) * (size - 1.0) + 0.5) / size;
+#if FEATURE_VOLUME_FINER
+    place.y = 0.5 * (place.y + row);
+#endif
+    return middle >= ray_values.z && middle <= ray_values.w ? textureLod(segments, place, 0.0) : vec4(0.0);
+}
+
+// Colour (premultiplied) and opacity, and where the first of it is.
+bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
+    float t = start, front = value_at(at(ray, t)), slope = UNKNOWN;
+#if FEATURE_VOLUME_FINER
+    float parts = 0.0;      // of this step that are still to come
+#endif
+    light = vec4(0.0);
+    hit = -1.0;
+    while (t + SHORTEST <= ray.last && light.a < ray_high.w) {
+        float number, end = t + to_end_of_node(ray, t, 0.5, number);
+        if (number <= 0.5 && end - t >= step) {
+            t += floor((end - t) / step) * step;
+            if (t + SHORTEST > ray.last) break;
+            front = value_at(at(ray, t));
+            slope = front - value_at(at(ray, t - step));      // as if nothing had been skipped
+        }
+#if FEATURE_VOLUME_HOMOGENEOUS
+        else if (number > 1.5 && end - t >= step) {
+            float mm = floor((end - t) / step) * step;
+            vec4 m = medium_at(mean_of_node);
+            float a = 1.0 - exp(-m.a * mm);
+            if (a > 0.0 && hit < 0.0) hit = t;
+            light += (1.0 - light.a) * vec4(m.rgb * a, a);
+            t += mm;
+            if (t + SHORTEST > ray.last || light.a >= ray_high.w) break;
+            front = value_at(at(ray, t));
+            slope = UNKNOWN;
+        }
+#endif
+        do {
+#if FEATURE_VOLUME_FINER
+            float share = parts > 0.0 ? 1.0 / PARTS : 1.0;
+            float back = value_at(at(ray, t + share * step)), change = back - front;
+            float bend = slope == UNKNOWN ? 0.0 : change - share * slope, seen = abs(bend) * (1.0 - light.a);
+            bool visible = max(front, back) + abs(bend) > opaque_values.x && min(front, back) - abs(bend) < opaque_values.y;
+            if (parts == 0.0 && visible && (seen > allowed_bend || slope == UNKNOWN || t + step > ray.last)) {
+                parts = PARTS;
+            } else {
+                vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, parts > 0.0 ? 1.0 : 0.0);
+                if (part.a > 0.0 && hit < 0.0) hit = t;
+                light += (1.0 - light.a) * part;
+                t += share * step;
+                front = back;
+                slope = change / share;
+                parts = parts == 1.0 && PARTS * seen > allowed_bend ? PARTS : max(parts - 1.0, 0.0);
+            }
+        } while ((parts > 0.0 || t < end) && t + SHORTEST <= ray.last && light.a < ray_high.w);
+#else
+            float back = value_at(at(ray, t + step)), change = back - front;
+            float bend = slope == UNKNOWN ? 0.0 : change - slope;
+            vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, 0.0);
+            if (part.a > 0.0 && hit < 0.0) hit = t;
+            light += (1.0 - light.a) * part;
+            t += step;
+            front = back;
+            slope = change;
+        } while (t < end && t + SHORTEST <= ray.last && light.a < ray_high.w);
+#endif
+    }
+    if (t < ray.last && light.a < ray_high.w) {
+        // What is left is shorter. A power is dear, and software OpenGL works out what branches leave out: not in the loop.
+        vec4 part = light_of_step(value_at(at(ray, t)), value_at(at(ray, ray.last)), 0.0);
+        if (part.a > 0.0) {
+            if (hit < 0.0) hit = t;
+            light += (1.0 - light.a) * part * ((1.0 - pow(1.0 - min(part.a, 0.9999999), (ray.last - t) / step)) / part.a);
+        }
+    }
+    if (light.a >= ray_high.w) light /= light.a;      // what is behind would not be seen
+    return light.a > 0.0;
+}

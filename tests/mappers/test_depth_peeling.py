@@ -1,0 +1,286 @@
+"""Layers on the screen: blended as arithmetic says, in VTK's passes, and gone where nothing is translucent."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.mappers import Colouring, resolve, windows
+from pvfiblets.mappers.depth_peeling import Layers, layers_of, with_layers
+from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.streamlines import Streamlines
+
+COLOURS = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [255, 0, 255]], np.uint8)
+
+
+def rows(depths=(0, 10, 20, 30, 40)):
+    """Lines along x, one behind the other for who looks along y."""
+    x = np.linspace(-40, 40, 161)
+    return Streamlines.from_list([np.c_[x, 0 * x + y, 0 * x] for y in depths])
+
+
+def blended(layers, opacity, background=0.0):
+    """Colour of layers, the nearest first, as bytes."""
+    colour, through = np.zeros(3), 1.0
+    for layer in layers:
+        colour += through * opacity * np.asarray(layer, float)
+        through *= 1.0 - opacity
+    return colour + through * background
+
+
+@pytest.fixture
+def scene(make_plotter, tools):
+    """Return a function: a plotter, a mapper and an actor of lines seen along y, with a parallel camera."""
+
+    def make(streamlines, *, opacity=0.4, layers=4, colours=COLOURS, lighting=False, **options):
+        fibres = tools.fibres("engine", streamlines)
+        if colours is not None:
+            options["colouring"] = Colouring("streamline_rgb", values=np.resize(colours, (len(streamlines), 3)))
+        mapper, actor = fibres.actor(lighting=lighting, **options)
+        actor.GetProperty().SetOpacity(opacity)
+        if layers:
+            mapper.set_extra("layers", Layers(layers))
+        plotter = make_plotter()
+        plotter.add_actor(actor, reset_camera=False)
+        plotter.enable_parallel_projection()
+        plotter.camera_position = [(0, -200, 0), (0, 20, 0), (0, 0, 1)]
+        plotter.camera.parallel_scale = 50.0
+        plotter.renderer.ResetCameraClippingRange(-100, 100, -150, 150, -100, 100)
+        return plotter, mapper, actor
+
+    return make
+
+
+def engine_of(mapper):
+    (slot,) = [context.slots[mapper.GetAddressAsString("")] for context in windows.contexts_with(mapper)]
+    return slot.renderer
+
+
+def holds_layers(mapper):
+    return engine_of(mapper)._layers is not None
+
+
+@pytest.mark.parametrize("peeling", [False, True])
+@pytest.mark.parametrize("layers", [2, 4, 5, 8])
+@pytest.mark.parametrize("width", [1.0, 6.0])
+def test_lines_behind_each_other_blend_as_arithmetic_says(scene, tools, layers, width, peeling):
+    plotter, mapper, _ = scene(rows(), layers=layers, line_width=width)
+    if peeling:
+        plotter.enable_depth_peeling(number_of_peels=20, occlusion_ratio=0.0)
+    image = tools.picture(plotter, mapper)
+    inside = image[97:104, 60:180].max(axis=0)  # the line is in one of these rows
+    assert np.abs(inside - blended(COLOURS[:layers], 0.4)).max() <= 3, inside[50]
+
+
+def test_order_does_not_matter(scene, tools):
+    lines = tools.helices()
+    order = np.random.default_rng(0).permutation(len(lines))
+    colours = np.random.default_rng(1).integers(0, 255, (len(lines), 3)).astype(np.uint8)
+    images = []
+    for chosen in (np.arange(len(lines)), order):
+        plotter, mapper, _ = scene(lines[chosen], colours=colours[chosen], line_width=3.0)
+        images.append(tools.picture(plotter, mapper).astype(int))
+    differs = np.abs(images[0] - images[1]).max(axis=2) > 3
+    # Each set is coded on its own, so that points differ by a hundredth of a pixel.
+    assert differs.sum() < 0.02 * tools.covered(images[0]).sum()
+
+
+@pytest.mark.parametrize("width", [1.0, 4.0])
+def test_the_picture_is_that_of_its_layers_composed_by_numpy(scene, tools, width):
+    lines = tools.helices(40)
+    colours = np.random.default_rng(1).integers(0, 255, (len(lines), 3)).astype(np.uint8)
+    plotter, mapper, _ = scene(lines, colours=colours, line_width=width, layers=6, opacity=0.3)
+    image = tools.picture(plotter, mapper)
+    engine = engine_of(mapper)
+    plotter.render_window.MakeCurrent()
+    buffer = engine.render_layers(*engine._last, 6)
+    width_, height = buffer.size
+    depth = np.frombuffer(buffer.depth.read(), "<u4").reshape(6, height, width_)[:, ::-1]
+    ids = np.frombuffer(buffer.ids.read(), "<u4").reshape(6, height, width_, 2)[:, ::-1, :, 0]
+    expected = np.zeros((height, width_, 3))
+    for layer in range(5, -1, -1):  # far to near, in bytes as the framebuffer has them
+        drawn = depth[layer] != 0xFFFFFFFF
+        expected[drawn] = np.round(0.3 * colours[ids[layer][drawn]] + 0.7 * expected[drawn])
+    assert (depth[3] != 0xFFFFFFFF).any()
+    assert np.abs(image - expected).max() <= 4
+
+
+def test_every_layer_has_its_own_light(scene, tools):
+    """Two lines of different direction cross: the picture is made of both, lit each on its own."""
+    t = np.linspace(-40, 40, 161)
+    front, back = np.c_[t, 0 * t - 10, 0.3 * t], np.c_[0.2 * t, 0.9 * t + 30, t]
+    white = np.full((1, 3), 255, np.uint8)
+    alone = []
+    for line in (front, back):
+        plotter, mapper, _ = scene(Streamlines.from_list([line]), lighting=True, opacity=1.0, layers=None,
+                                   colours=white, line_width=7.0)  # fmt: skip
+        alone.append(tools.picture(plotter, mapper).astype(float))
+    two = Streamlines.from_list([front, back])
+    both, mapper, _ = scene(two, lighting=True, opacity=0.5, colours=white, line_width=7.0)
+    image = tools.picture(both, mapper)
+    crossing = tools.covered(alone[0]) & tools.covered(alone[1])
+    assert crossing.sum() > 30
+    expected = 0.5 * alone[0] + 0.25 * alone[1]
+    assert np.abs(np.median(alone[0][crossing]) - np.median(alone[1][crossing])) > 10, "lit alike: nothing is shown"
+    assert np.median(np.abs(image - expected)[crossing]) <= 2
+
+
+@pytest.mark.parametrize("y", [5.0, 15.0])
+def test_peeling_puts_a_translucent_wall_between_layers(scene, tools, y):
+    plotter, mapper, _ = scene(rows((0, 10, 20)), layers=4, line_width=6.0)
+    plotter.enable_depth_peeling(number_of_peels=20, occlusion_ratio=0.0)
+    wall = pv.Plane(center=(0, y, 0), direction=(0, 1, 0), i_size=300, j_size=300)
+    plotter.add_mesh(wall, color="white", opacity=0.4, lighting=False, reset_camera=False)
+    image = tools.picture(plotter, mapper)
+    order = [*COLOURS[:3]]
+    order.insert(1 if y < 10 else 2, (255, 255, 255))
+    assert np.abs(image[100, 60:180] - blended(order, 0.4)).max() <= 3
+
+
+def test_an_opaque_mesh_hides_the_layers_behind_it(scene, tools):
+    plotter, mapper, _ = scene(rows((0, 10, 20)), line_width=6.0)
+    wall = pv.Plane(center=(0, 15, 0), direction=(0, 1, 0), i_size=300, j_size=300)
+    plotter.add_mesh(wall, color="white", lighting=False, reset_camera=False)
+    image = tools.picture(plotter, mapper)
+    assert np.abs(image[100, 60:180] - blended(COLOURS[:2], 0.4, 255.0)).max() <= 3
+
+
+def test_values_along_a_line_are_those_of_its_layer(scene, tools):
+    """The line behind runs the other way: at a pixel its arc length is the rest of the front one's."""
+    x = np.linspace(-40, 40, 161)
+    lines = Streamlines.from_list([np.c_[x, 0 * x, 0 * x], np.c_[-x, 0 * x + 10, 0 * x]])
+    colouring = Colouring("point_value", source="arc_length", clim=(0.0, 80.0))
+    plotter, mapper, _ = scene(lines, colours=None, colouring=colouring, line_width=6.0, opacity=0.5)
+    image = tools.picture(plotter, mapper)[100, 60:180, 0].astype(float)
+    front = ((np.arange(60, 180) + 0.5) / 200 * 100 - 20) / 80 * 255  # 200 pixels are 100 mm
+    front -= front.mean() - 127.5
+    assert np.abs(image - (0.5 * front + 0.25 * (255 - front))).max() < 6
+
+
+def test_an_opaque_actor_pays_for_no_layer(scene, tools):
+    plotter, mapper, actor = scene(rows(), opacity=1.0, line_width=6.0)
+    opaque = tools.picture(plotter, mapper)
+    assert not holds_layers(mapper)
+    assert (opaque[100, 60:180] == COLOURS[0]).all()
+    actor.GetProperty().SetOpacity(0.4)
+    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
+    assert holds_layers(mapper)
+    actor.GetProperty().SetOpacity(1.0)
+    assert (tools.picture(plotter, mapper) == opaque).all()
+    assert not holds_layers(mapper)
+
+
+def test_without_layers_nothing_is_left_of_them(scene, tools):
+    plotter, mapper, actor = scene(rows(), layers=None, line_width=6.0)
+    before, installed = tools.picture(plotter, mapper), mapper._installed
+    assert mapper.GetInput().GetNumberOfPoints() == 6
+    mapper.set_extra("layers", Layers(5))
+    assert mapper.GetInput().GetNumberOfPoints() == 30
+    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS, 0.4)).max() <= 3
+    mapper.set_extra("layers", None)
+    assert (tools.picture(plotter, mapper) == before).all()
+    assert mapper._installed == installed
+    assert mapper.GetInput().GetNumberOfPoints() == 6
+    assert not holds_layers(mapper)
+    text = "".join(replacement.text for replacement in installed)
+    assert "Layer" not in text
+
+
+def test_other_lines_keep_their_layers(scene, tools):
+    plotter, mapper, _ = scene(rows(), line_width=6.0)
+    tools.picture(plotter, mapper)
+    mapper.set_fiblets(tools.fibres("engine", rows((5, 25, 45, 60, 61))).fiblets)
+    assert mapper.GetInput().GetNumberOfPoints() == 24
+    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
+
+
+def test_the_nearest_is_picked(scene, tools):
+    plotter, mapper, actor = scene(rows(), line_width=6.0)
+    tools.picture(plotter, mapper)
+    assert mapper.pick_at(120, 100)[0] == 0
+    # VTK's own selection draws the actor anew, and finds it where the nearest line is.
+    from vtkmodules.vtkRenderingCore import vtkPropPicker
+
+    picker = vtkPropPicker()
+    assert picker.Pick(120, 100, 0, plotter.renderer)
+    assert picker.GetActor() is actor
+    assert picker.GetPickPosition()[1] == pytest.approx(0.0, abs=1.0)
+    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
+
+
+def test_pieces_go_together():
+    assert layers_of([Layers(7)]) == 7
+    assert layers_of([]) == 1
+    for colour in ("colour_solid", "colour_point_value", "colour_streamline"):
+        features = with_layers(Layers().features | {"gbuffer", "normal", colour})
+        assert ("layers_value" in features) == (colour == "colour_point_value")
+        text = "".join(replacement.text for replacement in resolve.assemble(features))
+        assert "pvfiblets::" not in text
+    everything = frozenset(resolve.FEATURES) - {"colour_solid", "colour_streamline", "colour_orientation"}
+    assert resolve.assemble(everything)
+
+
+def test_the_proxy_keeps_its_bounds():
+    bounds = (-1, 2, -3, 4, -5, 6)
+    one, many = proxy_polydata(bounds), proxy_polydata(bounds, 5)
+    np.testing.assert_allclose(many.GetBounds(), one.GetBounds())
+    assert (many.GetNumberOfPoints(), many.GetNumberOfCells()) == (30, 10)
+    for i in range(30):
+        assert many.GetPoint(i) == one.GetPoint(i % 6)
+
+
+@pytest.mark.parametrize("count", [1, 65, 2.5, True])
+def test_a_number_of_layers_that_makes_no_sense(count):
+    with pytest.raises(ValueError, match="whole number from 2 to 64"):
+        Layers(count)
+
+
+@pytest.mark.parametrize("kind", ["tubes", "tube shading"])
+def test_every_layer_has_its_own_surface(scene, tools, kind):
+    """Crossing lines with bodies, each lit on its own: the crossing is made of both pictures."""
+    from pvfiblets.mappers.line_tubes import Tubes, TubeShading
+
+    extra = Tubes(4.0) if kind == "tubes" else TubeShading()
+    t = np.linspace(-40, 40, 161)
+    front, back = np.c_[t, 0 * t - 20, 0.3 * t], np.c_[0.2 * t, 0.2 * t + 20, t]
+    white = np.full((1, 3), 255, np.uint8)
+    alone = []
+    for line in (front, back):
+        plotter, mapper, _ = scene(
+            Streamlines.from_list([line]), lighting=True, opacity=1.0, layers=None, colours=white, line_width=14.0
+        )
+        mapper.set_extra("tubes", extra)
+        alone.append(tools.picture(plotter, mapper).astype(float))
+    two = Streamlines.from_list([front, back])
+    both, mapper, _ = scene(two, lighting=True, opacity=0.5, colours=white, line_width=14.0)
+    mapper.set_extra("tubes", extra)
+    image = tools.picture(both, mapper)
+    crossing = tools.covered(alone[0]) & tools.covered(alone[1])
+    assert crossing.sum() > 150
+    assert np.ptp(alone[1][crossing]) > 40, "lit flat: nothing is shown"
+    assert np.percentile(np.abs(image - 0.5 * alone[0] - 0.25 * alone[1])[crossing], 90) <= 4
+
+
+def test_both_kinds_of_bodies_at_once(scene, tools):
+    from pvfiblets.mappers.line_tubes import Tubes, TubeShading
+
+    plotter, mapper, _ = scene(rows(), line_width=6.0)
+    mapper.set_extra("tubes", Tubes(3.0))
+    mapper.set_extra("tube shading", TubeShading())
+    image = tools.picture(plotter, mapper)
+    assert np.abs(image[100, 70:170] - blended(COLOURS[:4], 0.4)).max() <= 3
+
+
+def test_a_halo_is_there_once(scene, tools):
+    """Around the front line a halo hides what is behind it, and it is blended with the background once."""
+    from pvfiblets.mappers.shading import Halos
+
+    plotter, mapper, _ = scene(rows((0, 10)), line_width=3.0)
+    mapper.set_extra("halo", Halos())
+    column = tools.picture(plotter, mapper)[90:112, 120].astype(float)
+    line = np.abs(column - blended(COLOURS[:2], 0.4)).max(axis=1) <= 3
+    halo = np.abs(column - 0.4 * 255).max(axis=1) <= 3
+    assert line.any()
+    assert halo.any()
+    assert (line | halo | (column == 0).all(axis=1)).all(), column

@@ -1,0 +1,212 @@
+"""Volumes in windows: cuts, subplots, selection, picking, and what changes while they are shown."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
+from vtkmodules.vtkRenderingCore import vtkHardwareSelector
+
+from pvfiblets.mappers import Colouring, VolumeMapper, windows
+from pvfiblets.mappers.volumes import volume_renderer
+from pvfiblets.volumes import RaycastVolume, Transfer
+from pvfiblets.volumes.options import RaycastOptions
+
+from .visible_volumes import (
+    HALF,
+    fog,
+    light,
+    look,
+    made,
+    middle,
+    over,
+    ramp,
+    through_table,
+    volume,
+    wall,
+)
+
+
+def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
+    mapper, actor = made(fog(), light())
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    plane = vtkPlane()
+    plane.SetNormal(0, 1, 0)
+    plane.SetOrigin(0, 6.0, 0)
+    mapper.AddClippingPlane(plane)
+    image = tools.picture(plotter, mapper)
+    assert np.abs(middle(image) - over(np.array(10.0), np.zeros(3))).max() <= 2.5
+    plane.SetNormal(1, 0, 0)
+    plane.SetOrigin(2.0, 0, 0)
+    mapper.RemoveAllClippingPlanes()
+    mapper.AddClippingPlane(plane)
+    columns = np.flatnonzero(tools.covered(tools.picture(plotter, mapper)).any(axis=0))
+    assert columns[0] == 130  # 2 mm right of the middle, 5 pixels a mm
+    assert columns[-1] == 199
+
+
+def test_subplots_end_their_own_rays(make_plotter, tools):
+    """One actor in two renderers, a mesh in one of them."""
+    mapper, actor = made(fog(), light())
+    plotter = make_plotter(shape=(1, 2), window_size=(400, 200))
+    for column in range(2):
+        plotter.subplot(0, column)
+        plotter.add_actor(actor, reset_camera=False)
+        if column:
+            plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
+        look(plotter)
+    for peeling in (False, True):
+        for renderer in plotter.renderers:
+            renderer.SetUseDepthPeeling(peeling)
+        image = tools.picture(plotter, mapper)
+        assert np.abs(image[100, 100] - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
+        assert np.abs(image[100, 300] - over(np.array(HALF), np.ones(3))).max() <= 2.5
+
+
+@pytest.mark.parametrize(
+    "casting", [light(), RaycastOptions("mip"), RaycastOptions("isosurface", (1.0,))], ids=lambda c: c.mode
+)
+def test_vtk_selects_volumes(make_plotter, tools, casting):
+    ball = volume(lambda p: 12.0 - np.linalg.norm(p, axis=-1), 17)
+    mapper, actor = made(ball, casting)
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    tools.picture(plotter, mapper)
+    for row, wanted in ((100, 1), (5, 0)):
+        selector = vtkHardwareSelector()
+        selector.SetRenderer(plotter.renderer)
+        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
+        selector.SetArea(118, row - 2, 122, row + 2)
+        assert selector.Select().GetNumberOfNodes() == wanted
+    mapper.raise_pending()
+
+
+@pytest.mark.parametrize("ssaa", [False, True])
+def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools, ssaa):
+    ball = volume(lambda p: 16.0 - np.linalg.norm(p, axis=-1), 33)
+    mapper, actor = made(ball, RaycastOptions("isosurface", (4.0,), filter="tricubic"))
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    if ssaa:
+        plotter.enable_anti_aliasing("ssaa")
+    assert mapper.pick_at(120, 100) is None
+    tools.picture(plotter, mapper)
+    for column, row in ((120, 100), (90, 80), (150, 130)):
+        hit = mapper.pick_at(column, row)
+        x, z = (column + 0.5 - 120) / 5, (row + 0.5 - 100) / 5
+        assert hit.position == pytest.approx([x, -np.sqrt(144 - x**2 - z**2), z], abs=0.15)
+        assert np.linalg.norm(hit.position) == pytest.approx(12.0, abs=0.02)
+        assert hit.voxel == tuple(np.round(hit.position + HALF).astype(int))
+        assert hit.value == 4.0
+    assert mapper.pick_at(120, 190) is None
+    assert mapper.pick_at(-5, 100) is None
+    assert mapper.pick_at(120, 170, tolerance=20) is not None
+    assert mapper.pick_at(120, 100, tolerance=-1) is None
+
+
+def test_light_is_picked_where_it_begins(make_plotter, tools):
+    mapper, actor = made(
+        volume(ramp), RaycastOptions("composite", transfer=Transfer([[1, 1, 1, 0], [1, 1, 1, 1]], (0, 1)))
+    )
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    tools.picture(plotter, mapper)
+    hit = mapper.pick_at(120, 100)
+    assert hit.position == pytest.approx([0.1, 0.0, 0.1], abs=0.5)  # a step
+    assert hit.value == pytest.approx(hit.voxel[1] - HALF)
+
+
+def test_modes_change_with_what_they_need(make_plotter, tools):
+    mapper, actor = made(fog(), light())
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    assert actor.GetForceTranslucent()
+    assert mapper.colouring.mode == "point_rgb"
+    first = tools.picture(plotter, mapper)
+    mapper.casting = RaycastOptions("mip")
+    assert mapper.colouring.mode == "solid"
+    assert middle(tools.picture(plotter, mapper)).tolist() == [255, 255, 255]
+    mapper.colouring = through_table((0.0, 2.0))
+    assert middle(tools.picture(plotter, mapper)).tolist() == [128, 128, 128]
+    mapper.casting = RaycastOptions("isosurface", (0.5,))
+    assert mapper.colouring.mode == "point_value"  # kept
+    assert not actor.GetForceTranslucent()
+    assert not tools.covered(tools.picture(plotter, mapper)).any()
+    mapper.casting = light()
+    assert (tools.picture(plotter, mapper) == first).all()
+    assert "tube_normal" not in mapper.explain()["features"]
+    twice = mapper.explain()["windows"][0]
+    assert (twice["voxels_total"], twice["features"]) == (125, ["VOLUME_LIGHT", "VOLUME_PREINTEGRATED"])
+
+
+def test_colours_that_a_mode_does_not_have_are_refused():
+    mapper, _ = made(fog(), light())
+    with pytest.raises(ValueError, match=r"of mode 'composite' is 'solid'; light has the colours of casting\.transfer"):
+        mapper.colouring = Colouring("solid")
+    with pytest.raises(ValueError, match="of mode 'mip' is 'orientation'; choose of"):
+        mapper.show(RaycastOptions("mip"), Colouring())
+    assert mapper.casting.mode == "composite"
+    with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgb'"):
+        VolumeMapper(fog(), RaycastOptions("mip"), colouring=Colouring("point_rgb", source="light"))
+
+
+def test_another_volume_takes_its_place(make_plotter, tools):
+    made_for = []
+
+    def factory(ctx, drawn, **options):
+        made_for.append(drawn)
+        return volume_renderer(ctx, drawn, **options)
+
+    first, second = fog(), RaycastVolume(np.ones((5, 5, 5), np.uint8), np.diag([2.0, 2.0, 2.0, 1.0]))
+    mapper, actor = made(first, light(), renderer_factory=factory)
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    tools.picture(plotter, mapper)
+    mapper.set_volume(second)
+    image = tools.covered(tools.picture(plotter, mapper))
+    assert made_for == [first, second]
+    assert mapper.volume is second
+    assert image.sum() == pytest.approx((8 * 5) ** 2, rel=0.06)
+    assert actor.GetBounds() == pytest.approx((0, 8, 0, 8, 0, 8))
+
+
+def test_gpu_memory_is_given_back(make_plotter, tools):
+    mapper, actor = made(fog(), light())
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    plotter.add_mesh(wall(0.0), reset_camera=False)
+    tools.picture(plotter, mapper)
+    mapper.release()
+    assert mapper.explain()["windows"] == []
+    tools.picture(plotter, mapper)
+    plotter.remove_actor(actor)
+    plotter.render()
+    assert not windows._contexts
+
+
+def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
+    def broken(ctx, drawn, **options):
+        raise OSError("no memory")
+
+    mapper, actor = made(fog(), light(), renderer_factory=broken)
+    plotter = look(make_plotter())
+    plotter.add_actor(actor)
+    plotter.show(auto_close=False)
+    with pytest.raises(OSError, match="no memory"):
+        mapper.raise_pending()
+
+
+def test_enlarged_pictures_of_subplots_are_whole(make_plotter, tools):
+    mapper, actor = made(fog(), light())
+    plotter = make_plotter(shape=(1, 2), window_size=(120, 60))
+    plotter.subplot(0, 1)
+    plotter.add_actor(actor, reset_camera=False)
+    plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
+    look(plotter)
+    tools.picture(plotter, mapper)
+    large = plotter.screenshot(return_img=True, scale=2)[..., :3]
+    mapper.raise_pending()
+    assert large.shape == (120, 240, 3)
+    assert not large[:, :118].any()
+    assert np.abs(large[60, 180] - over(np.array(HALF), np.ones(3))).max() <= 2.5

@@ -1,0 +1,373 @@
+"""What ``plotter.add_spline_tubes`` draws, and how its actor changes."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets as pf
+from pvfiblets.codec.compress import compress
+from pvfiblets.plotting import TubeActor
+from pvfiblets.plotting.tubes.scalars import find_tube_scalars, tube_lengths, with_built_in
+from pvfiblets.tubes.build import as_spline_tubes
+
+FLAT = {"lighting": False, "show_scalar_bar": False, "radius": 1.6}
+
+
+def mapped(cmap, fraction, n_colors=256):
+    """One colour of a matplotlib map, as VTK's table of ``n_colors`` has it."""
+    entry = min(int(fraction * n_colors), n_colors - 1)
+    return np.round(255 * np.array(mpl.colormaps[cmap].resampled(n_colors)(entry)[:3]))
+
+
+@pytest.fixture
+def front(plotter):
+    """Return a function: the picture from -y, 5 pixels a mm, z upwards."""
+
+    def shot():
+        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = 20.0
+        plotter.camera.clipping_range = 10, 300
+        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
+        return plotter.screenshot(None)[..., :3].astype(int)
+
+    return shot
+
+
+def at(picture, x, z):
+    """The pixel of a place in the plane of the picture."""
+    return picture[99 - int(np.floor(5 * z)), 100 + int(np.floor(5 * x))]
+
+
+def covered(picture):
+    return int((picture.max(axis=2) > 0).sum())
+
+
+@pytest.fixture
+def bars():
+    """Three bars along x, 10 mm apart in z, each of five points from -15 to 15."""
+    x = np.linspace(-15.0, 15.0, 5)
+    return [np.stack([x, 0 * x, 0 * x + z], axis=1) for z in (-10.0, 0.0, 10.0)]
+
+
+@pytest.mark.parametrize("kind", ["list", "polydata", "streamlines", "fiblets", "tubes", "segments", "trk"])
+def test_every_kind_of_source_gives_the_same_picture(plotter, bars, front, tmp_path, kind):
+    lines = pf.Streamlines.from_list(bars)
+    if kind == "trk":
+        source = str(tmp_path / "bars.trk")
+        pf.write(source, lines)
+    else:
+        source = {
+            "list": lambda: bars,
+            "polydata": lines.to_polydata,
+            "streamlines": lambda: lines,
+            "fiblets": lambda: compress(lines),
+            "tubes": lambda: as_spline_tubes(bars, radius=1.6),
+            "segments": lambda: (
+                np.concatenate(bars), np.array([[5 * k + i, 5 * k + i + 1] for k in range(3) for i in range(4)])
+            ),
+        }[kind]()  # fmt: skip
+    actor = plotter.add_spline_tubes(source, **({} if kind == "tubes" else {"radius": 1.6}), lighting=False)
+    assert isinstance(actor, TubeActor)
+    assert actor.tubes.n_tubes == 3
+    area = covered(front()) / 25
+    assert area == pytest.approx(3 * (30 * 3.2 + np.pi * 1.6**2), rel=0.02)
+
+
+def test_the_radius_varies_as_it_is_given(plotter, bars, front):
+    plotter.add_spline_tubes(bars[1], radius=[1.0, 2.0, 3.0, 4.0, 5.0], lighting=False)
+    rows = (front().max(axis=2) > 0).sum(axis=0)
+    x = (np.arange(200) + 0.5 - 100) / 5
+    # A ball's outline is ahead of its middle where the radius grows: half the height is r sqrt(1 + r'^2).
+    grown = (3.0 + x * 4 / 30) / np.sqrt(1 - (4 / 30) ** 2)
+    inside = np.abs(x) < 12
+    assert np.abs(rows[inside] / 10 - grown[inside]).max() < 0.2
+
+
+def test_given_tangents_lead_the_curve(plotter, front):
+    """A cubic from (-10, 0) to (10, 0) with tangents straight up and down reaches their quarter."""
+    ends, tangents = np.array([(-10.0, 0, -5), (10.0, 0, -5)]), np.array([(0, 0, 48), (0, 0, -48)])
+    plotter.add_spline_tubes(ends, tangents=tangents, radius=0.5, lighting=False)
+    picture = front()
+    assert at(picture, 0.0, -5 + 48 / 4).any()
+    assert not at(picture, 0.0, -5).any()
+    assert not at(picture, 0.0, -5 + 48 / 4 + 1).any()
+
+
+def test_colours_of_points_lines_and_geometry(plotter, bars, front):
+    lines = pf.Streamlines.from_list(bars)
+    mesh = pv.wrap(lines.to_polydata())
+    mesh.point_data["along"] = np.tile(np.linspace(0.0, 1.0, 5), 3)
+    mesh.cell_data["weight"] = [1.0, 2.0, 3.0]
+    actor = plotter.add_spline_tubes(mesh, scalars="along", cmap="viridis", **FLAT)
+    picture = front()
+    for x in (-13.0, -4.0, 3.1, 12.0):
+        assert np.abs(at(picture, x, 0.0) - mapped("viridis", (x + 0.1 + 15) / 30)).max() <= 4
+    assert actor.clim == (0.0, 1.0)
+    actor.scalars = "weight"
+    picture = front()
+    for z, share in ((-10, 0.0), (0, 0.5), (10, 1.0)):
+        assert np.abs(at(picture, 0.0, z) - mapped("viridis", share)).max() <= 1
+    actor.scalars = "orientation"
+    assert at(front(), 0.0, 0.0).tolist() == [255, 0, 0]
+    actor.scalars = np.array([[0, 0, 255], [255, 255, 0], [0, 255, 0]], np.uint8)
+    assert [at(front(), 0.0, z).tolist() for z in (-10, 0, 10)] == [[0, 0, 255], [255, 255, 0], [0, 255, 0]]
+    actor.color = "magenta"
+    assert at(front(), 0.0, 0.0).tolist() == [255, 0, 255]
+    assert actor.scalars is None
+
+
+def test_lengths_and_places_along_tubes(plotter, front):
+    angle = np.linspace(0.0, np.pi, 60)
+    arcs = [np.stack([r * np.cos(angle), 0 * angle, r * np.sin(angle)], axis=1) for r in (6.0, 12.0)]
+    actor = plotter.add_spline_tubes(arcs, scalars="arc_length", cmap="gray", **FLAT)
+    assert actor.clim == pytest.approx((0.0, 12 * np.pi), rel=1e-4)
+    assert tube_lengths(actor.tubes) == pytest.approx([6 * np.pi, 12 * np.pi], rel=1e-4)
+    picture = front()
+    for r in (6.0, 12.0):
+        for turn in (0.3, 1.0, 2.0, 2.8):
+            shade = at(picture, r * np.cos(turn), r * np.sin(turn))[0]
+            assert shade == pytest.approx(255 * r * turn / (12 * np.pi), abs=4)
+    actor.scalars = "length"
+    assert actor.clim == pytest.approx((6 * np.pi, 12 * np.pi), rel=1e-4)
+
+
+def test_a_node_that_tubes_share_is_a_place_along_each(plotter, front):
+    """A fork, and a ring that ends at the node where it begins: each has its own zero."""
+    mesh = pv.PolyData(
+        np.array([(-15.0, 0, 0), (0, 0, 0), (12, 0, 0), (0, 0, 12), (-6, 0, -6), (-12, 0, -12), (-6, 0, -18)]),
+        lines=[3, 0, 1, 2, 2, 1, 3, 5, 4, 5, 6, 5, 4],
+    )
+    tangents = np.array([(15.0, 0, 0), (15, 0, 0), (12, 0, 0), (0, 0, 12), (-6, 0, 0), (0, 0, -6), (6, 0, 0)])
+    actor = plotter.add_spline_tubes(
+        mesh, tangents=tangents, radius=0.5, scalars="arc_length", cmap="gray", clim=(0, 27), lighting=False,
+        show_scalar_bar=False,
+    )  # fmt: skip
+    measured = with_built_in(actor.tubes, "arc_length")
+    along, segments = measured.values["arc_length"].values, measured.segments
+    lengths = tube_lengths(actor.tubes)
+    assert lengths[0] == pytest.approx(27.0)
+    ends = along[segments]
+    assert ends[:3] == pytest.approx(np.array([(0, 15), (15, 27), (0, lengths[1])]), rel=1e-6)
+    assert (ends[3, 0], ends[-1, 1]) == pytest.approx((0.0, lengths[2]))
+    assert measured.points[segments[:3]].tolist() == mesh.points[[[0, 1], [1, 2], [1, 3]]].tolist()
+    picture = front()
+    assert at(picture, 0.0, 11.5)[0] == pytest.approx(255 * (lengths[1] - 0.4) / 27, abs=3)
+    assert at(picture, 6.0, 0.0)[0] == pytest.approx(255 * 21.1 / 27, abs=3)
+
+
+def test_the_radius_colours(plotter, bars, front):
+    actor = plotter.add_spline_tubes(
+        bars[1], radius=[1.0, 2.0, 3.0, 4.0, 5.0], scalars="radius", cmap="gray", lighting=False, show_scalar_bar=False
+    )
+    assert actor.clim == (1.0, 5.0)
+    picture = front()
+    for x in (-10.0, 0.0, 10.0):  # the ball of radius r that reaches farthest there lies r r' ahead
+        ball = (3.0 + (x + 0.1) * 4 / 30) / (1 - (4 / 30) ** 2)
+        assert at(picture, x, 0.0)[0] == pytest.approx(255 * (ball - 1) / 4, abs=4)
+
+
+def test_an_array_for_the_actors_own_nodes(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
+    actor.scalars = actor.tubes.points[:, 0]
+    actor.cmap = "plasma"
+    picture = front()
+    for x in (-12.0, -3.0, 5.0, 13.0):
+        assert np.abs(at(picture, x, 10.0) - mapped("plasma", (x + 0.1 + 15) / 30)).max() <= 4
+    red_to_blue = np.zeros((15, 4))
+    red_to_blue[:, 0], red_to_blue[:, 2] = np.tile(np.linspace(1, 0, 5), 3), np.tile(np.linspace(0, 1, 5), 3)
+    red_to_blue[:, 3] = 1.0
+    actor.scalars = red_to_blue
+    picture = front()
+    for x in (-9.0, 0.0, 9.0):
+        share = (x + 0.1 + 15) / 30
+        assert np.abs(at(picture, x, 0.0) - [255 * (1 - share), 0, 255 * share]).max() <= 4
+    with pytest.raises(ValueError, match="15 nodes or 3 tubes"):
+        actor.scalars = np.zeros(7)
+
+
+def test_colours_at_points_with_alpha_are_looked_through(plotter, bars, front):
+    wall = pv.Plane(center=(0, 5, 0), direction=(0, 1, 0), i_size=60, j_size=60)
+    plotter.add_mesh(wall, color="blue", lighting=False)
+    colours = np.tile([255, 0, 0, 128], (5, 1)).astype(np.uint8)
+    plotter.add_spline_tubes(bars[1], scalars=colours, **FLAT)
+    assert np.abs(at(front(), 0.0, 0.0) - [128, 0, 127]).max() <= 2
+
+
+def test_nan_and_values_outside_have_their_colours(plotter, bars, front):
+    actor = plotter.add_spline_tubes(
+        bars, scalars=np.array([np.nan, -5.0, 5.0]), clim=(0, 1), nan_color="magenta", below_color="cyan",
+        above_color="yellow", **FLAT,
+    )  # fmt: skip
+    picture = front()
+    assert [at(picture, 0.0, z).tolist() for z in (-10, 0, 10)] == [[255, 0, 255], [0, 255, 255], [255, 255, 0]]
+    actor.scalars = np.repeat([0.0, 1.0, np.nan], 5)
+    assert at(front(), 0.0, 10.0).tolist() == [255, 0, 255]
+
+
+def test_properties_take_effect_at_the_next_render(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars, color="lime", **FLAT)
+    whole = front()
+    actor.visibility = False
+    assert covered(front()) == 0
+    actor.visibility = True
+    actor.opacity = 0.5
+    assert np.abs(at(front(), 0.0, 0.0) - [0, 128, 0]).max() <= 1
+    actor.opacity = 1.0
+    actor.tubes = as_spline_tubes(bars[:2], radius=1.6)
+    assert covered(front()) == pytest.approx(covered(whole) * 2 / 3, rel=0.01)
+    actor.tubes = as_spline_tubes(bars, radius=1.6)
+    for silhouettes in ("boxes", "pulled-boxes", "rectangles"):
+        actor.silhouettes = silhouettes
+        assert (front() != whole).any(axis=2).mean() < 1e-3
+        assert actor.explain()["silhouettes"] == silhouettes
+    for solver in ("bisection", "illinois", "itp", "newton"):
+        actor.solver = solver
+        assert (front() != whole).any(axis=2).mean() < 1e-3
+        assert actor.explain()["solver"] == solver
+    actor.culling = None
+    assert (front() == whole).all()
+    actor.iterations = 25
+    front()
+    assert actor.explain()["iterations"] == 25
+    actor.tubes = as_spline_tubes(bars, radius=0.01)
+    thin = covered(front())
+    actor.min_width = 6
+    assert covered(front()) > 4 * thin
+
+
+def test_light_falls_on_tubes_as_on_vtks(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars[1], radius=4.0, color="white")
+    actor.prop.ambient, actor.prop.diffuse, actor.prop.specular = 0.1, 0.7, 0.5
+    actor.prop.specular_power = 20
+    plotter.remove_all_lights()
+    lamp = pv.Light(position=(0, -100, 100), focal_point=(0, 0, 0), light_type="scene light")
+    lamp.positional = False
+    plotter.add_light(lamp)
+    ours = front()
+    plotter.remove_actor(actor)
+    tube = pv.Cylinder(center=(0, 0, 0), direction=(1, 0, 0), radius=4.0, height=30, resolution=360, capping=False)
+    plotter.add_mesh(
+        tube, color="white", ambient=0.1, diffuse=0.7, specular=0.5, specular_power=20, smooth_shading=True
+    )
+    theirs = front()
+    assert np.abs(ours - theirs)[:, 60:140].max(axis=2).mean() < 1.0
+
+
+def test_effects_of_surfaces_and_a_way_back(plotter, bars, front):
+    actor = plotter.add_spline_tubes([*bars, bars[1] + (0, 4, 2.5)], color="white", **FLAT)
+    before = front()
+    actor.ambient_occlusion = {"radius": 5.0}
+    assert (front()[before.max(axis=2) > 0] < 250).any()
+    actor.ambient_occlusion = False
+    actor.depth_cue = {"color": "black", "strength": 1.0, "range": (90.0, 110.0)}
+    cued = front()
+    assert at(cued, 0.0, 0.0)[0] > at(cued, 0.0, 2.9)[0] > 0
+    actor.depth_cue = False
+    actor.silhouette = {"color": "red", "width": 3, "tubes": [1]}
+    picture = front()
+    assert at(picture, 0.0, -1.8).tolist() == [255, 0, 0]
+    assert at(picture, 0.0, -8.2).tolist() == [0, 0, 0]
+    actor.silhouette = {"tubes": []}
+    assert (front() == before).all()
+    actor.silhouette = True
+    assert at(front(), 0.0, -8.2).tolist() == [255, 255, 255]
+    actor.silhouette = False
+    assert (front() == before).all()
+
+
+@pytest.mark.parametrize("wanted", [3, {"colour": "red"}, {"width": 99}, {"tubes": [7]}])
+def test_a_silhouette_that_is_none_is_refused(plotter, bars, wanted):
+    actor = plotter.add_spline_tubes(bars, radius=1.0)
+    with pytest.raises((ValueError, IndexError), match="silhouette"):
+        actor.silhouette = wanted
+    assert actor.silhouette is False
+
+
+@pytest.mark.parametrize("name", ["illuminated", "tube_shading", "tube_radius", "line_width", "halos"])
+def test_settings_of_lines_say_what_to_use(plotter, bars, name):
+    actor = plotter.add_spline_tubes(bars, radius=1.0)
+    assert not hasattr(actor, name)
+    with pytest.raises(AttributeError, match=f"{name} is for lines"):
+        setattr(actor, name, True)
+
+
+def test_planes_of_the_mapper_clip(plotter, bars, front):
+    from vtkmodules.vtkCommonDataModel import vtkPlane
+
+    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
+    whole = front()
+    plane = vtkPlane()
+    plane.SetNormal(0, 0, 1)
+    plane.SetOrigin(0, 0, 5)
+    actor.mapper.AddClippingPlane(plane)
+    cut = front()
+    assert (cut[:75] == whole[:75]).all()
+    assert not cut[75:].any()
+
+
+def test_places_are_picked(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
+    assert actor.pick_at(100, 100) is None
+    front()
+    segment, t = actor.pick_at(100 + 5 * 9, 150)
+    assert actor.tubes.tubes[segment] == 2
+    assert actor.tubes.segments[segment].tolist() == [13, 14]
+    assert t == pytest.approx((9.1 - 7.5) / 7.5, abs=0.01)
+    assert actor.pick_at(100, 125) is None
+
+
+def test_a_copy_draws_the_same_and_is_another(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars, scalars=np.arange(15.0), solver="itp", min_width=2, **FLAT)
+    actor.silhouette = True
+    actor.user_matrix = np.diag([1.0, 1.0, 1.2, 1.0])
+    before = front()
+    twin = actor.copy()
+    assert (twin.solver, twin.min_width, twin.silhouettes) == ("itp", 2.0, "auto")
+    plotter.remove_actor(actor)
+    plotter.add_actor(twin, reset_camera=False)
+    assert (front() == before).all()
+    twin.opacity = 0.25
+    assert actor.opacity == 1.0
+
+
+def test_a_refused_change_leaves_the_actor_as_it_was(plotter, bars, front):
+    actor = plotter.add_spline_tubes(bars, scalars=np.array([0.0, 1.0, 2.0]), **FLAT)
+    before = front()
+    for name, value in (("clim", (3, 1)), ("n_colors", 0), ("solver", "luck"), ("silhouettes", "x"), ("min_width", -1),
+                        ("iterations", 0)):  # fmt: skip
+        with pytest.raises(ValueError, match=name):
+            setattr(actor, name, value)
+    with pytest.raises(KeyError, match=r"no array 'fa'.*'arc_length'"):
+        actor.scalars = "fa"
+    with pytest.raises(AttributeError):
+        actor.colour = "red"
+    assert (front() == before).all()
+
+
+def test_numbers_beyond_float32_and_infinite_ones_are_drawn(plotter, bars, front):
+    numbers = np.array([0.0, 1e300, -1e300, np.inf, -np.inf])
+    actor = plotter.add_spline_tubes(bars[1], scalars=numbers, nan_color="lime", **FLAT)
+    assert actor.clim == (-1e300, 1e300)
+    assert covered(front()) > 100
+    assert at(front(), 12.0, 0.0).tolist() == [0, 255, 0]
+
+
+def test_scalars_with_tubes_that_are_made_already(bars):
+    tubes = as_spline_tubes(bars, radius=1.0)
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_spline_tubes(tubes, scalars=np.arange(15.0))
+    assert actor.clim == (0.0, 14.0)
+    assert tubes.values == {}
+    with pytest.raises(TypeError, match="with them came radius"):
+        plotter.add_spline_tubes(tubes, radius=2.0)
+    plotter.close()
+
+
+def test_slopes_of_an_array_follow_straight_values(bars):
+    actor = TubeActor(as_spline_tubes(bars, radius=1.0), scalars=np.tile(np.linspace(0, 6, 5), 3))
+    assert actor.tubes.values["Data"].slopes == pytest.approx(np.full(15, 6 / 30))
+    assert find_tube_scalars(actor.tubes, "Data").range == (0.0, 6.0)

@@ -1,0 +1,446 @@
+"""PyVista's conventions hold for ``plotter.add_raycast_volume``, its settings are live, and bad input is refused."""
+
+from __future__ import annotations
+
+import gc
+import inspect
+import subprocess
+import sys
+import weakref
+from importlib.metadata import entry_points
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets.plotting.volumes.component  # noqa: F401 - for environments that were installed before it was there
+from pvfiblets.plotting.volumes.opacity import opacities, value_limits
+
+X = np.linspace(-10.0, 10.0, 21)
+AT = {"spacing": 1.0, "origin": (-10.0, -10.0, -10.0)}
+BALL = (10.0 - np.sqrt(X[:, None, None] ** 2 + X[:, None] ** 2 + X**2)).astype(np.float32)
+FOG = np.ones((5, 5, 5), np.uint8)
+FOG_AT = {"spacing": 5.0, "origin": (-10.0, -10.0, -10.0)}
+
+
+def look(plotter):
+    """From -y, parallel: 200 pixels are 40 mm."""
+    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = 20.0
+    plotter.camera.clipping_range = 20, 200
+
+
+def shot(plotter):
+    """Render, and return the picture: PyVista's screenshot alone shows the last render."""
+    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
+    return plotter.screenshot(None).astype(float)
+
+
+def middle(plotter):
+    return shot(plotter)[100, 100]
+
+
+def shown(plotter, source=BALL, **arguments):
+    place = FOG_AT if source is FOG else AT
+    actor = plotter.add_raycast_volume(source, **{"show_scalar_bar": False, **place, **arguments})
+    look(plotter)
+    return actor
+
+
+def image():
+    grid = pv.ImageData(dimensions=BALL.shape, spacing=(1, 1, 1), origin=(-10, -10, -10))
+    grid["density"] = BALL.ravel(order="F")
+    return grid
+
+
+def test_no_import_of_the_package_is_needed():
+    if "add_raycast_volume" not in entry_points(group="pyvista.plotter_components").names:
+        pytest.skip("the package was installed before it had these entry points; install it again")
+    code = (
+        "import numpy as np, pyvista as pv\n"
+        "pl = pv.Plotter(off_screen=True)\n"
+        "assert 'add_raycast_volume' in dir(pl)\n"
+        "print(type(pl.add_raycast_volume(np.eye(3)[None] + np.zeros((3, 1, 1)))).__name__, len(pl.raycast_volumes))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["VolumeActor", "1"], done.stderr
+
+
+def test_the_arguments_are_add_volumes_where_both_have_them(plotter):
+    ours = inspect.signature(plotter.add_raycast_volume).parameters
+    theirs = inspect.signature(pv.Plotter.add_volume).parameters
+    shared = set(ours) & set(theirs)
+    assert {"scalars", "cmap", "clim", "opacity", "n_colors", "opacity_unit_distance", "name", "render"} <= shared
+    assert all(parameter.kind is parameter.KEYWORD_ONLY for name, parameter in ours.items() if name != "source")
+
+
+def test_light_looks_as_vtks(plotter):
+    """The same transfer function, unit and place through ``add_volume``, sampled finely."""
+    arguments = {"cmap": "viridis", "clim": (0, 10), "opacity": "sigmoid_5", "opacity_unit_distance": 5.0}
+    actor = plotter.add_raycast_volume(image(), show_scalar_bar=False, **arguments)
+    look(plotter)
+    ours = shot(plotter)
+    plotter.remove_actor(actor)
+    other = plotter.add_volume(image(), show_scalar_bar=False, shade=False, **arguments)
+    other.prop.interpolation_type = "linear"
+    other.mapper.SetAutoAdjustSampleDistances(False)
+    other.mapper.SetSampleDistance(0.1)
+    look(plotter)
+    theirs = shot(plotter)
+    there = (ours.max(-1) > 8) & (theirs.max(-1) > 8)
+    assert there.sum() > 3000
+    assert np.median(np.abs(ours - theirs)[there]) <= 2
+    assert (np.abs(ours - theirs)[there] <= 8).mean() > 0.97
+
+
+@pytest.mark.parametrize("integrator", ["preintegrated", "exponential", "simpson"])
+def test_opacity_is_of_its_unit_whatever_the_step(plotter, integrator):
+    actor = shown(plotter, FOG, cmap=["white"], opacity=0.3, clim=(0, 2), integrator=integrator)
+    for unit, step in ((5.0, 0.5), (5.0, 0.1), (20.0, 0.5), (20.0, 1.0)):
+        actor.opacity_unit_distance, actor.step = unit, step
+        assert middle(plotter) == pytest.approx([255 * (1 - 0.7 ** (20.0 / unit))] * 3, abs=1.5)
+    actor.opacity_unit_distance = None
+    assert actor.opacity_unit_distance == 5.0
+
+
+def test_colours_and_opacities_are_those_of_the_value(plotter):
+    actor = shown(plotter, FOG, cmap="viridis", clim=(0, 4), opacity=[0, 0, 1, 0, 0], mode="mip")
+    lut = pv.LookupTable("viridis", 256)
+    colour = lut.values[64, :3] * 1.0
+    alpha = np.interp(64 / 255, np.linspace(0, 1, 5), [0, 0, 1, 0, 0])
+    assert middle(plotter) == pytest.approx(colour * alpha, abs=2)
+    actor.opacity = [1, 1]
+    assert middle(plotter) == pytest.approx(colour, abs=1)
+    actor.cmap = "gray"
+    assert middle(plotter) == pytest.approx([64] * 3, abs=1)
+    actor.clim = 0, 2
+    assert middle(plotter) == pytest.approx([128] * 3, abs=1)
+    assert actor.clim == (0.0, 2.0)
+    actor.color = "red"
+    assert middle(plotter).tolist() == [255, 0, 0]
+    assert actor.color == pv.Color("red")
+    actor.opacity = 0.5
+    assert middle(plotter) == pytest.approx([128, 0, 0], abs=1)
+    actor.color = None
+    assert middle(plotter) == pytest.approx([64] * 3, abs=1)
+
+
+@pytest.mark.parametrize("mode", ["composite", "mip"])
+def test_lists_of_a_few_colours_keep_their_bounds(plotter, mode):
+    """Red up to 2 and lime from there, as a scalar bar of two colours has them; opacities are as fine as ever."""
+    arguments = {"cmap": ["red", "lime"], "clim": (0, 4), "opacity_unit_distance": 20.0, "mode": mode}
+    grown = [0.5, 0.4, 0.3, 0.2, 0.1]
+    for fog, colour, alpha in ((FOG, (1, 0, 0), 0.4), (np.uint8(3) * FOG, (0, 1, 0), 0.2)):
+        plotter.clear_actors()
+        plotter.add_raycast_volume(fog, opacity=grown, show_scalar_bar=False, **FOG_AT, **arguments)
+        look(plotter)
+        assert middle(plotter) == pytest.approx(255 * alpha * np.array(colour), abs=1.5)
+
+
+def test_surfaces_have_values_that_change(plotter):
+    actor = shown(plotter, mode="isosurface", lighting=False, cmap="gray", clim=(0, 10))
+    assert actor.values == (pytest.approx(np.mean([BALL.min(), BALL.max()]), abs=1e-6),)
+    for value in (2.0, [6.0, 8.0], np.float32(4)):
+        actor.values = value
+        least = np.min(value)
+        picture = shot(plotter)
+        assert picture[100, 100] == pytest.approx([255 * least / 10] * 3, abs=1)
+        area = (picture.max(-1) > 0).sum() / 25
+        assert area == pytest.approx(np.pi * (10 - least) ** 2, rel=0.02)
+        hit = actor.pick_at(100, 100)
+        assert hit.position == pytest.approx([0.1, -(10 - least), 0.1], abs=0.05)
+        assert hit.value == least
+    actor.color, actor.opacity = "lime", 0.5
+    assert middle(plotter) == pytest.approx([0, 128, 0], abs=1)
+    actor.mode = "mip"
+    assert actor.prop.opacity == 1.0
+    assert middle(plotter) == pytest.approx([0, 128, 0], abs=1)  # half as opaque as a pixel now
+    actor.mode, actor.opacity = "isosurface", "linear"
+    assert middle(plotter) == pytest.approx([0, 255, 0], abs=1)
+
+
+def test_only_surfaces_are_lit(plotter):
+    actor = shown(plotter, mode="isosurface", color="white", values=5.0)
+    lit = shot(plotter)[100, 75:126, 0]
+    assert lit[25] > lit[5] + 20  # a ball darkens towards its rim
+    actor.mode = "mip"
+    assert not actor.prop.lighting
+    assert actor.lighting
+    actor.mode = "isosurface"
+    assert (shot(plotter)[100, 75:126, 0] == lit).all()
+    actor.lighting = False
+    assert (shot(plotter)[100, 76:125, 0] == 255).all()
+
+
+def test_thresholds_box_and_smoothing_are_live(plotter):
+    actor = shown(plotter, mode="mip", cmap="gray", clim=(0, 10), opacity=1.0, step=0.1)
+    assert middle(plotter) == pytest.approx([253] * 3, abs=3)
+    actor.thresholds = None, 6.0
+    assert middle(plotter) == pytest.approx([153] * 3, abs=4)
+    actor.thresholds = 7.0
+    picture = shot(plotter)
+    assert (picture.max(-1) > 0).sum() / 25 == pytest.approx(np.pi * 9.0, rel=0.03)
+    actor.thresholds = None
+    actor.box = 10, 20, 0, 20, 0, 14
+    rows, columns = np.nonzero(shot(plotter).max(-1))
+    assert (columns.min(), rows.min()) == (100, 80)  # 0 mm, and 4 mm up, 5 pixels a mm
+    actor.box = None
+    actor.smooth = 2.0
+    assert middle(plotter).max() < 240  # the tip of the cone is gone
+    assert actor.volume.value_range[1] == 10.0
+    actor.smooth = None
+    assert middle(plotter) == pytest.approx([253] * 3, abs=3)
+
+
+def test_another_volume_may_be_shown(plotter):
+    actor = shown(plotter, FOG, mode="mip", cmap="gray", opacity=1.0)
+    assert actor.clim == (1.0, 2.0)  # the range of one value ends beside it
+    assert middle(plotter).max() == 0.0
+    actor.volume = actor.volume.__class__(FOG * np.uint8(3) - np.indices(FOG.shape)[0].astype(np.uint8) % 2)
+    assert actor.clim == (2.0, 3.0)
+    with pytest.raises(TypeError, match="RaycastVolume"):
+        actor.volume = FOG
+
+
+def test_pyvistas_images_bring_names_and_bars(plotter):
+    grid = image()
+    grid["other"] = np.arange(grid.n_points, dtype=float)
+    actor = plotter.add_raycast_volume(grid, scalars="density", scalar_bar_args={"n_labels": 3})
+    assert list(plotter.scalar_bars.keys()) == ["density"]
+    assert actor.clim == pytest.approx((BALL.min(), BALL.max()))
+    plotter.update_scalar_bar_range((1, 5), "density")
+    assert actor.clim == (1.0, 5.0)
+    assert actor.casting.transfer.clim == (1.0, 5.0)
+    actor.color = "red"
+    assert not plotter.scalar_bars
+    actor.color = None
+    assert list(plotter.scalar_bars.keys()) == ["density"]
+    plotter.remove_actor(actor)
+    assert not plotter.scalar_bars
+
+
+def test_the_same_name_replaces_and_memory_is_given_back(plotter):
+    first = shown(plotter, name="volume")
+    shot(plotter)
+    assert first.explain()["gpu_bytes"] > BALL.nbytes
+    second = shown(plotter, name="volume", mode="mip")
+    assert list(plotter.raycast_volumes) == [second]
+    assert first.explain()["gpu_bytes"] == 0
+    shot(plotter)
+    told = plotter.raycast_volumes.explain()[0]
+    assert (told["name"], told["mode"], told["voxels_total"], told["nodes"]) == ("volume", "mip", BALL.size, 36)
+    plotter.remove_actor("volume")
+    assert len(plotter.raycast_volumes) == 0
+    assert second.explain()["buffers"] == []
+
+
+def test_skipped_parts_are_told_and_change_nothing(plotter):
+    corner = np.zeros((33, 33, 33), np.float32)
+    corner[2:6, 2:6, 2:6] = 1.0
+    actor = shown(plotter, corner, mode="isosurface", values=0.5)
+    one = shot(plotter)
+    assert actor.explain()["skipped"] > 0.9
+    actor.octree = False
+    assert (shot(plotter) == one).all()
+    assert actor.explain()["skipped"] == 0.0
+
+
+def test_matrices_move_it(plotter):
+    actor = shown(plotter, FOG, mode="mip", opacity=1.0, color="white", user_matrix=np.diag([0.5, 1, 1, 1]))
+    wide = shot(plotter).max(-1) > 0
+    assert wide[100].sum() == 50
+    actor.position = (0, 0, 5)
+    assert np.flatnonzero((shot(plotter).max(-1) > 0)[:, 100])[0] == 25
+    assert actor.bounds == pytest.approx((-5, 5, -10, 10, -5, 15))
+
+
+def test_tubes_and_volumes_meet_in_one_picture(plotter):
+    """A tube of 2 mm along x within fog: 8 mm of fog are before it."""
+    shown(plotter, FOG, cmap=["white"], opacity=0.1, opacity_unit_distance=1.0, clim=(0, 2))
+    plotter.add_spline_tubes([[(-20, 0, 0), (0, 0, 0), (20, 0, 0)]], radius=2.0, color="red", lighting=False)
+    look(plotter)
+    left = 0.9**8.0
+    assert middle(plotter) == pytest.approx([255, 255 * (1 - left), 255 * (1 - left)], abs=3)
+    assert shot(plotter)[70, 100] == pytest.approx([255 * (1 - 0.9**20.0)] * 3, abs=2)
+
+
+def test_a_copy_looks_the_same(plotter):
+    actor = shown(plotter, cmap="viridis", clim=(0, 9), opacity=[0, 0.2], thresholds=(1, None), step=0.3, smooth=0.5)
+    actor.depth_cue = True
+    picture = shot(plotter)
+    twin = actor.copy()
+    plotter.remove_actor(actor)
+    plotter.add_actor(twin, reset_camera=False)
+    assert (shot(plotter) == picture).all()
+    twin._mapper.raise_pending()
+    assert twin.casting.step == 0.3
+    twin.release()
+
+
+def test_shading_effects_are_of_surfaces_and_fading_of_all(plotter):
+    actor = shown(plotter, mode="mip", opacity=1.0, cmap="gray", clim=(0, 10))
+    plain = shot(plotter)
+    actor.ambient_occlusion = True
+    assert (shot(plotter) == plain).all()
+    assert actor.ambient_occlusion["samples"] == 16
+    actor.mode = "isosurface"
+    assert "ambient_occlusion" in actor.explain()["features"]
+    assert shot(plotter).any()
+    actor.mode, actor.ambient_occlusion = "mip", False
+    actor.depth_cue = {"strength": 0.5, "color": "black", "range": (90.0, 110.0)}
+    faded = shot(plotter)[100, 100]  # the middle of the ball lies half way
+    assert faded == pytest.approx(0.75 * plain[100, 100], abs=3)
+    for mode in ("composite", "local-mip"):
+        actor.mode = mode
+        assert shot(plotter).any()
+
+
+def test_labels_stand_in_the_legend(plotter):
+    shown(plotter, color="red", label="brain")
+    plotter.add_legend()
+    assert plotter.renderer._labels
+    assert shot(plotter).any()
+
+
+@pytest.mark.parametrize(
+    ("source", "arguments", "error", "told"),
+    [
+        (np.zeros((4, 4)), {}, ValueError, r"shape \(4, 4\)"),
+        (np.zeros((4, 4, 1)), {}, ValueError, "2-D image"),
+        (np.zeros((0, 4, 4)), {}, ValueError, "no voxels"),
+        (np.zeros((4, 4, 4, 3)), {}, ValueError, r"shape \(4, 4, 4, 3\)"),
+        (np.zeros((4, 4, 4), complex), {}, ValueError, "complex"),
+        (object(), {}, TypeError, "object"),
+        (BALL, {"affine": np.zeros((4, 4))}, ValueError, "affine"),
+        (BALL, {"affine": np.diag([1, 0, 1, 1])}, ValueError, "flattens space"),
+        (BALL, {"spacing": (1, 0, 1)}, ValueError, "spacing"),
+        (BALL, {"clim": (5, 1)}, ValueError, r"clim is \(5, 1\)"),
+        (BALL, {"clim": (3, 3)}, ValueError, r"clim=\(3.0, 3.0\)"),
+        (BALL, {"clim": (np.nan, 1)}, ValueError, "clim"),
+        (BALL, {"mode": "rays"}, ValueError, "mode is 'rays'; choose one of"),
+        (BALL, {"opacity": [0, 1.5]}, ValueError, "opacity is 1.5 at place 1; give numbers from 0 to 1"),
+        (BALL, {"opacity": [-0.1, 1]}, ValueError, "opacity is -0.1"),
+        (BALL, {"opacity": [np.nan]}, ValueError, "opacity is nan"),
+        (BALL, {"opacity": 2.0}, ValueError, "opacity is 2"),
+        (BALL, {"opacity": "steep"}, ValueError, "steep"),
+        (BALL, {"opacity": []}, ValueError, "opacity has the shape"),
+        (BALL, {"opacity": np.zeros((3, 4))}, ValueError, r"opacity has the shape \(3, 4\)"),
+        (BALL, {"opacity": np.zeros(300)}, ValueError, "300 entries for n_colors=256"),
+        (BALL, {"opacity": {}}, TypeError, "opacity is a dict"),
+        (BALL, {"opacity_unit_distance": 0.0}, ValueError, "unit of opacity is 0 mm"),
+        (BALL, {"n_colors": 0}, ValueError, "n_colors is 0"),
+        (BALL, {"n_colors": 2000}, ValueError, "n_colors is 2000; .* integrator='exponential'"),
+        (BALL, {"cmap": "no such map"}, ValueError, "no such map"),
+        (BALL, {"values": [np.nan], "mode": "isosurface"}, ValueError, "values of isosurfaces"),
+        (BALL, {"values": [], "mode": "isosurface"}, ValueError, "1 to 8 finite numbers"),
+        (BALL, {"values": np.arange(9), "mode": "isosurface"}, ValueError, "1 to 8 finite numbers"),
+        (BALL, {"values": "middle"}, ValueError, "values is 'middle'"),
+        (BALL, {"thresholds": (2, 1)}, ValueError, "give the lower one first"),
+        (BALL, {"thresholds": (1, 2, 3)}, ValueError, "thresholds is"),
+        (BALL, {"peak": np.nan, "mode": "local-mip"}, ValueError, "threshold is nan"),
+        (BALL, {"step": 0.0}, ValueError, "step is 0"),
+        (BALL, {"filter": "cubic"}, ValueError, "filter is 'cubic'"),
+        (BALL, {"refine": "brent"}, ValueError, "refine is 'brent'"),
+        (BALL, {"integrator": "euler"}, ValueError, "integrator is 'euler'"),
+        (BALL, {"iterations": 0}, ValueError, "iterations is 0"),
+        (BALL, {"box": (0, 1, 0, 1)}, ValueError, "box is"),
+        (BALL, {"smooth": -1.0}, ValueError, "sigma"),
+        (BALL, {"label": 3}, TypeError, "label"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused_in_words(plotter, source, arguments, error, told):
+    with pytest.raises(error, match=told):
+        plotter.add_raycast_volume(source, **arguments)
+    assert len(plotter.raycast_volumes) == 0
+    assert not plotter.actors
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("mode", "rays"), ("clim", (5, 1)), ("clim", (3, 3)), ("opacity", [2]), ("opacity", "steep"), ("step", -1),
+        ("thresholds", (2, 1)), ("cmap", "no such map"), ("n_colors", 2000), ("smooth", -1), ("box", (1,)),
+        ("opacity_unit_distance", -1), ("color", "no such colour"), ("values", "middle"), ("filter", "cubic"),
+    ],
+)  # fmt: skip
+def test_a_refused_change_leaves_all_as_it_was(name, value):
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_raycast_volume(BALL, clim=(0, 8), opacity="sigmoid", **AT)
+    before = actor.casting, getattr(actor, name), np.array(actor.lookup_table.values), actor.clim
+    with pytest.raises(ValueError, match=".+"):
+        setattr(actor, name, value)
+    assert actor.casting is before[0]
+    assert actor._mapper.casting is before[0]
+    assert np.all(getattr(actor, name) == before[1])
+    assert (np.array(actor.lookup_table.values) == before[2]).all()
+    assert actor.clim == before[3]
+    plotter.close()
+
+
+def test_settings_that_others_have_are_refused_by_name():
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_raycast_volume(BALL)
+    for name in ("log_scale", "nan_color", "below_color", "above_color"):
+        with pytest.raises(AttributeError, match=f"have no {name}: "):
+            setattr(actor, name, 1)
+    assert repr(actor).endswith("21 x 21 x 21 voxels, composite>")
+    plotter.close()
+
+
+def test_an_actor_is_freed_with_its_plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=(50, 50))
+    gone = weakref.ref(plotter.add_raycast_volume(BALL))
+    plotter.screenshot(None)
+    plotter.close()
+    plotter.deep_clean()
+    del plotter
+    gc.collect()
+    assert gone() is None
+
+
+def test_opacities_are_pyvistas_where_they_have_a_name():
+    for name in ("linear", "geom_r", "sigmoid_8", "foreground"):
+        assert (opacities(name, 64) * 255.0 == pv.opacity_transfer_function(name, 64)).all()
+    table = pv.opacity_transfer_function("sigmoid", 64)
+    assert (opacities(table, 64) == table / 255.0).all()
+    assert opacities([0, 1, 0], 5).tolist() == [0.0, 0.5, 1.0, 0.5, 0.0]
+    assert opacities(0.25, 3).tolist() == [0.25] * 3
+    assert opacities([True, False], 2).tolist() == [1.0, 0.0]
+    assert value_limits((None, 3)) == (-np.inf, 3.0)
+    assert value_limits(np.float32(2)) == (2.0, np.inf)
+
+
+def test_the_octree_and_what_it_costs_are_told(plotter):
+    actor = plotter.add_raycast_volume(np.random.default_rng(0).random((40, 33, 48)).astype(np.float32), values=0.5)
+    assert actor.explain()["octree"] is None
+    plotter.show(auto_close=False)
+    octree = actor.explain()["octree"]
+    assert octree["bytes"] == pytest.approx(octree["share"] * 40 * 33 * 48 * 4)
+    assert octree["share"] <= 0.05
+    assert octree["ms"] > 0
+
+
+def test_sparse_rays_are_a_setting(plotter):
+    actor = plotter.add_raycast_volume(np.zeros((8, 8, 8), np.float32), sparse=2, sparse_threshold=0.1)
+    assert (actor.casting.sparse, actor.casting.sparse_threshold) == (2, 0.1)
+    actor.sparse = 4
+    assert actor.copy().sparse == 4
+    with pytest.raises(ValueError, match="sparse is 3"):
+        actor.sparse = 3
+    assert actor.sparse == 4
+
+
+def test_a_table_is_integrated_once_though_the_mode_changes(plotter, monkeypatch):
+    from pvfiblets.volumes import preintegration
+
+    done = []
+    plain = preintegration.preintegrate
+    monkeypatch.setattr(preintegration, "preintegrate", lambda *given: done.append(given) or plain(*given))
+    actor = plotter.add_raycast_volume(np.random.default_rng(0).random((8, 8, 8)), opacity=[0, 0.123], n_colors=32)
+    plotter.show(auto_close=False)
+    for mode in ("mip", "composite", "isosurface", "composite"):
+        actor.mode = mode
+        plotter.render()
+    # Once for steps, and once for their parts, as noise bends everywhere.
+    assert [units for _, units in done] == pytest.approx([0.5, 0.125])

@@ -1,0 +1,132 @@
+"""Volumes are drawn coarser while an interactor moves the camera, and as they are set when it rests."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.volumes.interactive_quality import InteractiveQuality
+from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.transfer import Transfer
+
+
+def ball(n=24):
+    x = np.linspace(-1, 1, n)
+    return np.clip(1 - np.sqrt(x[:, None, None] ** 2 + x[:, None] ** 2 + x**2), 0, 1).astype(np.float32)
+
+
+@pytest.fixture
+def watched(plotter):
+    """A plotter, its actor, and what each of its pictures was cast by."""
+    actor = plotter.add_raycast_volume(ball(), mode="isosurface", values=0.4)
+    plotter.show(auto_close=False, interactive=False)
+    shown = []
+    plain = actor._mapper._style
+
+    def style(renderer, viewport):
+        made = plain(renderer, viewport)
+        shown.append(made.casting)
+        return made
+
+    actor._mapper._style = style
+    return plotter, actor, shown
+
+
+def drag(plotter, *, left=True):
+    """Press, move, and let go, as a window system tells it: pictures are drawn by VTK itself."""
+    interactor = plotter.iren.interactor
+    interactor.SetEventInformation(100, 100)
+    interactor.LeftButtonPressEvent()
+    for x in (110, 120):
+        interactor.SetEventInformation(x, 105)
+        interactor.MouseMoveEvent()
+    if left:
+        interactor.LeftButtonReleaseEvent()
+
+
+STYLES = ["enable_trackball_style", "enable_terrain_style"]
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_coarser_in_motion_and_whole_at_rest(watched, style):
+    plotter, actor, shown = watched
+    getattr(plotter, style)()
+    plotter.render()
+    assert shown.pop() == actor.casting
+    shown.clear()
+    drag(plotter, left=False)
+    plotter.render()
+    assert {(casting.step, casting.sparse) for casting in shown} == {(1.0, 2)}
+    shown.clear()
+    plotter.iren.interactor.LeftButtonReleaseEvent()
+    assert [casting == actor.casting for casting in shown] == [True]  # by itself, once
+    plotter.render()
+    assert shown[-1] == actor.casting
+
+
+def test_the_picture_at_rest_is_that_before(watched):
+    plotter, _, _ = watched
+    plotter.enable_trackball_style()
+    position = plotter.camera_position
+    before = plotter.screenshot(return_img=True)
+    drag(plotter)
+    plotter.camera_position = position
+    after = plotter.screenshot(return_img=True)
+    assert (np.abs(after.astype(int) - before).max(axis=-1) > 3).mean() < 2e-3  # the clipping range is another
+
+
+def test_quality_1_switches_it_off(watched):
+    plotter, actor, shown = watched
+    actor.interactive_quality = 1
+    shown.clear()
+    drag(plotter)
+    assert len(shown) >= 2
+    assert all(casting == actor.casting for casting in shown)
+
+
+def test_nothing_is_observed(plotter):
+    events = ("StartInteractionEvent", "InteractionEvent", "EndInteractionEvent", "RenderEvent")
+    actor = plotter.add_raycast_volume(ball(), interactive_quality=0.2)
+    plotter.show(auto_close=False, interactive=False)
+    bare = pv.Plotter(off_screen=True)
+    bare.show(auto_close=False, interactive=False)
+    for event in events:
+        one, other = plotter.iren.interactor, bare.iren.interactor
+        assert bool(one.HasObserver(event)) == bool(other.HasObserver(event))
+        one, other = one.GetInteractorStyle(), other.GetInteractorStyle()
+        assert bool(one.HasObserver(event)) == bool(other.HasObserver(event))
+    assert actor.copy().interactive_quality == 0.2
+    bare.close()
+
+
+def test_light_keeps_its_table_unless_told():
+    transfer = Transfer([[0, 0, 0, 0], [1, 1, 1, 1]], (0, 1))
+    light, surface = (
+        RaycastOptions("composite", transfer=transfer, step=0.5),
+        RaycastOptions(values=(0.5,), step=0.5, sparse=4),
+    )
+    half = InteractiveQuality.of_quality(0.5)
+    assert (half.of(light).step, half.of(light).sparse, half.of(light).integrator) == (0.5, 2, "preintegrated")
+    assert (half.of(surface).step, half.of(surface).sparse) == (1.0, 4)
+    told = InteractiveQuality.of_quality({"step": 3, "sparse": 4})
+    assert (told.of(light).step, told.of(light).sparse) == (1.5, 4)
+    assert (InteractiveQuality.of_quality(0.0).step, InteractiveQuality.of_quality(0.0).sparse) == (4.0, 4)
+    assert InteractiveQuality.of_quality(1) is InteractiveQuality.of_quality({}) is None
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (1.5, "interactive_quality is 1.5; give a number from 0 to 1"), (float("nan"), "is nan"), ("low", "is 'low'"),
+        (True, "is True"), ({"step": 0.5}, r"\['step'\] is 0.5"), ({"sparse": 3}, r"\['sparse'\] is 3"),
+        ({"speed": 2}, "has \\['speed'\\]"),
+    ],
+)  # fmt: skip
+def test_bad_qualities_are_named(plotter, bad, message):
+    with pytest.raises(ValueError, match=message):
+        plotter.add_raycast_volume(ball(8), interactive_quality=bad)
+    actor = plotter.add_raycast_volume(ball(8))
+    with pytest.raises(ValueError, match=message):
+        actor.interactive_quality = bad
+    assert actor.interactive_quality == 0.5

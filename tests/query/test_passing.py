@@ -1,0 +1,358 @@
+"""Streamlines chosen by regions: what NumPy finds on the decompressed points, whatever is decoded for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pvfiblets as pf
+from pvfiblets import regions
+from pvfiblets.query import passing
+from pvfiblets.query.passing import region_flags
+from pvfiblets.streamlines import Streamlines
+from pvfiblets.synthetic import brain_streamlines
+from tests.codec.samples import extremes, smooth, wandering
+from tests.codec.test_restrict import every_kind, many_pages
+
+
+def expected_flags(points: np.ndarray, offsets: np.ndarray, inside: Callable, sampling: float = 0.0) -> np.ndarray:
+    """Flags by NumPy, of all positions at once."""
+    flags = np.zeros(len(offsets) - 1, np.uint8)
+    filled = np.flatnonzero(np.diff(offsets))
+    if not filled.size:
+        return flags
+    ends = inside(points[offsets[filled]]), inside(points[offsets[filled + 1] - 1])
+    starts = offsets[filled]
+    if sampling:
+        parts = []
+        for a, b in zip(offsets[filled], offsets[filled + 1], strict=True):
+            line = []
+            for p, q in pairwise(points[a:b]):
+                n = max(1, int(np.ceil(np.sqrt(((q - p) ** 2).sum()) / sampling)))
+                line.append(p + (q - p) * (np.arange(n) / n)[:, None])
+            parts.append(np.concatenate([*line, points[b - 1 : b]]))
+        starts = np.cumsum([0, *map(len, parts[:-1])])
+        points = np.concatenate(parts)
+    each = inside(points)
+    flags[filled] = np.logical_or.reduceat(each, starts) + 2 * np.logical_and.reduceat(each, starts)
+    flags[filled] += (4 * ends[0] + 8 * ends[1]).astype(np.uint8)
+    return flags
+
+
+def some_regions(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> dict[str, regions.Region]:
+    """Every primitive and expressions of them, about a position."""
+    c = np.array(at)
+    box = regions.Box(center=c + scale * np.array([4.0, -3.0, 5.0]), size=scale * np.array([40.0, 30.0, 50.0]))
+    ball = regions.Sphere(c + scale * np.array([10.0, 0.0, 0.0]), 18.0 * scale)
+    plane = regions.Plane((1.0, 2.0, -0.5), c)
+    slab = regions.Slab((0.0, 1.0, 1.0), c + scale * 2.0, 11.0 * scale)
+    stretched = np.diag([1.5, 0.7, 1.0, 1.0])
+    stretched[0, 1] = 0.4
+    return {
+        "box": box, "ball": ball, "plane": plane, "slab": slab,
+        "box and plane": box & plane, "ball or slab": ball | slab, "not box": ~box, "ball without slab": ball - slab,
+        "ellipsoid": regions.Sphere((0.0, 0.0, 0.0), 20.0 * scale).moved(stretched).moved(_shift(c)),
+        "everything": plane | ~plane, "nothing": ball & ~ball,
+        "a speck": regions.Sphere(c + scale * 3.0, 0.3 * scale),
+    }  # fmt: skip
+
+
+def _shift(c: np.ndarray) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, 3] = c
+    return matrix
+
+
+def assert_flags(whole: pf.FibletSet, region: regions.Region, sampling: float | None = None) -> np.ndarray:
+    decoded = whole.decompress(dtype=np.float64)
+    wanted = expected_flags(decoded.points, decoded.offsets, region.contains, sampling or 0.0)
+    found = region_flags(whole, region, sampling)
+    assert found.dtype == np.uint8
+    np.testing.assert_array_equal(found, wanted)
+    for bits in (passing.ANY, passing.ALL, passing.FIRST, passing.LAST, passing.FIRST | passing.LAST):
+        np.testing.assert_array_equal(region_flags(whole, region, sampling, bits=bits) & bits, wanted & bits)
+    return found
+
+
+@pytest.fixture(scope="module")
+def brain() -> Streamlines:
+    return brain_streamlines(600)
+
+
+@pytest.fixture(scope="module")
+def brains(brain: Streamlines) -> dict[str, pf.FibletSet]:
+    return {
+        "input": pf.compress(brain),
+        "hilbert": pf.compress(brain, order="hilbert"),
+        "fine": pf.compress(brain, max_error=2e-5),
+    }
+
+
+@pytest.mark.parametrize("name", some_regions())
+@pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
+def test_flags_are_those_of_the_decoded_points(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
+    whole = brains[how]
+    assert (whole.anchors_low is not None) == (how == "fine")
+    found = assert_flags(whole, some_regions()[name])
+    if name not in ("everything", "nothing", "a speck"):
+        assert len(np.unique(found)) > 1, "the region tells streamlines apart"
+
+
+def test_a_box_is_a_box() -> None:
+    """Against comparisons of coordinates, so that no region's own arithmetic is trusted."""
+    whole = pf.compress(every_kind())
+    decoded = whole.decompress(dtype=np.float64)
+    low, high = np.array([-20.25, -30.0, -10.0]), np.array([25.0, 12.5, 40.0])
+    box = regions.Box(np.stack([low, high], axis=1).ravel())
+    wanted = expected_flags(
+        decoded.points, decoded.offsets, lambda p: ((p >= low) & (p <= high)).all(axis=1)
+    )  # no decoded point lies within rounding of a face
+    assert np.abs(decoded.points - low).min() > 1e-9
+    assert np.abs(decoded.points - high).min() > 1e-9
+    np.testing.assert_array_equal(region_flags(whole, box), wanted)
+
+
+@pytest.mark.parametrize("order", ["input", "hilbert"])
+@pytest.mark.parametrize("mapped", [False, True])
+def test_lattices_and_streamlines_without_points(order: str, mapped: bool, tmp_path: Path) -> None:
+    whole = pf.compress(every_kind(), order=order)
+    if mapped:
+        whole.save(tmp_path / "a.fiblets")
+        whole = pf.FibletSet.open(tmp_path / "a.fiblets")
+    empty = np.diff(whole.offsets()) == 0
+    assert empty.any()
+    for region in some_regions().values():
+        assert (assert_flags(whole, region)[empty] == 0).all()
+    assert_flags(whole, some_regions()["ball"], 0.7)
+
+
+@pytest.mark.parametrize("name", extremes())
+def test_extreme_lines(name: str) -> None:
+    lines = extremes()[name]
+    whole = pf.compress(lines)
+    size = float(np.ptp(lines.points, axis=0).max()) / 60.0 if lines.n_points else 1.0
+    middle = tuple(lines.points.mean(axis=0)) if lines.n_points else (0.0, 0.0, 0.0)
+    if not 1e-200 < size < 1e100:
+        size = 1.0
+    for region in some_regions(size, middle).values():
+        assert_flags(whole, region)
+
+
+def test_points_on_a_face_are_in_as_the_region_says() -> None:
+    """A lattice of whole numbers, decoded exactly, with a box through its points."""
+    rng = np.random.default_rng(4)
+    lines = Streamlines.from_list(
+        [np.cumsum(rng.integers(-1, 2, (50, 3)), axis=0).astype(float) + [0, 0, 20] for _ in range(50)]
+    )
+    whole = pf.compress(lines)
+    box, plane = regions.Box((-3, 3, -2, 4, 18, 23)), regions.Plane((0, 0, 1), (0, 0, 21))
+    for region in (box, plane, regions.Sphere((0, 0, 20), 3)):
+        for each in (region, ~region):
+            assert_flags(whole, each)
+            assert_flags(whole.extract(slice(None, None, -3)), each, 0.25)
+
+
+@pytest.mark.parametrize("sampling", [0.05, 0.4, 3.0, 1e3])
+def test_positions_in_between(sampling: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(passing, "SAMPLES", 500)  # portions of few positions
+    monkeypatch.setattr(passing, "FIBLETS", 3)
+    whole = pf.compress(wandering(30, 70))
+    for name in ("box", "a speck", "ball without slab", "not box"):
+        assert_flags(whole, some_regions()[name], sampling)
+
+
+def test_a_small_region_between_points_is_found_by_sampling_only() -> None:
+    line = np.stack([np.arange(200) * 10.0, np.zeros(200), np.zeros(200)], axis=1)
+    whole = pf.compress(Streamlines.from_list([line, line + [0, 5, 0]]))
+    speck = regions.Sphere((595.0, 0.0, 0.0), 1.0)  # between the last point of a fiblet and the first of the next
+    assert region_flags(whole, speck).tolist() == [0, 0]
+    assert region_flags(whole, speck, 2.0).tolist() == [passing.ANY, 0]
+    assert whole.select(regions.passes(speck, sampling=1.0)).tolist() == [True, False]
+
+
+def test_some_streamlines_only(brains: dict[str, pf.FibletSet]) -> None:
+    for whole in brains.values():
+        every = region_flags(whole, some_regions()["box"])
+        for ids in ([3], [-1, 0, 77, 77], np.arange(600) % 7 == 0, []):
+            found = region_flags(whole, some_regions()["box"], ids=ids)
+            mask = np.zeros(600, bool)
+            mask[ids] = True
+            np.testing.assert_array_equal(found, np.where(mask, every, 0))
+    with pytest.raises(IndexError, match="streamline 600"):
+        region_flags(whole, some_regions()["box"], ids=[600])
+
+
+@pytest.fixture(scope="module")
+def paged() -> pf.FibletSet:
+    return many_pages()
+
+
+@pytest.mark.parametrize("pages", [1, 3, 8])
+def test_streamlines_that_run_through_pages(paged: pf.FibletSet, pages: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(passing, "PAGES", pages)
+    whole = paged
+    decoded = whole.decompress(dtype=np.float64)
+    for name in ("box", "not box", "a speck"):
+        region = some_regions()[name]
+        wanted = expected_flags(decoded.points, decoded.offsets, region.contains)
+        np.testing.assert_array_equal(region_flags(whole, region), wanted)
+        few = region_flags(whole, region, ids=[9000, 18000])
+        assert few[[9000, 18000]].tolist() == wanted[[9000, 18000]].tolist()
+        assert np.count_nonzero(few) <= 2
+
+
+def test_fiblets_that_lie_clear_are_not_decoded(
+    brains: dict[str, pf.FibletSet], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decoded: list[int] = []
+    real = passing.decode_fiblets
+
+    def counted(fiblets: pf.FibletSet, which: np.ndarray, *rest: np.ndarray) -> None:
+        decoded.append(len(which))
+        real(fiblets, which, *rest)
+
+    monkeypatch.setattr(passing, "decode_fiblets", counted)
+    whole = brains["input"]
+    region_flags(whole, regions.Sphere((40.0, 0.0, 0.0), 10.0))
+    assert 0 < sum(decoded) < whole.n_fiblets / 3
+    decoded.clear()
+    region_flags(whole, regions.Sphere((4000.0, 0.0, 0.0), 10.0))
+    region_flags(whole, ~regions.Sphere((4000.0, 0.0, 0.0), 10.0))
+    assert not decoded
+
+
+def test_conditions(brains: dict[str, pf.FibletSet]) -> None:
+    whole = brains["input"]
+    box, ball = regions.Box((-90, 20, -90, 90, 0, 120)), some_regions()["ball"]
+    b, s = region_flags(whole, box), region_flags(whole, ball)
+    for predicate, wanted in (
+        (regions.passes(box), b & 1 > 0),
+        (regions.stays_in(~ball), region_flags(whole, ~ball) & 2 > 0),
+        (regions.ends_in(box), b & 12 > 0),
+        (regions.ends_in(box, "both"), b & 12 == 12),
+        (regions.ends_in(box, "first"), b & 4 > 0),
+        (regions.ends_in(box, which="last"), b & 8 > 0),
+        (regions.passes(box) & ~regions.passes(ball), (b & 1 > 0) & (s & 1 == 0)),
+        ((regions.ends_in(box) | regions.stays_in(box)) & ~regions.ends_in(ball), (b & 14 > 0) & (s & 12 == 0)),
+    ):
+        found = whole.select(predicate)
+        assert found.dtype == bool
+        np.testing.assert_array_equal(found, wanted)
+        assert 0 < found.sum() < len(whole)
+    assert regions.passes(box) == regions.passes(regions.Box(box.bounds))
+    assert len({regions.passes(box), regions.ends_in(box), regions.passes(regions.Box(box.bounds))}) == 2
+
+
+def test_each_region_is_gone_through_once(brains: dict[str, pf.FibletSet]) -> None:
+    whole, asked = brains["input"], []
+    box, ball = some_regions()["box"], some_regions()["ball"]
+
+    def flags(region: regions.Region, sampling: float | None) -> np.ndarray:
+        asked.append((region, sampling))
+        return region_flags(whole, region, sampling)
+
+    wanted = regions.ends_in(box) & regions.passes(regions.Box(box.bounds), sampling=0.3) & ~regions.stays_in(ball)
+    np.testing.assert_array_equal(whole.select(wanted, flags=flags), whole.select(wanted))
+    assert sorted(asked, key=str) == sorted([(box, 0.3), (ball, None)], key=str)
+
+
+def test_streamlines_without_points_satisfy_nothing() -> None:
+    whole = pf.compress(Streamlines(np.zeros((1, 3)), [0, 0, 1, 1]))
+    everywhere = regions.Sphere((0, 0, 0), 5.0)
+    for predicate in (regions.passes(everywhere), regions.ends_in(everywhere), regions.stays_in(everywhere)):
+        assert whole.select(predicate).tolist() == [False, True, False]
+        assert whole.select(~predicate).tolist() == [True, False, True]
+    none = pf.compress(Streamlines(np.zeros((0, 3)), [0]))
+    assert none.select(regions.passes(everywhere)).shape == (0,)
+
+
+def test_what_is_refused(brains: dict[str, pf.FibletSet]) -> None:
+    whole, box = brains["input"], some_regions()["box"]
+    with pytest.raises(TypeError, match=r"a Box is no condition on streamlines; ask passes\(region\)"):
+        whole.select(box)
+    with pytest.raises(TypeError, match="passes needs a region"):
+        regions.passes((1, 2, 3))
+    with pytest.raises(ValueError, match="which is 'either'"):
+        regions.ends_in(box, "either")
+    for bad in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="sampling is"):
+            regions.passes(box, sampling=bad)
+    with pytest.raises(ValueError, match=r"more than 2\^28: use a longer sampling"):
+        region_flags(whole, box, 1e-9)
+    with pytest.raises(TypeError, match="join conditions with &"):
+        regions.passes(box) and regions.ends_in(box)
+    words = whole.anchors.copy()
+    words[20:40, 1] ^= np.uint32(0x3FFF0000)
+    with pytest.raises(pf.FormatError):
+        region_flags(replace(whole, anchors=words), box)
+
+
+def test_a_smooth_set_of_one_page_and_one_fiblet() -> None:
+    one = pf.compress(smooth(1, 60))
+    assert one.n_fiblets == 1
+    for region in some_regions(1.0, tuple(one.decompress().points[30])).values():
+        assert_flags(one, region)
+        assert_flags(one, region, 0.1)
+
+
+def a_torus() -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a torus about z, radii 30 and 14 mm."""
+    n, m = 48, 24
+    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
+    ring = 30 + 14 * np.cos(v)
+    points = np.stack([ring * np.cos(u), ring * np.sin(u), 14 * np.sin(v)], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    a, b = i * m + j, (i + 1) % n * m + j
+    c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
+    return points, np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+
+
+def some_volumes() -> dict[str, regions.Region]:
+    rng = np.random.default_rng(5)
+    affine = np.array([[3.0, 0.4, 0, -60], [0, 2.5, 0, -75], [0, 0, 4, -40], [0, 0, 0, 1]])
+    blobs = rng.random((40, 60, 30))
+    for axis in range(3):
+        blobs = sum(np.roll(blobs, k, axis) for k in range(-3, 4))
+    labels = (blobs > np.quantile(blobs, 0.6)).astype(np.int16) + (blobs > np.quantile(blobs, 0.9))
+    torus = regions.Surface(*a_torus())
+    every = regions.Labels(labels, affine)
+    return {
+        "torus": torus, "labels": every, "label": regions.Labels(labels, affine, labels=[2]),
+        "torus and labels": torus & every, "labels without torus or plane": every - torus | some_regions()["plane"],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", some_volumes())
+@pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
+def test_surfaces_and_labels(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
+    found = assert_flags(brains[how], some_volumes()[name])
+    assert len(np.unique(found)) > 2, "the region tells streamlines apart"
+    if how == "input":
+        assert_flags(brains[how].extract(slice(0, 40)), some_volumes()[name], 0.21)
+
+
+def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet]) -> None:
+    """Against closed forms: a torus, but for what lies within the coarseness of its mesh; and a slab of voxels."""
+    whole = brains["input"]
+    decoded = whole.decompress(dtype=np.float64)
+    p = decoded.points
+    depth = 14 - np.hypot(np.hypot(p[:, 0], p[:, 1]) - 30, p[:, 2])
+    clear = [np.abs(depth[a:b]).min() > 0.4 for a, b in pairwise(decoded.offsets)]  # sagitta of 1/24 of a circle: 0.4
+    wanted = expected_flags(
+        decoded.points, decoded.offsets, lambda q: 14 > np.hypot(np.hypot(q[:, 0], q[:, 1]) - 30, q[:, 2])
+    )
+    found = region_flags(whole, regions.Surface(*a_torus()))
+    assert sum(clear) > 50
+    np.testing.assert_array_equal(found[clear], wanted[clear])
+    volume = np.zeros((200, 200, 200), bool)
+    volume[90:120, :, 60:99] = True
+    slabs = regions.Labels(volume, np.array([[1.0, 0, 0, -100], [0, 1, 0, -100], [0, 0, 1, -80], [0, 0, 0, 1]]))
+    voxels = np.floor(p + [100.5, 100.5, 80.5]).astype(int)
+    inside = (voxels[:, 0] >= 90) & (voxels[:, 0] < 120) & (voxels[:, 2] >= 60) & (voxels[:, 2] < 99)
+    each = np.logical_or.reduceat(inside, decoded.offsets[:-1])
+    np.testing.assert_array_equal(whole.select(regions.passes(slabs)), each)

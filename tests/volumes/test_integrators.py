@@ -1,0 +1,239 @@
+"""Integrators of the rendering equation against closed forms: orders, limits of stability, and the study of both."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets.volumes.integrators import (
+    INTEGRATORS,
+    MIDDLE,
+    PANELS,
+    STABLE_UP_TO,
+    Row,
+    composed,
+    integrate,
+    preintegrated,
+    study,
+)  # fmt: skip
+from pvfiblets.volumes.reference import composite
+from pvfiblets.volumes.reference_profiles import Profile, profiles
+from pvfiblets.volumes.reference_rays import Rays
+from pvfiblets.volumes.transfer import Transfer
+
+
+def named(name, depth=1.0, length=64.0):
+    return next(profile for profile in profiles([depth], length) if profile.name == name)
+
+
+def sampled(method, profile, n, dtype=np.float64):
+    """RGBA of a profile by n steps."""
+    h = profile.length / n
+    values = profile.value(h * (np.arange(n) + 0.5 if method in MIDDLE else np.arange(n + 1)))
+    kappa, colour = profile.transfer.extinction(values).astype(dtype), profile.transfer.colour(values)
+    rgb, alpha = integrate(method, kappa, colour, h)
+    assert rgb.dtype == alpha.dtype == dtype
+    return np.append(rgb, alpha)
+
+
+# --------------------------------------------------------------------------------------------------------- profiles
+
+
+@pytest.mark.parametrize("depth", [0.01, 1.0, 30.0])
+@pytest.mark.parametrize("name", ["constant", "fade", "ramp", "edge", "peak", "haze", "teeth"])
+def test_the_closed_forms_are_the_integral(name, depth):
+    """By very many steps of the equation as it stands, from the profile's own functions."""
+    profile = named(name, depth)
+    assert abs(profile.densest * profile.length - depth) < 1e-5 * depth
+    start, end, n = 3.0, 61.0, 400_000
+    s = np.linspace(start, end, n + 1)
+    s = (s[1:] + s[:-1]) / 2
+    kappa, colour = profile.transfer.extinction(profile.value(s)), profile.transfer.colour(profile.value(s))
+    passed = np.cumsum(kappa) * (end - start) / n
+    weights = kappa * (end - start) / n * np.exp(-passed + kappa * (end - start) / n / 2)
+    expected = np.append(weights @ colour, -np.expm1(-passed[-1]))
+    assert np.abs(profile.light(start, end) - expected).max() < 2e-6
+
+
+def test_a_profile_is_a_volume():
+    profile = named("teeth", 20.0)
+    volume = profile.volume()
+    ray = Rays(np.array([[0.3, 0.6, 0.0]]), np.array([[0, 0, 1.0]]), np.array([2.0]), np.array([62.0]), np.eye(4))
+    assert np.abs(composite(volume, profile.transfer, ray) - profile.light(2.0, 62.0)).max() < 1e-6  # float32 voxels
+
+
+def test_no_closed_form_is_an_error():
+    both = Profile("both", np.array([0.0, 1.0]), 1.0, Transfer([[0, 0, 0, 0], [1, 1, 1, 0.5]], (0, 1)))
+    with pytest.raises(ValueError, match="both change"):
+        both.light()
+
+
+# ------------------------------------------------------------------------------------------------------ integrators
+
+
+@pytest.mark.parametrize(
+    ("method", "order"), [("riemann", 1), ("exponential", 2), ("simpson", 4), ("rk4", 4), ("romberg", 6)]
+)
+@pytest.mark.parametrize("table", [[(0.1, 0.3, 1, 0.9), (1, 0.6, 0.1, 0.9)], [(1, 0.6, 0.1, 0.0), (1, 0.6, 0.1, 0.6)]])
+def test_orders(method, order, table):
+    """Halving the step of a smooth ray divides the error by 2 to the order."""
+    profile = Profile("smooth", np.array([0.0, 1.0]), 64.0, Transfer(table, (0.0, 1.0), 30.0))
+    exact = profile.light()
+    coarse, fine = (np.abs(sampled(method, profile, n) - exact).max() for n in (16, 32))
+    assert order - 0.5 < np.log2(coarse / fine) < order + 0.8
+    assert coarse < 5 * 0.25**order
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("x", [1e-6, 1e-3, 1.0, 30.0, 1e3, 1e6])
+def test_exponential_steps_are_exact_where_nothing_changes_in_them(x, dtype):
+    rng = np.random.default_rng(0)
+    kappa, colour = (x * rng.random((3, 5, 8))).astype(dtype), rng.random((3, 5, 8, 3))
+    h = np.array([1.0, 0.5, 2.0])[:, None] * np.ones((3, 5))
+    rgb, alpha = integrate("exponential", kappa, colour, h)
+    depth = kappa.astype(np.float64) * h[..., None]
+    before = np.exp(-np.cumsum(depth, axis=-1) + depth)
+    expected = ((before * -np.expm1(-depth))[..., None] * colour).sum(axis=-2)
+    tolerance = 1e-13 if dtype == np.float64 else 1e-6
+    assert np.abs(rgb - expected).max() < tolerance
+    assert np.abs(alpha + np.expm1(-depth.sum(axis=-1))).max() < tolerance
+    assert rgb.min() >= 0
+    assert max(rgb.max(), alpha.max()) <= 1 + 1e-6
+
+
+def test_riemann_is_the_papers_sum_and_eulers_method():
+    """Front to back as the paper has it; the same as equation 6, back to front."""
+    rng = np.random.default_rng(1)
+    kappa, colour, h = rng.random(20), rng.random((20, 3)), 0.3
+    rgb, alpha = integrate("riemann", kappa, colour, h)
+    light, left = np.zeros(3), 1.0
+    for k, c in zip(kappa, colour, strict=True):
+        light, left = light + left * k * h * c, left * (1 - k * h)
+    back = np.zeros(3)
+    for k, c in zip(kappa[::-1], colour[::-1], strict=True):
+        back = back + h * (k * c - k * back)
+    assert np.abs(rgb - light).max() < 1e-14
+    assert np.abs(rgb - back).max() < 1e-14
+    assert abs(alpha - 1 + left) < 1e-14
+
+
+def test_rk4_is_the_classic_method_on_equation_6():
+    rng = np.random.default_rng(2)
+    kappa, colour, h = 3 * rng.random(13), rng.random((13, 3)), 0.2
+    rgb, alpha = integrate("rk4", kappa, colour, h)
+
+    def slope(i, light):
+        return kappa[i, None] * colour[i] - kappa[i] * light
+
+    for start, found in ((np.zeros(3), rgb), (np.ones(3), rgb + 1 - alpha)):
+        light = start
+        for i in range(12, 0, -2):
+            k1 = slope(i, light)
+            k2 = slope(i - 1, light + h * k1)
+            k3 = slope(i - 1, light + h * k2)
+            k4 = slope(i - 2, light + 2 * h * k3)
+            light = light + h / 3 * (k1 + 2 * k2 + 2 * k3 + k4)
+        assert np.abs(found - light).max() < 1e-13
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("method", STABLE_UP_TO)
+def test_explicit_methods_grow_beyond_their_limits_and_not_before(method, dtype):
+    left = []
+    for x in (0.99 * STABLE_UP_TO[method], 1.01 * STABLE_UP_TO[method]):
+        n = 800
+        kappa = np.full(n if method in MIDDLE else n + 1, x, dtype)
+        left.append(abs(1 - integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)[1]))
+    assert left[0] < 1e-1
+    assert left[1] > 1e3
+
+
+@pytest.mark.parametrize("method", ["simpson", "romberg", "exponential"])
+@pytest.mark.parametrize("x", [1e-3, 1.0, 1e3])
+def test_what_the_others_let_through_stays_within_0_and_1(method, x):
+    """Also where extinction rises so steeply that the parabola through it dips below 0."""
+    rng = np.random.default_rng(3)
+    n = 16
+    kappa = x * rng.random((200, n if method in MIDDLE else n + 1)) ** 8
+    _, alpha = integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)
+    assert alpha.min() >= 0
+    assert alpha.max() <= 1
+
+
+def test_stretches_put_together_are_the_whole():
+    rng = np.random.default_rng(4)
+    light, through = rng.random((6, 3)), rng.random(6)
+    rgb, alpha = composed(light, through)
+    back = np.zeros(3)
+    for b, a in zip(light[::-1], through[::-1], strict=True):
+        back = b + a * back
+    assert np.abs(rgb - back).max() < 1e-14
+    assert abs(alpha - 1 + through.prod()) < 1e-14
+
+
+@pytest.mark.parametrize("name", ["peak", "teeth"])
+@pytest.mark.parametrize("depth", [1.0, 1e3, 1e5])
+def test_preintegration_sees_what_lies_between_samples(name, depth):
+    """Steps that end where the values turn."""
+    profile = named(name, depth, 17.0)
+    exact = profile.light()
+    places = np.linspace(0, 17, 18)
+    rgb, alpha = preintegrated(profile.value(places), profile.transfer, 1.0)
+    assert np.abs(np.append(rgb, alpha) - exact).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("method", "shape", "colours", "message"),
+    [
+        ("euler", (4,), (4, 3), "'romberg'"), ("preintegrated", (4,), (4, 3), "call preintegrated"),
+        ("simpson", (4,), (4, 3), "3 steps"), ("romberg", (7,), (7, 3), "takes 4"), ("rk4", (1,), (1, 3), "0 steps"),
+        ("riemann", (2, 4), (4, 3), r"\(2, 4\)"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_named(method, shape, colours, message):
+    with pytest.raises(ValueError, match=message):
+        integrate(method, np.ones(shape), np.ones(colours), 0.1)
+
+
+# -------------------------------------------------------------------------------------------------------- the study
+
+
+def test_the_study_shows_what_is_stable():
+    """From thin to stiff: which integrators stay in bounds, and how far the good ones are from the closed form."""
+    methods = tuple(PANELS)
+    chosen = [profile for depth in (64e-3, 64.0, 64e3) for profile in profiles([depth]) if profile.name != "teeth"]
+    rows = study(chosen, (16, 64, 256), methods=methods, dtypes=("float32", "float64"))
+    assert len(rows) == len(chosen) * 3 * len(methods) * 2
+    steps = [row.kappa_ds for row in rows]
+    assert min(steps) < 1e-3
+    assert max(steps) > 1e3
+    for row in rows:
+        thin = row.kappa_ds < 5e-3
+        if row.method == "exponential" or thin:
+            assert row.bounded
+        if thin:
+            assert row.error < (3e-3 if row.profile in ("edge", "peak", "haze") else 2e-4)
+        if row.method in STABLE_UP_TO and row.profile in ("constant", "fade") and row.steps >= 64:
+            # Steps take turns in the panels' light: below half the limit all is well.
+            assert row.bounded or row.kappa_ds > 0.5 * STABLE_UP_TO[row.method]
+            assert not row.bounded or row.kappa_ds < STABLE_UP_TO[row.method]
+        assert np.isinf(row.error) == np.isinf(row.high)
+    constant = [row for row in rows if row.profile == "constant"]
+    assert max(row.error for row in constant if row.method == "exponential") < 1e-4
+    assert all(row.error == np.inf or row.error > 1 for row in constant if row.method == "rk4" and row.kappa_ds > 3)
+
+
+def test_the_study_of_preintegration():
+    rows = study([named("peak", 6.4e3)], (16,), methods=("exponential", "preintegrated"))
+    assert [row.method for row in rows] == ["exponential", "preintegrated"]
+    assert rows[0].error > 0.5
+    assert rows[1].error < 1e-2
+    assert rows[1].bounded
+    assert {row.dtype for row in rows} == {"float32"}
+    assert set(INTEGRATORS) == {*PANELS, "preintegrated"}
+
+
+def test_rounding_does_not_make_a_row_unbounded():
+    row = Row("constant", "exponential", "float32", 16, 1.0, 0.0, -1e-7, 1.0 + 1e-7)
+    assert row.bounded
+    assert not Row("constant", "exponential", "float32", 16, 1.0, 0.2, -0.1, 1.0).bounded
