@@ -154,6 +154,8 @@ class Launcher:
         except OSError as error:  # of memory, processes or file descriptors
             session.failure = f"no process could be started: {error.strerror}"
             logger.error("session %s: %s", session.short, session.failure)
+            if session.folder is not None:
+                await asyncio.to_thread(scratch.remove, session.folder)
             await self._forget(session)
             return session
         session.process = process

@@ -237,6 +237,25 @@ def test_a_session_that_cannot_start_says_why(tmp_path):
     run(test())
 
 
+def test_a_process_that_cannot_be_started_is_said_and_takes_no_place(tmp_path):
+    async def test():
+        async with gate(tmp_path, limit=1) as server, Browser(server) as browser:
+            await browser.enter()
+            await browser.post("/end")
+            command, server.launcher._command = server.launcher._command, (str(tmp_path / "no-such-program"),)
+            await browser.get("/")
+            assert await browser.begin() == "ask again"
+            status, text = await browser.get("/")
+            assert status == 410
+            assert "no process could be started: No such file or directory" in text
+            assert not server.launcher.sessions
+            server.launcher._command = command
+            await browser.post("/new")
+            assert await browser.begin() == "ready"
+
+    run(test())
+
+
 def test_sessions_without_a_browser_end_and_others_wait(tmp_path):
     async def test():
         async with gate(tmp_path, timeout=900.0) as server, Browser(server) as left, Browser(server) as stays:
