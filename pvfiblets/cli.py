@@ -198,7 +198,7 @@ def _quiet_and_json(parser: argparse.ArgumentParser) -> None:
 def _serve(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Serve FILEs to browsers. This machine draws and sends pictures; browsers need nothing installed. By default "
-        "only this machine can connect, and must show a token that is printed."
+        "only this machine can connect, and must show a token that is printed to the terminal."
     )
     add = parser.add_argument
     add("paths", metavar="FILE", nargs="*", help="tractograms of any format")
@@ -211,9 +211,11 @@ def _serve(parser: argparse.ArgumentParser) -> None:
     add(
         "--token",
         default="auto",
-        metavar="auto|TEXT|none",
-        help="what a browser must show (default: auto, made and printed); none only where nobody else can connect",
+        metavar="auto|none",
+        help="what a browser must show (default: auto, made anew; or the environment variable PVFIBLETS_TOKEN); none "
+        "only where nobody else can connect",
     )
+    add("--token-file", metavar="FILE", help="a file with the token, which others cannot read; made if there is none")
     add("--shared", action="store_true", help="all browsers see and steer the same view")
     add("--limit", type=count, default=8, metavar="N", help="sessions at once (default: %(default)s)")
     add(
@@ -227,6 +229,21 @@ def _serve(parser: argparse.ArgumentParser) -> None:
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
     add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
     add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
+    add(
+        "--proxy",
+        action="append",
+        default=[],
+        metavar="ADDRESS",
+        help="a proxy that is believed when it says (X-Forwarded-For) for whom it asks; may be given several times",
+    )
+    add("--connections", type=count, default=1000, metavar="N", help="connections at once (default: %(default)s)")
+    add(
+        "--connections-by-address",
+        type=count,
+        default=100,
+        metavar="N",
+        help="connections at once from one address (default: %(default)s)",
+    )
     parser.set_defaults(run="pvfiblets.cli_serve:serve")
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import sys
+from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FibletsError
@@ -20,6 +22,7 @@ def serve(
     port: int,
     root: str,
     token: str,
+    token_file: str | None,
     shared: bool,
     limit: int,
     timeout: float,
@@ -27,9 +30,13 @@ def serve(
     codec: str,
     rendering: str,
     origin: list[str],
+    proxy: list[str],
+    connections: int,
+    connections_by_address: int,
 ) -> int:
     """Serve files to browsers until interrupted."""
-    from pvfiblets.web.options import MEBIBYTE, Options, chosen_token
+    from pvfiblets.web.options import MEBIBYTE, Options
+    from pvfiblets.web.tokens import VARIABLE, chosen_token
 
     if rendering != "server":
         raise ValueError(
@@ -44,33 +51,46 @@ def serve(
         host=host,
         port=port,
         root=os.path.abspath(root),  # noqa: PTH100
-        token=chosen_token(token),
+        token=chosen_token(token, token_file, os.environ),
         shared=shared,
         limit=limit,
         timeout=timeout,
         upload=upload * MEBIBYTE,
         codec=codec,
         origins=origin,
+        connections=connections,
+        by_address=connections_by_address,
+        proxies=proxy,
     ).checked()
     try:
         import trame_rca  # noqa: F401
         import trame_vuetify  # noqa: F401
     except ImportError as error:
         raise FibletsError(f"{error}; `pvfiblets serve` needs the web extra: pip install 'pvfiblets[web]'") from error
-    return _run(options)
+    named = token_file or (f"the environment variable {VARIABLE}" if os.environ.get(VARIABLE) else None)
+    return _run(options, named)
 
 
-def _run(options: Any) -> int:
+def _run(options: Any, named: str | None) -> int:
+    """Serve, and say where; `named` is where people know the token from, if they do."""
     import asyncio
     import signal
 
-    from pvfiblets.web import server
+    from pvfiblets.web import server, tokens
 
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
     logging.getLogger("pvfiblets.web").setLevel(logging.INFO)
 
+    kept: list[Path] = []
+
     def ready(gate: server.Gate) -> None:
-        print(f"Open {gate.url}", flush=True)
+        # What is written into a file or to another program others may read, some day.
+        if options.token is None or sys.stdout.isatty():
+            print(f"Open {gate.url}", flush=True)
+        else:
+            if named is None:
+                kept.append(tokens.keep(options.token, os.environ))
+            print(f"Open {gate.address} with the token of {named or kept[0]}", flush=True)
         if options.on_loopback:
             print(
                 f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address."
@@ -87,6 +107,10 @@ def _run(options: Any) -> int:
                 break
         await server.serve(options, ready)
 
-    with contextlib.suppress(asyncio.CancelledError, KeyboardInterrupt):
-        asyncio.run(main())
+    try:
+        with contextlib.suppress(asyncio.CancelledError, KeyboardInterrupt):
+            asyncio.run(main())
+    finally:
+        for path in kept:
+            tokens.forget(path)
     return 0

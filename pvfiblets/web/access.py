@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hmac
 import logging
+import secrets
 from hashlib import sha256
 from re import fullmatch
 from struct import unpack_from
@@ -58,7 +59,10 @@ class Access:
         """Refuse names that a server on loopback does not have: a foreign name that resolves to 127.0.0.1."""
         if not host:
             raise RefusedError(400, "no Host header")
-        name = (urlsplit(f"//{host}").hostname or "") if _is_host(host) else ""
+        try:
+            name = (urlsplit(f"//{host}").hostname or "") if _is_host(host) else ""
+        except ValueError:  # brackets around no address
+            name = ""
         if not name:
             raise RefusedError(400, "malformed Host header")
         named = {urlsplit(origin).netloc for origin in self._origins}
@@ -71,16 +75,23 @@ class Access:
             raise RefusedError(403, "no Origin header")
         if origin.rstrip("/").lower() in self._origins:
             return
-        parts = urlsplit(origin)
+        try:
+            parts = urlsplit(origin)
+        except ValueError as error:
+            raise RefusedError(403, "malformed Origin header") from error
         if parts.scheme not in ("http", "https") or not host or parts.netloc.lower() != host.lower():
             raise RefusedError(403, "foreign origin")
 
     def check_path(self, raw: str) -> None:
-        """Refuse paths that climb, however they are written."""
+        """Refuse paths that climb or break lines, however they are written, and addresses of other servers."""
+        if not raw.startswith("/"):
+            raise RefusedError(400, "an address that does not begin with /")
         path = raw.partition("?")[0]
         for _ in range(3):  # %252e%252e is unquoted twice by someone, some day
-            if ".." in path.replace("\\", "/").split("/") or "\0" in path or "\\" in path:
+            if ".." in path.replace("\\", "/").split("/") or "\\" in path:
                 raise RefusedError(404, "no such page")
+            if any(character < " " or character == "\x7f" for character in path):
+                raise RefusedError(404, "a path with control characters")
             path = unquote(path)
         if len(raw) > 8192:
             raise RefusedError(414, "the address is too long")
@@ -94,7 +105,7 @@ class Access:
         """Return whether a text is the token, in time that does not depend on how much of it is right."""
         if self._token is None:
             return True
-        return text is not None and hmac.compare_digest(text.encode(), self._token.encode())
+        return text is not None and _same(text, self._token)
 
     def pass_cookie(self) -> str:
         """Return what a browser that showed the token keeps instead of it."""
@@ -102,9 +113,28 @@ class Access:
 
     def is_pass(self, cookie: str | None) -> bool:
         """Return whether a cookie is :meth:`pass_cookie`'s."""
-        return self._token is None or (
-            cookie is not None and hmac.compare_digest(cookie.encode(), self.pass_cookie().encode())
-        )
+        return self._token is None or (cookie is not None and _same(cookie, self.pass_cookie()))
+
+    def new_session(self) -> str:
+        """Return what a browser without a session is to call the one that it may begin."""
+        name = secrets.token_urlsafe(24)
+        return f"{name}.{self._signature(name)}"
+
+    def is_session(self, cookie: str | None) -> bool:
+        """Return whether a cookie is of :meth:`new_session`: nobody else says what sessions are called."""
+        if cookie is None:
+            return False
+        name, _, signature = cookie.rpartition(".")
+        return _same(signature, self._signature(name))
+
+    def _signature(self, name: str) -> str:
+        text = name.encode(errors="backslashreplace")
+        return hmac.new(self._secret, b"session " + text, sha256).hexdigest()[:32]
+
+
+def _same(given: str, expected: str) -> bool:
+    # What browsers send may not be Unicode that can be encoded.
+    return hmac.compare_digest(given.encode(errors="backslashreplace"), expected.encode())
 
 
 def _is_host(text: str) -> bool:

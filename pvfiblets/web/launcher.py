@@ -20,7 +20,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pvfiblets.web import scratch
+from pvfiblets.web import scratch, tokens
+from pvfiblets.web.journal import printable
 from pvfiblets.web.options import Options
 
 logger = logging.getLogger("pvfiblets.web")
@@ -49,24 +50,22 @@ class Session:
         Browsers (or tabs) that are connected now.
     folder : Path or None
         Of its temporary files; it goes with the process.
+    short : str
+        What logs call it: nothing of the cookie.
     """
 
-    id: str
+    id: str = field(repr=False)
     key: str = field(default_factory=lambda: secrets.token_hex(32), repr=False)
     port: int | None = None
     failure: str | None = None
     connections: int = 0
+    short: str = field(default_factory=lambda: secrets.token_hex(3))
     seen: float = field(default_factory=time.monotonic)
     process: asyncio.subprocess.Process | None = None
     tasks: list[asyncio.Task[None]] = field(default_factory=list)
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     ended: bool = False
     folder: Path | None = None
-
-    @property
-    def short(self) -> str:
-        """What logs call it: too little of the cookie to use."""
-        return self.id[:6]
 
 
 class Launcher:
@@ -112,31 +111,53 @@ class Launcher:
         """Whether no further session may start."""
         return len(self.sessions) >= self._options.limit
 
-    async def open(self) -> Session | None:
-        """Return a session for a browser that has none, or ``None`` at the limit."""
-        if self._options.shared and SHARED in self.sessions:
-            return self.sessions[SHARED]
-        if self.full and self._spare is None:
-            return None
-        session, self._spare = self._spare, None
+    @property
+    def has_room(self) -> bool:
+        """Whether a browser that has no session can get one."""
+        return self._spare is not None or not self.full
+
+    async def open(self, identifier: str) -> Session | None:
+        """Return the session of a cookie, begun if there is none, or ``None`` at the limit."""
+        session, spare = self.sessions.get(identifier), self._spare
         if session is None or session.ended:
-            if self.full:
+            if spare is not None and not spare.ended:
+                del self.sessions[spare.id]
+                spare.id, session = identifier, spare
+                self.sessions[identifier] = session
+            elif self.full:
                 return None
-            session = await self._launch(SHARED if self._options.shared else secrets.token_urlsafe(24))
+            else:
+                session = await self._launch(identifier)
+        if session is spare:
+            self._spare = None
         session.seen = time.monotonic()
         return session
+
+    def forgive(self, session: Session) -> None:
+        """Forget that a session failed, so that another may be begun in its place."""
+        if session in self._failed:
+            self._failed.remove(session)
 
     async def _launch(self, identifier: str) -> Session:
         session = Session(identifier, folder=None if self._scratch is None else self._scratch.session())
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
-        process = await asyncio.create_subprocess_exec(
-            *self._command,
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            stderr=asyncio.subprocess.PIPE,
-            env=environment,
-        )
+        environment.pop(tokens.VARIABLE, None)
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *self._command,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=asyncio.subprocess.PIPE,
+                env=environment,
+            )
+        except OSError as error:  # of memory, processes or file descriptors
+            session.failure = f"no process could be started: {error.strerror}"
+            logger.error("session %s: %s", session.short, session.failure)
+            if session.folder is not None:
+                await asyncio.to_thread(scratch.remove, session.folder)
+            await self._forget(session)
+            return session
         session.process = process
         assert process.stdin is not None
         # By standard input: command lines and environments can be read by others.
@@ -184,8 +205,8 @@ class Launcher:
                 continue
             if not line:
                 return
-            text = line.decode(errors="replace").rstrip()
-            logger.info("session %s: | %s", session.short, text)
+            text = printable(line.decode(errors="replace").rstrip())
+            logger.info("session %s: | %s", session.short, text, extra={"about": session.short})
 
     async def _forget(self, session: Session) -> None:
         session.ended = True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from dataclasses import asdict, dataclass, field
 from ipaddress import ip_address
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 MEBIBYTE = 1024 * 1024
 SHORTEST_TOKEN = 8  # characters of a token that a person chose
+FEWEST_CONNECTIONS = 8  # six at once for a page's files, its WebSocket, and one to spare
 CODECS = ("jpeg", "png", "webp")
 
 
@@ -41,6 +41,10 @@ class Options:
         How pictures travel: 'jpeg', 'png' or 'webp'.
     origins : list of str
         Other origins that pages may come from, such as that of a proxy which renames the host.
+    connections, by_address : int
+        The most connections at once, in all and from one address.
+    proxies : list of str
+        Addresses of proxies, which are believed when they say for whom they ask.
     """
 
     files: list[str] = field(default_factory=list)
@@ -57,6 +61,9 @@ class Options:
     upload: int = 2048 * MEBIBYTE
     codec: str = "jpeg"
     origins: list[str] = field(default_factory=list)
+    connections: int = 1000
+    by_address: int = 100
+    proxies: list[str] = field(default_factory=list)
 
     @property
     def on_loopback(self) -> bool:
@@ -79,6 +86,11 @@ class Options:
             raise ValueError(f"--limit {self.limit}: at least one session is needed")
         if not self.timeout > 0.0:
             raise ValueError(f"--timeout {self.timeout:g}: seconds above zero are needed")
+        for name, number in (("--connections", self.connections), ("--connections-by-address", self.by_address)):
+            if number < FEWEST_CONNECTIONS:
+                raise ValueError(f"{name} {number}: a browser alone opens {FEWEST_CONNECTIONS}")
+        for proxy in self.proxies:
+            _check_address(proxy)
         if self.upload < 0:
             raise ValueError(f"--upload {self.upload}: a size of zero or more is needed")
         if self.codec not in CODECS:
@@ -89,7 +101,7 @@ class Options:
                 "use --token auto, or --host 127.0.0.1 and an SSH tunnel"
             )
         if self.token is not None and len(self.token) < SHORTEST_TOKEN:
-            raise ValueError(f"--token: at least {SHORTEST_TOKEN} characters are needed; --token auto makes one")
+            raise ValueError(f"the token: at least {SHORTEST_TOKEN} characters are needed; --token auto makes one")
         if not Path(self.root).is_dir():
             raise NotADirectoryError(
                 20, "not a folder; --root names the one that browsers may open files from", self.root
@@ -109,13 +121,6 @@ class Options:
         return cls(**data)
 
 
-def chosen_token(text: str) -> str | None:
-    """Return the token that ``--token auto|TEXT|none`` means."""
-    if text == "none":
-        return None
-    return secrets.token_urlsafe(24) if text == "auto" else text
-
-
 def is_loopback(host: str) -> bool:
     """Return whether a host name or address can be reached from this machine only."""
     if host.lower() == "localhost":
@@ -124,3 +129,10 @@ def is_loopback(host: str) -> bool:
         return ip_address(host.strip("[]")).is_loopback
     except ValueError:
         return False
+
+
+def _check_address(proxy: str) -> None:
+    try:
+        ip_address(proxy)
+    except ValueError as error:
+        raise ValueError(f"--proxy {proxy!r} is no address; one such as 127.0.0.1 is expected") from error

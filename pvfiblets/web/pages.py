@@ -1,8 +1,21 @@
-"""The gate's own pages: asking for the token, opening, full, ended, refused. They need no script."""
+"""The gate's own pages: asking for the token, opening, full, ended, refused. Only the one that opens needs a script."""
 
 from __future__ import annotations
 
 from html import escape
+
+# Vue compiles its templates in the browser, which needs 'unsafe-eval'; nothing is loaded from, or sent to, elsewhere.
+POLICY = (
+    "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' blob: data:; font-src 'self' data:; connect-src 'self'; object-src 'none'; base-uri 'self'; "
+    "form-action 'self'; frame-ancestors 'self'"
+)
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
 
 STYLE = """
 :root { color-scheme: light dark; font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif }
@@ -19,11 +32,30 @@ input { flex: 1; min-width: 0 }
 """
 
 
-def page(title: str, body: str, *, refresh: int | None = None) -> str:
+# A session begins when this connects. Whoever only fetches pages starts nothing.
+BEGIN = """
+const say = (text) => { document.getElementById("said").textContent = text };
+if (!navigator.cookieEnabled) say("This page needs cookies, by which the server knows whose scene is whose.");
+else {
+  const socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/begin`);
+  let told = false;
+  socket.onmessage = ({ data }) => {
+    told = true;
+    location.replace(data === "ready" ? "/index.html?reconnect=auto" : "/");
+  };
+  socket.onclose = () => {
+    if (told) return;
+    say("The server does not answer; trying again.");
+    setTimeout(() => location.replace("/"), 2000);
+  };
+}
+"""
+
+
+def page(title: str, body: str) -> str:
     """Return a whole page around trusted HTML."""
-    again = "" if refresh is None else f'<meta http-equiv="refresh" content="{refresh}">'
     return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8">{again}'
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1"><link rel="icon" href="data:,">'
         f"<title>{escape(title)} · pvfiblets</title><style>{STYLE}</style></head>"
         f"<body><main><h1>{escape(title)}</h1>{body}</main></body></html>"
@@ -42,8 +74,12 @@ def ask_token(wrong: bool) -> str:
 
 
 def opening() -> str:
-    """Return the page that waits for a session, and asks again by itself."""
-    return page("Opening…", '<div class="bar"></div><p>The scene is being prepared.</p>', refresh=1)
+    """Return the page that begins a session, waits for it, and goes there by itself."""
+    return page(
+        "Opening…",
+        '<div class="bar"></div><p id="said">The scene is being prepared.</p>'
+        f"<noscript><p>This page needs JavaScript.</p></noscript><script>{BEGIN}</script>",
+    )
 
 
 def full(limit: int) -> str:

@@ -8,42 +8,33 @@ who it is: the token leaves the address with the first answer.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import secrets
 import time
 from collections.abc import Awaitable, Callable, Sequence
-from urllib.parse import urlencode
+from urllib.parse import parse_qs, urlencode
 
-import aiohttp
 from aiohttp import web
-from yarl import URL
 
 from pvfiblets.web import pages
-from pvfiblets.web.access import LARGEST_MESSAGE, Access, RefusedError, check_message
+from pvfiblets.web.access import Access, RefusedError
+from pvfiblets.web.connections import BACKLOG, Connection, Connections, room
+from pvfiblets.web.journal import Quiet
 from pvfiblets.web.launcher import SHARED, WORKER, Launcher, Session
 from pvfiblets.web.options import Options
+from pvfiblets.web.pages import HEADERS
+from pvfiblets.web.relay import HEARTBEAT, Relay
 
 logger = logging.getLogger("pvfiblets.web")
 
-KEY_HEADER = "X-Pvfiblets-Key"
-HEARTBEAT = 20.0  # seconds between pings: a browser that is gone without a word is found by them
+PATIENCE = 30.0  # seconds for a whole request to come, and for a body that stops
 WRONG_TOKEN = 1.0  # seconds that a wrong token waits for its answer
-# Vue compiles its templates in the browser, which needs 'unsafe-eval'; nothing is loaded from, or sent to, elsewhere.
-POLICY = (
-    "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
-    "img-src 'self' blob: data:; font-src 'self' data:; connect-src 'self'; object-src 'none'; base-uri 'self'; "
-    "form-action 'self'; frame-ancestors 'self'"
-)
-HEADERS = {
-    "Content-Security-Policy": POLICY,
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "same-origin",
-    "Cache-Control": "no-store",
-}
 # Pages and files of the application, and what it sends away.
 PASSED_ON = frozenset({"GET", "HEAD"})
 UPLOAD = "/upload"
 DOWNLOAD = "/download/"
+LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
 class Gate:
@@ -55,50 +46,89 @@ class Gate:
         Checked options.
     command : sequence of str, optional
         What a session's process runs.
+    patience : float, optional
+        Seconds that a connection may take for a whole request.
     """
 
-    def __init__(self, options: Options, command: Sequence[str] = WORKER) -> None:
+    def __init__(self, options: Options, command: Sequence[str] = WORKER, patience: float = PATIENCE) -> None:
         self.options = options
+        self.patience = patience
+        self.connections = Connections(options.connections, options.by_address, options.proxies)
+        self._quiet = Quiet()
+        self._counting: asyncio.Task[None] | None = None
+        self._listener: asyncio.Server | None = None
         self.access = Access(options, secrets.token_bytes(32))
-        self.launcher = Launcher(options, self._on_end, command)
-        self._sockets: dict[str, set[web.WebSocketResponse]] = {}
-        self._closing: set[asyncio.Task[object]] = set()
-        self._client: aiohttp.ClientSession | None = None
+        self.launcher = Launcher(options, lambda session: self._relay.hang_up(session), command)
+        self._relay = Relay(patience)
         self._runner: web.AppRunner | None = None
         self.port = 0
 
     async def start(self) -> None:
         """Listen, and prepare the first session."""
-        self._client = aiohttp.ClientSession(auto_decompress=False, timeout=aiohttp.ClientTimeout(total=None))
+        for name in LOGS:
+            logging.getLogger(name).addFilter(self._quiet)
+        self._counting = asyncio.create_task(self._count())
+        self.connections.most = room(self.options.connections, self.options.limit)
+        if self.connections.most < self.options.connections:
+            logger.warning(
+                "at most %d connections: this system allows no more open files (ulimit -n)", self.connections.most
+            )
+        self._relay.start()
         app = web.Application(middlewares=[self._guard], client_max_size=64 * 1024)
         app.router.add_post("/token", self._enter)
         app.router.add_post("/new", self._new)
         app.router.add_post("/end", self._end)
         app.router.add_post("/paraview/", self._connection)
         app.router.add_post(UPLOAD, self._upload)
+        app.router.add_get("/begin", self._begin)
         app.router.add_get("/ws", self._socket)
         app.router.add_get("/{path:.*}", self._pass_on)
-        self._runner = web.AppRunner(app, access_log=None, handle_signals=False)
+        self._runner = web.AppRunner(app, handle_signals=False)
         await self._runner.setup()
-        await web.TCPSite(self._runner, self.options.host, self.options.port).start()
-        self.port = int(self._runner.addresses[0][1])
+        server = self._runner.server
+        assert server is not None
+        self._listener = await asyncio.get_running_loop().create_server(
+            lambda: Connection(server, self.connections, self.patience),
+            self.options.host,
+            self.options.port,
+            backlog=BACKLOG,
+        )
+        self.port = int(self._listener.sockets[0].getsockname()[1])
         await self.launcher.start()
 
     async def stop(self) -> None:
         """End all sessions and stop listening."""
+        if self._listener is not None:
+            self._listener.close()
         await self.launcher.stop()
         if self._runner is not None:
             await self._runner.cleanup()
-        if self._client is not None:
-            await self._client.close()
+        await self._relay.stop()
+        if self._counting is not None:
+            self._counting.cancel()
+            await asyncio.gather(self._counting, return_exceptions=True)
+        self._quiet.report()
+        for name in LOGS:
+            logging.getLogger(name).removeFilter(self._quiet)
+
+    async def _count(self) -> None:
+        """Say now and then what the log left out: after a flood nothing else might be logged."""
+        while True:
+            await asyncio.sleep(self._quiet.seconds)
+            self._quiet.report()
 
     @property
     def url(self) -> str:
         """The address to open, with the token if one is asked for."""
+        query = "" if self.options.token is None else "?" + urlencode({"token": self.options.token})
+        return self.address + query
+
+    @property
+    def address(self) -> str:
+        """The address of the first page."""
         host = self.options.host
         shown = f"[{host}]" if ":" in host else {"0.0.0.0": "localhost", "::": "localhost"}.get(host, host)
-        query = "" if self.options.token is None else "?" + urlencode({"token": self.options.token})
-        return f"http://{shown}:{self.port}/{query}"
+        return f"http://{shown}:{self.port}/"
 
     # Checks
 
@@ -106,7 +136,25 @@ class Gate:
     async def _guard(
         self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
+        connection = request.protocol
+        assert isinstance(connection, Connection)
+        connection.asked = True
+        client = self.connections.client(request)
+        if client is not None:
+            request = request.clone(remote=client)
+        with self.connections.forwarded(client) as room_left:
+            return await self._answer(request, handler, connection, room_left)
+
+    async def _answer(
+        self,
+        request: web.Request,
+        handler: Callable[[web.Request], Awaitable[web.StreamResponse]],
+        connection: Connection,
+        room_left: bool,
+    ) -> web.StreamResponse:
         try:
+            if not room_left:
+                raise RefusedError(429, "too many requests at once from one address")
             host = request.headers.get("Host")
             self.access.check_host(host)
             self.access.check_path(request.raw_path)
@@ -114,16 +162,26 @@ class Gate:
                 raise RefusedError(405, "no such method")
             if request.method == "POST" or request.headers.get("Upgrade"):
                 self.access.check_origin(request.headers.get("Origin"), host)
-            if request.path != "/token" and not self.access.is_pass(request.cookies.get(self._pass_name)):
+            if request.path == "/token" and request.method == "POST":
+                return await handler(request)
+            if not self.access.is_pass(request.cookies.get(self._pass_name)):
                 return await self._admit(request)
-            response = await handler(request)
+            connection.busy = True
+            try:
+                return await handler(request)
+            finally:
+                connection.busy = False
         except RefusedError as refusal:
             self._log(request, refusal.reason)
             return self._page(pages.refused(refusal.reason), refusal.status)
         except web.HTTPException as answer:
             self._log(request, answer.reason)
             return self._page(pages.refused(answer.reason), answer.status)
-        return response
+        except (web.RequestPayloadError, TimeoutError) as error:
+            slow = isinstance(error, TimeoutError)
+            reason = "the rest of a request did not come" if slow else "the body is malformed"
+            self._log(request, reason)
+            return self._page(pages.refused(reason), 408 if slow else 400)
 
     async def _admit(self, request: web.Request) -> web.StreamResponse:
         """Answer a browser that has not shown the token yet."""
@@ -137,9 +195,13 @@ class Gate:
         return self._page(pages.ask_token(given is not None), 401)
 
     async def _enter(self, request: web.Request) -> web.StreamResponse:
-        form = await request.post()
-        given = form.get("token")
-        if isinstance(given, str) and self.access.is_token(given.strip()):
+        async with asyncio.timeout(self.patience):
+            form = (await request.read()).decode(errors="replace")
+        try:
+            given = parse_qs(form, max_num_fields=8).get("token", [""])[0]
+        except ValueError as error:
+            raise RefusedError(400, "too many fields") from error
+        if self.access.is_token(given.strip()):
             return self._welcome("/")
         await asyncio.sleep(WRONG_TOKEN)
         self._log(request, "a wrong token")
@@ -177,9 +239,11 @@ class Gate:
         return self.launcher.find(request.cookies.get(self._session_name))
 
     async def _new(self, request: web.Request) -> web.StreamResponse:
-        """Forget the browser's session, and begin another."""
+        """Forget the browser's session, so that it begins another."""
         session = self._session(request)
-        if session is not None and not self.options.shared:
+        if session is not None and session.ended:
+            self.launcher.forgive(session)
+        elif session is not None and not self.options.shared:
             await self.launcher.end(session)
         response = web.Response(status=303, headers=HEADERS | {"Location": "/"})
         response.del_cookie(self._session_name, path="/")
@@ -200,27 +264,62 @@ class Gate:
             raise RefusedError(404, "no session")
         return web.json_response({"sessionURL": "ws://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
 
-    async def _begin(self, request: web.Request) -> web.StreamResponse:
-        """Answer a browser that opens the page: with the application, or with why not yet or not at all."""
+    def _first_page(self, request: web.Request) -> web.StreamResponse:
+        """Answer a browser that opens the page: with the application, or with why not yet or not at all.
+
+        Nothing is started: whoever only fetches pages runs no script, and is content with this one.
+        """
         session = self._session(request)
-        if session is None or (session.ended and self.options.shared):
-            session = await self.launcher.open()
-            if session is None:
-                self._log(request, "the limit of sessions")
-                return self._page(pages.full(self.options.limit), 503)
-            response = web.Response(status=303, headers=HEADERS | {"Location": "/"})
-            self._set_cookie(response, self._session_name, session.id)
-            return response
-        if session.ended:
+        if session is None and not self.launcher.has_room:
+            self._log(request, "the limit of sessions")
+            return self._page(pages.full(self.options.limit), 503)
+        if session is not None and session.ended:
             return self._page(pages.ended(session.failure), 410)
-        session.seen = time.monotonic()
-        if session.port is None:
-            return self._page(pages.opening())
-        return web.Response(status=303, headers=HEADERS | {"Location": "/index.html?reconnect=auto"})
+        if session is not None:
+            session.seen = time.monotonic()
+        if session is not None and session.port is not None:
+            return web.Response(status=303, headers=HEADERS | {"Location": "/index.html?reconnect=auto"})
+        response = self._page(pages.opening())
+        if self._name(request) is None:
+            self._set_cookie(response, self._session_name, self.access.new_session())
+        return response
+
+    def _name(self, request: web.Request) -> str | None:
+        """Return what the browser's session is called, or is to be called."""
+        if self.options.shared:
+            return SHARED
+        cookie = request.cookies.get(self._session_name)
+        return cookie if self.access.is_session(cookie) else None
+
+    async def _begin(self, request: web.Request) -> web.StreamResponse:
+        """Begin the session of a page whose script has connected, and tell it when to go on."""
+        name = self._name(request)
+        if name is None:
+            raise RefusedError(403, "no cookie of a session")
+        socket = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=1024)
+        if not socket.can_prepare(request):
+            raise RefusedError(400, "not a WebSocket")
+        await socket.prepare(request)
+        session = await self.launcher.open(name)
+        if session is not None:
+            session.connections += 1  # whoever waits is there
+            try:
+                waits = {asyncio.ensure_future(socket.receive()), asyncio.ensure_future(session.ready.wait())}
+                await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+                for wait in waits:
+                    wait.cancel()
+                await asyncio.gather(*waits, return_exceptions=True)
+            finally:
+                session.connections -= 1
+                session.seen = time.monotonic()
+        with contextlib.suppress(ConnectionError):
+            await socket.send_str("ready" if session is not None and session.port is not None else "ask again")
+            await socket.close()
+        return socket
 
     async def _pass_on(self, request: web.Request) -> web.StreamResponse:
         if request.path == "/":
-            return await self._begin(request)
+            return self._first_page(request)
         session = self._session(request)
         if session is None or session.ended or session.port is None:
             if request.path == "/index.html":
@@ -228,7 +327,7 @@ class Gate:
             raise RefusedError(404, "no session")
         if request.method not in PASSED_ON:
             raise RefusedError(405, "no such method")
-        return await self._forward(request, session, None)
+        return await self._relay.forward(request, session)
 
     async def _upload(self, request: web.Request) -> web.StreamResponse:
         session = self._session(request)
@@ -238,107 +337,13 @@ class Gate:
             raise RefusedError(411, "an upload without its length")
         if request.content_length > self.options.upload:
             raise RefusedError(413, f"an upload above {self.options.upload} bytes")
-        return await self._forward(request, session, request.content)
-
-    async def _forward(
-        self, request: web.Request, session: Session, body: aiohttp.StreamReader | None
-    ) -> web.StreamResponse:
-        assert self._client is not None
-        headers = {KEY_HEADER: session.key}
-        for name in ("Accept", "Accept-Encoding", "Content-Type", "Content-Length", "Range"):
-            if name in request.headers and (body is not None or not name.startswith("Content-")):
-                headers[name] = request.headers[name]
-        address = f"http://127.0.0.1:{session.port}{request.raw_path}"
-        try:
-            async with self._client.request(
-                request.method, URL(address, encoded=True), headers=headers, data=body, allow_redirects=False
-            ) as answer:
-                response = web.StreamResponse(status=answer.status, headers=HEADERS)
-                for name in (
-                    "Content-Type",
-                    "Content-Encoding",
-                    "Content-Length",
-                    "Content-Disposition",
-                    "Content-Range",
-                ):
-                    if name in answer.headers:
-                        response.headers[name] = answer.headers[name]
-                if request.path.startswith("/__") and answer.status == 200:  # libraries; their folders carry versions
-                    response.headers["Cache-Control"] = "private, max-age=3600"
-                await response.prepare(request)
-                async for piece in answer.content.iter_any():
-                    await response.write(piece)
-                await response.write_eof()
-                return response
-        except aiohttp.ClientConnectionError as error:
-            raise RefusedError(502, "the session does not answer") from error
-
-    # WebSocket
+        return await self._relay.upload(request, session)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         session = self._session(request)
         if session is None or session.ended or session.port is None:
             raise RefusedError(404, "no session")
-        assert self._client is not None
-        # Pictures are compressed already: no permessage-deflate.
-        browser = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=LARGEST_MESSAGE, compress=False)
-        if not browser.can_prepare(request):
-            raise RefusedError(400, "not a WebSocket")
-        try:
-            inner = await self._client.ws_connect(
-                f"ws://127.0.0.1:{session.port}/ws", headers={KEY_HEADER: session.key}, max_msg_size=0, compress=0
-            )
-        except aiohttp.ClientError as error:
-            raise RefusedError(502, "the session does not answer") from error
-        async with inner:
-            await browser.prepare(request)
-            session.connections += 1
-            sockets = self._sockets.setdefault(session.id, set())
-            sockets.add(browser)
-            try:
-                pumps = {
-                    asyncio.create_task(self._upwards(request, browser, inner)),
-                    asyncio.create_task(self._downwards(inner, browser)),
-                }
-                _, rest = await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
-                for pump in rest:
-                    pump.cancel()
-                await asyncio.gather(*pumps, return_exceptions=True)
-            finally:
-                session.connections -= 1
-                session.seen = time.monotonic()
-                sockets.discard(browser)
-                if not browser.closed:
-                    await browser.close()
-        return browser
-
-    async def _upwards(
-        self, request: web.Request, browser: web.WebSocketResponse, inner: aiohttp.ClientWebSocketResponse
-    ) -> None:
-        async for message in browser:
-            if message.type is not aiohttp.WSMsgType.BINARY:
-                break
-            try:
-                check_message(message.data)
-            except RefusedError as refusal:
-                self._log(request, refusal.reason)
-                await browser.close(code=aiohttp.WSCloseCode.MESSAGE_TOO_BIG, message=refusal.reason.encode())
-                return
-            await inner.send_bytes(message.data)
-        if browser.close_code == aiohttp.WSCloseCode.MESSAGE_TOO_BIG:
-            self._log(request, f"a message above {LARGEST_MESSAGE} bytes")
-
-    async def _downwards(self, inner: aiohttp.ClientWebSocketResponse, browser: web.WebSocketResponse) -> None:
-        async for message in inner:
-            if message.type is not aiohttp.WSMsgType.BINARY:
-                break
-            await browser.send_bytes(message.data)  # waits for a slow browser, and so makes the session wait
-
-    def _on_end(self, session: Session) -> None:
-        for socket in self._sockets.pop(session.id, set()):
-            task = asyncio.ensure_future(socket.close(code=aiohttp.WSCloseCode.GOING_AWAY, message=b"session ended"))
-            self._closing.add(task)
-            task.add_done_callback(self._closing.discard)
+        return await self._relay.connect(request, session, lambda reason: self._log(request, reason))
 
 
 async def serve(options: Options, ready: Callable[[Gate], None]) -> None:

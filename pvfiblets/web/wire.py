@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pvfiblets.errors import FibletsError
+from pvfiblets.web.journal import printable
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -21,6 +22,7 @@ LONGEST_TEXT = 600_000  # a session file is the longest
 LONGEST_STATE = 1000  # characters of a text that is kept
 LARGEST_SIDE = 8192  # pixels of a picture
 MOST_PIXELS = 4096 * 2304
+PENDING = 8  # messages that come in several pieces at the same time; each takes memory for the whole of it
 LISTENED = 64  # keys of one state change, arguments of one call
 
 EVENTS = frozenset(
@@ -43,6 +45,10 @@ Check = Callable[..., list[Any] | None]
 
 # What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.
 EXPECTED = (FibletsError, OSError, ValueError, KeyError)
+
+
+# What unpacking a message raises that is none.
+UNREADABLE = (ValueError, TypeError, LookupError, RecursionError, MemoryError)
 
 
 class MalformedError(ValueError):
@@ -124,6 +130,43 @@ def sentence(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror  # without the server's path
     return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__
+
+
+def check_call(call: object) -> None:
+    """Refuse a message that is no call as the page makes them."""
+    if not isinstance(call, dict):
+        raise MalformedError(f"a call that is a {type(call).__name__}")
+    for name in ("id", "method"):
+        if not isinstance(call.get(name), str):
+            raise MalformedError(f"a call without a text as its {name}")
+    if not isinstance(call.get("args", []), list) or call.get("kwargs"):
+        raise MalformedError("a call with arguments that are no list")
+
+
+def guard_messages(handler: Any) -> None:
+    """Close connections that send what is no message, with one line in the log; wslink would write a traceback."""
+    receive, complete = handler.onMessage, handler.onCompleteMessage
+
+    async def on_complete(call: object, client: str) -> None:
+        check_call(call)
+        await complete(call, client)
+
+    async def on_message(is_binary: bool, message: Any, client: str) -> None:
+        try:
+            if not is_binary:
+                raise MalformedError("a text")
+            await receive(is_binary, message, client)
+            if len(handler.unchunkers[client].pending_messages) > PENDING:
+                raise MalformedError("too many messages that are not complete")
+        except ConnectionError:  # it has gone: its own loop ends
+            return
+        except UNREADABLE as error:  # what is called has a net of its own
+            reason = str(error) if isinstance(error, MalformedError) else type(error).__name__
+            logger.warning("refused a message: %s", reason)
+            handler.unchunkers[client].release_pending_messages()
+            await handler.connections[client].close(code=1007, message=b"malformed message")
+
+    handler.onMessage, handler.onCompleteMessage = on_message, on_complete
 
 
 class Doors:
@@ -235,7 +278,7 @@ class Doors:
         return [name]
 
     def _client_error(self, message: object) -> list[Any]:
-        return [str(message)[:500].replace("\n", " ")]
+        return [printable(str(message)[:500])]
 
     def _area(self, area: object, *_: object) -> list[Any]:
         if not isinstance(area, str):

@@ -18,10 +18,12 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from pvfiblets.web.journal import Quiet
+
 if TYPE_CHECKING:
     from pvfiblets.web.options import Options
 
-KEY_HEADER = "X-Pvfiblets-Key"  # as in pvfiblets/web/server.py
+KEY_HEADER = "X-Pvfiblets-Key"
 
 
 def main() -> int:
@@ -32,6 +34,8 @@ def main() -> int:
     os.dup2(2, 1)
     sys.argv = sys.argv[:1]  # trame reads the command line too
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s", stream=sys.stderr)
+    for handler in logging.root.handlers:  # browsers report errors of their scripts here, as many as they like
+        handler.addFilter(Quiet())
     try:
         _run(told, speaker)
     except Exception as error:
@@ -42,6 +46,7 @@ def main() -> int:
 
 def _run(told: dict[str, Any], speaker: TextIO) -> None:
     from pvfiblets.web.options import Options
+    from pvfiblets.web.wire import guard_messages
 
     options = Options.from_dict(told["options"])
     folder = Path(told["folder"])
@@ -57,6 +62,7 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
         # wslink offers no other way to its table of methods, which is what must be guarded.
         for handler in web_server._ws_handlers:  # noqa: SLF001
             app.doors.guard(handler.functionMap)
+            guard_messages(handler)
         web_server.app.middlewares.append(key_check(told["key"]))
         app.add_routes(web_server.app.router)
 
@@ -66,16 +72,26 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
 
     server.controller.on_server_bind.add(bind)
     server.controller.on_server_ready.add(ready)
+    listen(server)
+    app.close()
+
+
+def listen(server: Any) -> None:
+    """Run a server of trame's on a port of loopback until it is stopped.
+
+    It never stops by itself, as trame's do 300 seconds after the last browser has gone: when a session ends is the
+    gate's to say (:mod:`pvfiblets.web.launcher`), which keeps the only clock.
+    """
     server.start(
         port=0,
         host="127.0.0.1",
+        timeout=0,
         open_browser=False,
         show_connection_info=False,
         disable_logging=True,
         exec_mode="main",
         backend="aiohttp",
     )
-    app.close()
 
 
 def make_app(options: Options, folder: Path) -> Any:
@@ -92,7 +108,7 @@ def key_check(key: str) -> Callable[..., Awaitable[Any]]:
 
     @web.middleware
     async def check(request: web.Request, handler: Callable[[web.Request], Awaitable[Any]]) -> Any:
-        if not hmac.compare_digest(request.headers.get(KEY_HEADER, "").encode(), key.encode()):
+        if not hmac.compare_digest(request.headers.get(KEY_HEADER, "").encode(errors="backslashreplace"), key.encode()):
             raise web.HTTPForbidden
         return await handler(request)
 

@@ -49,14 +49,16 @@ class Served:
             "0",
             "--root",
             str(root),
+            "--token-file",
+            str(self.log.with_suffix(".token")),
         ]
         with self.log.open("w") as log:
             self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
         line = self.process.stdout.readline()
         found = re.search(r"http://\S+", line)
         assert found, self.log.read_text()
-        self.url = found.group()
-        self.base = self.url.partition("?")[0].rstrip("/")
+        self.base = found.group().rstrip("/")
+        self.url = f"{self.base}/?token={self.log.with_suffix('.token').read_text().strip()}"
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)

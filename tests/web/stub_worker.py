@@ -14,6 +14,16 @@ from pvfiblets.web.worker import key_check
 async def page(request):
     if request.path == "/crash":
         os._exit(3)
+    if request.path == "/half":
+        answer = web.StreamResponse(headers={"Content-Length": "1000000"})
+        await answer.prepare(request)
+        await answer.write(bytes(1000))
+        await asyncio.sleep(0.1)
+        os._exit(3)
+    if request.path == "/noise":
+        noise = (request.app["root"] / "noise").read_text()
+        for _ in range(500):
+            print(noise, file=sys.stderr, flush=True)
     return web.json_response({"pid": os.getpid(), "path": request.raw_path, "cookie": request.headers.get("Cookie")})
 
 
@@ -36,6 +46,7 @@ async def main(told):
     (Path(told["folder"]) / "session.tmp").write_text(str(os.getpid()))
     (Path(told["folder"]) / "notes").write_text(str(Path(told["options"]["root"]) / ".pvfiblets-part"))
     app = web.Application(middlewares=[key_check(told["key"])], client_max_size=2**30)
+    app["root"] = Path(told["options"]["root"])
     app.router.add_get("/ws", socket)
     app.router.add_post("/upload", upload)
     app.router.add_get("/{path:.*}", page)

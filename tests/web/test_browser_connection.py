@@ -13,7 +13,7 @@ def test_a_lost_connection_is_taken_up_again(visit):
         socket.connect_to_server()
         sockets.append(socket)
 
-    here.page.route_web_socket(lambda url: True, pass_on)
+    here.page.route_web_socket(lambda url: url.endswith("/ws"), pass_on)
     here.page.goto(here.served.url)
     here.ready()
     before = here.rests()

@@ -9,7 +9,7 @@ import pytest
 
 from pvfiblets.web.access import LARGEST_MESSAGE, Access, RefusedError, check_message
 from pvfiblets.web.confined import Confined, ConfinedError
-from pvfiblets.web.options import Options, chosen_token, is_loopback
+from pvfiblets.web.options import Options, is_loopback
 from pvfiblets.web.wire import Doors, MalformedError, plain, pointer_event, view_size
 
 TOKEN = "correct-horse-battery"
@@ -81,6 +81,9 @@ def test_files_are_written_under_known_names_and_never_over_others(root):
         ({"limit": 0}, "limit 0"),
         ({"timeout": 0.0}, "timeout 0"),
         ({"codec": "gif"}, "gif"),
+        ({"connections": 2}, "connections 2"),
+        ({"by_address": 0}, "connections-by-address 0"),
+        ({"proxies": ["lab.example"]}, "lab.example"),
     ],
 )
 def test_options_that_cannot_be_are_named(tmp_path, changes, named):
@@ -93,14 +96,6 @@ def test_missing_files_and_roots_are_named(tmp_path):
         Options(files=[str(tmp_path / "nothing.trk")], root=str(tmp_path)).checked()
     with pytest.raises(NotADirectoryError, match="--root"):
         Options(root=str(tmp_path / "nowhere")).checked()
-
-
-def test_tokens_are_made_given_or_left_out():
-    assert chosen_token("none") is None
-    assert chosen_token(TOKEN) == TOKEN
-    made = {chosen_token("auto") for _ in range(20)}
-    assert len(made) == 20
-    assert all(len(token) >= 32 for token in made)
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "127.8.8.8", "localhost", "::1", "[::1]"])

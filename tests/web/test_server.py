@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
 import signal
+import socket
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -14,71 +15,7 @@ import aiohttp
 import pytest
 
 from pvfiblets.web.access import LARGEST_MESSAGE
-from pvfiblets.web.options import Options
-from pvfiblets.web.server import Gate
-
-TOKEN = "correct-horse-battery"
-STUB = (sys.executable, str(Path(__file__).with_name("stub_worker.py")))
-
-
-@contextlib.asynccontextmanager
-async def gate(tmp_path, **options):
-    found = Gate(Options(port=0, root=str(tmp_path), **{"token": TOKEN} | options), STUB)
-    try:
-        await found.start()
-        yield found
-    finally:
-        await found.stop()
-
-
-class Browser:
-    """A client with cookies of its own."""
-
-    def __init__(self, gate):
-        self.gate = gate
-        self.base = f"http://127.0.0.1:{gate.port}"
-        self.http = aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True))
-
-    async def __aenter__(self):
-        return self
-
-    async def __aexit__(self, *_):
-        await self.http.close()
-
-    async def get(self, path, **more):
-        async with self.http.get(aiohttp.client.URL(self.base + path, encoded=True), **more) as answer:
-            return answer.status, await answer.text()
-
-    async def post(self, path, origin=None, **more):
-        headers = {"Origin": self.base if origin is None else origin} | more.pop("headers", {})
-        async with self.http.post(self.base + path, headers=headers, **more) as answer:
-            return answer.status, await answer.text()
-
-    async def enter(self):
-        """Show the token and wait for the session's page."""
-        await self.get(f"/?token={TOKEN}")
-        for _ in range(200):
-            status, text = await self.get("/")
-            if text.startswith("{"):
-                return await self.pid()
-            assert status == 200, text
-            await asyncio.sleep(0.05)
-        raise AssertionError("the session did not start")
-
-    async def pid(self):
-        async with self.http.get(self.base + "/index.html") as answer:
-            return (await answer.json())["pid"]
-
-    def socket(self, origin=None):
-        return self.http.ws_connect(self.base + "/ws", origin=self.base if origin is None else origin, max_msg_size=0)
-
-
-def message(content, total=None):
-    return b"id__" + bytes(4) + (len(content) if total is None else total).to_bytes(4, "little") + content
-
-
-def run(coroutine):
-    return asyncio.run(asyncio.wait_for(coroutine, 60))
+from tests.web.visitors import TOKEN, Browser, gate, message, raw, run
 
 
 def alive(pid):
@@ -163,20 +100,16 @@ def test_foreign_pages_and_names_are_refused(tmp_path, caplog):
 
 
 def test_paths_that_climb_never_reach_a_session(tmp_path):
-    async def raw(port, path, cookies):
-        reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(
-            f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookies}\r\nConnection: close\r\n\r\n".encode()
+    async def get(server, path, cookies):
+        return await raw(
+            server, f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookies}\r\nConnection: close\r\n\r\n"
         )
-        answer = await reader.read()
-        writer.close()
-        return answer
 
     async def test():
         async with gate(tmp_path) as server, Browser(server) as browser:
             await browser.enter()
-            cookies = "; ".join(f"{cookie.key}={cookie.value}" for cookie in browser.http.cookie_jar)
-            assert b"200 OK" in (await raw(server.port, "/fine", cookies))
+            cookies = browser.cookies()
+            assert b"200 OK" in (await get(server, "/fine", cookies))
             for path in (
                 "/../../etc/passwd",
                 "/a/%2e%2e/%2e%2e/etc/passwd",
@@ -184,7 +117,7 @@ def test_paths_that_climb_never_reach_a_session(tmp_path):
                 "/%252e%252e/x",
                 "/a\\..\\b",
             ):
-                answer = await raw(server.port, path, cookies)
+                answer = await get(server, path, cookies)
                 assert b" 404 " in answer.partition(b"\r\n")[0]
                 assert b"pid" not in answer
 
@@ -295,13 +228,30 @@ def test_a_session_that_cannot_start_says_why(tmp_path):
 
     async def test():
         async with gate(tmp_path) as server, Browser(server) as browser:
-            for _ in range(100):
-                status, text = await browser.get(f"/?token={TOKEN}")
-                if status == 410:
-                    break
-                await asyncio.sleep(0.05)
+            await browser.get(f"/?token={TOKEN}")
+            assert await browser.begin() == "ask again"
+            status, text = await browser.get("/")
             assert status == 410
             assert "there is no OpenGL &lt;here&gt;" in text
+
+    run(test())
+
+
+def test_a_process_that_cannot_be_started_is_said_and_takes_no_place(tmp_path):
+    async def test():
+        async with gate(tmp_path, limit=1) as server, Browser(server) as browser:
+            await browser.enter()
+            await browser.post("/end")
+            command, server.launcher._command = server.launcher._command, (str(tmp_path / "no-such-program"),)
+            await browser.get("/")
+            assert await browser.begin() == "ask again"
+            status, text = await browser.get("/")
+            assert status == 410
+            assert "no process could be started: No such file or directory" in text
+            assert not server.launcher.sessions
+            server.launcher._command = command
+            await browser.post("/new")
+            assert await browser.begin() == "ready"
 
     run(test())
 
@@ -346,3 +296,31 @@ def test_nobody_speaks_to_a_session_past_the_gate(tmp_path):
             assert session.key not in repr(session)
 
     run(test())
+
+
+IDLE = """
+import sys
+import trame.app
+from pvfiblets.web.worker import listen
+
+sys.argv = ["worker", "--timeout", "1"]  # as if trame's own clock were set to a second instead of 300
+server = trame.app.get_server()
+server.controller.on_server_ready.add(lambda **_: print(server.port, flush=True))
+listen(server)
+print("stopped", flush=True)
+"""
+
+
+def test_a_session_has_no_clock_of_its_own():
+    process = subprocess.Popen(
+        [sys.executable, "-c", IDLE], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
+    )
+    try:
+        port = int(process.stdout.readline())
+        time.sleep(1.8)
+        with socket.create_connection(("127.0.0.1", port), timeout=2.0):
+            pass
+        assert process.poll() is None
+    finally:
+        process.kill()
+        assert "stopped" not in process.communicate()[0]

@@ -1,0 +1,341 @@
+"""Many who come at once and finish nothing: the gate answers others meanwhile, and its log stays short."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import subprocess
+import sys
+import time
+
+import pytest
+
+from pvfiblets.web.connections import Connections, room
+from pvfiblets.web.journal import Quiet, printable
+from tests.web.visitors import TOKEN, Browser, gate, message, raw, run
+
+
+@contextlib.asynccontextmanager
+async def many(server, count, text=b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "):
+    """Open connections that begin a request and do not end it."""
+    writers = []
+    try:
+        for _ in range(count):
+            _, writer = await asyncio.open_connection("127.0.0.1", server.port)
+            writer.write(text)
+            writers.append(writer)
+        yield writers
+    finally:
+        for writer in writers:
+            writer.close()
+        await asyncio.gather(*(writer.wait_closed() for writer in writers), return_exceptions=True)
+
+
+async def answered(browser, path="/", seconds=2.0):
+    begun = time.monotonic()
+    status, _ = await browser.get(path)
+    assert time.monotonic() - begun < seconds
+    return status
+
+
+@pytest.mark.parametrize("limits", [{"connections": 40, "by_address": 400}, {"connections": 400, "by_address": 40}])
+def test_unfinished_requests_keep_nobody_out_and_fill_no_log(tmp_path, caplog, limits):
+    async def test():
+        async with gate(tmp_path, **limits) as server, Browser(server) as inside, Browser(server) as outside:
+            await inside.enter()
+            for text in b"", b"GET / HTTP/1.1\r\n", b"POST /token HTTP/1.1\r\nContent-Length: 50\r\n\r\nto":
+                async with inside.socket() as socket, many(server, 300, text):
+                    assert len(server.connections) <= 40
+                    await socket.send_bytes(message(b"still here"))  # who is at work gives way to nobody
+                    assert (await socket.receive_bytes()) == message(b"still here")
+                    assert await answered(inside, "/index.html") == 200
+                    assert await answered(outside) == 401
+
+    run(test())
+    assert len(caplog.records) < 40
+
+
+def test_connections_that_are_all_at_work_leave_a_short_answer_for_others(tmp_path, caplog):
+    async def test():
+        async with (
+            gate(tmp_path, by_address=8) as server,
+            Browser(server) as browser,
+            contextlib.AsyncExitStack() as stack,
+        ):
+            await browser.enter()
+            for _ in range(8):
+                await stack.enter_async_context(browser.socket())
+            assert b"503 Service Unavailable" in await raw(server, b"")
+
+    run(test())
+    assert "too many are busy" in caplog.text
+
+
+def test_a_request_that_does_not_come_whole_is_given_up(tmp_path):
+    async def give_up(server, text):
+        begun = time.monotonic()
+        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+        writer.write(text)
+        for _ in range(4):  # a few bytes now and then gain no time
+            await asyncio.sleep(0.1)
+            with contextlib.suppress(ConnectionError):
+                writer.write(b"a")
+        with contextlib.suppress(ConnectionError):
+            answer = await asyncio.wait_for(reader.read(), 5.0)
+            assert b" 200 " not in answer
+        assert time.monotonic() - begun < 4.0
+        writer.close()
+        with contextlib.suppress(ConnectionError):
+            await writer.wait_closed()
+
+    async def test():
+        post = b"POST /token HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://127.0.0.1\r\nContent-Length: 50\r\n\r\n"
+        async with gate(tmp_path, patience=0.3) as server:
+            await asyncio.gather(
+                give_up(server, b""),
+                give_up(server, b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "),
+                give_up(server, b"GET /x HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\nGET / HTTP/1.1\r\n"),
+                give_up(server, post + b"to"),
+            )
+            assert not len(server.connections)
+
+    run(test())
+
+
+def test_an_upload_that_stops_is_given_up_and_a_slow_one_is_not(tmp_path):
+    async def upload(server, browser, length):
+        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+        writer.write(
+            f"POST /upload?name=a.trk HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nOrigin: {browser.base}\r\n"
+            f"Cookie: {browser.cookies()}\r\nContent-Length: {length}\r\n\r\n".encode()
+        )
+        for _ in range(5):
+            writer.write(b"x" * 500)  # two and a half kB a second
+            await asyncio.sleep(0.2)
+        answer = await asyncio.wait_for(reader.readline(), 5.0)
+        writer.close()
+        await writer.wait_closed()
+        return answer
+
+    async def test():
+        async with gate(tmp_path, patience=0.5) as server, Browser(server) as browser:
+            await browser.enter()
+            done, stopped = await asyncio.gather(upload(server, browser, 2500), upload(server, browser, 60_000))
+            assert b" 200 " in done
+            assert b" 408 " in stopped
+            assert await browser.pid()
+
+    run(test())
+
+
+def test_an_upload_is_not_inflated_on_its_way(tmp_path):
+    import gzip
+
+    packed = gzip.compress(bytes(1_000_000))
+
+    async def test():
+        async with gate(tmp_path, upload=10_000) as server, Browser(server) as browser:
+            await browser.enter()
+            headers = {"Content-Encoding": "gzip"}
+            assert await browser.post("/upload?name=a.trk", data=packed, headers=headers) == (200, str(len(packed)))
+
+    run(test())
+
+
+def test_requests_count_by_the_address_that_a_known_proxy_names(tmp_path, caplog):
+    async def test():
+        async with gate(tmp_path, by_address=8, proxies=["127.0.0.1"]) as server, Browser(server) as browser:
+            await browser.enter()
+            async with contextlib.AsyncExitStack() as stack:
+                one = {"X-Forwarded-For": "10.9.9.9, 10.0.0.1"}  # what stands before the last, anybody may have written
+                for _ in range(8):
+                    await stack.enter_async_context(
+                        browser.http.ws_connect(browser.base + "/ws", origin=browser.base, headers=one)
+                    )
+                assert (await browser.get("/index.html", headers=one))[0] == 429
+                assert (await browser.get("/index.html", headers={"X-Forwarded-For": "10.0.0.2"}))[0] == 200
+            for _ in range(50):
+                status, _ = await browser.get("/index.html", headers=one)
+                if status == 200:
+                    break
+                await asyncio.sleep(0.02)
+            assert status == 200
+
+    run(test())
+    assert "from 10.0.0.1: too many requests" in caplog.text
+
+
+def test_nobody_else_is_believed_about_addresses(tmp_path, caplog):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            await browser.get("/", headers={"X-Forwarded-For": "10.0.0.1"})
+
+    run(test())
+    assert "from 127.0.0.1: no token" in caplog.text
+    assert "10.0.0.1" not in caplog.text
+
+
+def test_networks_of_ipv6_count_as_one_address():
+    class Quiet:
+        busy = True
+
+    book = Connections(100, 8)
+    assert all(book.enter(Quiet(), f"2001:db8:0:1::{n:x}") for n in range(8))
+    assert not book.enter(Quiet(), "2001:db8:0:1:ffff::1")
+    assert book.enter(Quiet(), "2001:db8:0:2::1")
+    assert all(book.enter(Quiet(), f"::ffff:10.0.0.{n}") for n in range(20))  # IPv4, on a socket of both
+
+
+FLOOD = """
+import resource, socket, sys
+hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+found = []
+for _ in range(int(sys.argv[2])):
+    found.append(socket.create_connection(("127.0.0.1", int(sys.argv[1]))))
+print("open", flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="counts open files in /proc")
+def test_running_out_of_file_descriptors_is_a_few_lines_and_passes(tmp_path, caplog):
+    import os
+    import resource
+
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            assert (await browser.get("/"))[0] == 401
+            limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+            crowd = subprocess.Popen(
+                [sys.executable, "-c", FLOOD, str(server.port), "60"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            )
+            try:
+                free = os.dup(0)
+                os.close(free)
+                resource.setrlimit(resource.RLIMIT_NOFILE, (free + 10, limits[1]))
+                await asyncio.to_thread(crowd.stdout.readline)
+                await asyncio.sleep(1.5)  # the event loop tries again every second
+            finally:
+                resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+                assert len(server.connections) < 30
+                crowd.communicate()
+            await asyncio.sleep(1.1)
+            assert await answered(browser) == 401
+
+    run(test())
+    assert "out of system resource" in caplog.text
+    assert len(caplog.records) < 30
+
+
+def test_the_limit_fits_into_the_file_descriptors():
+    script = (
+        "import resource\n"
+        "from pvfiblets.web.connections import room\n"
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (300, 400))\n"
+        "print(room(1000, 8), room(10, 8), resource.getrlimit(resource.RLIMIT_NOFILE)[0])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    most, few, raised = map(int, done.stdout.split())
+    assert raised == 400  # as far as it goes
+    assert 50 < most < 200  # each may take two
+    assert few == 10
+    assert room(10, 1) == 10
+
+
+@pytest.fixture
+def journal(caplog):
+    now = [0.0]
+    quiet = Quiet(3, 60.0, lambda: now[0])
+    logger = logging.getLogger("pvfiblets.test_flood")
+    logger.addFilter(quiet)
+    yield logger, quiet, now
+    logger.removeFilter(quiet)
+
+
+def test_the_log_says_how_many_lines_it_left_out(journal, caplog):
+    logger, quiet, now = journal
+    for number in range(10):
+        logger.warning("refused %s", number)
+    logger.warning("another kind %s", 1)
+    said = [record.getMessage() for record in caplog.records]
+    assert said == ["refused 0", "refused 1", "refused 2", "another kind 1"]
+    now[0] = 61.0
+    logger.warning("refused %s", 10)
+    assert [record.getMessage() for record in caplog.records[4:]] == [
+        "7 more lines were left out, of the kind: refused 3",
+        "refused 10",
+    ]
+    quiet.report()
+    assert len(caplog.records) == 6  # nothing more
+
+
+def test_lines_of_one_session_leave_room_for_those_of_another(journal, caplog):
+    logger, _, _ = journal
+    for about in ("one", "two"):
+        for number in range(100):
+            logger.warning("said %s", number, extra={"about": about})
+    assert len(caplog.records) == 60
+
+
+def test_a_line_of_the_log_is_one_line():
+    assert printable("a\nb\x1b[31m\r\u202e") == "a\\nb\\x1b[31m\\r\\u202e"
+    assert printable("größer 纤维") == "größer 纤维"
+    assert len(printable("x" * 100_000)) < 1100
+
+
+def test_pages_alone_start_no_process(tmp_path):
+    async def test():
+        async with gate(tmp_path, token=None, limit=3) as server:
+            first = set(server.launcher.sessions)  # prepared when the server starts
+            for _ in range(10):
+                async with Browser(server) as crawler:
+                    for path in ("/", "/index.html", "/robots.txt"):
+                        await crawler.get(path)
+                    async with crawler.http.head(crawler.base + "/") as answer:
+                        assert answer.status == 200
+                    status, text = await crawler.get("/")
+                    assert status == 200
+                    assert "The scene is being prepared" in text
+                    assert "refresh" not in text
+            assert set(server.launcher.sessions) == first
+            async with Browser(server) as browser:  # what sets no cookie has none of its own making
+                for cookie in ("made-up", "made.up", "x." + "0" * 32, "\udcff"):
+                    browser.http.cookie_jar.clear()
+                    headers = {"Cookie": f"pvfiblets-session-{server.port}={cookie}"}
+                    if cookie.isascii():
+                        with pytest.raises(Exception, match="403"):
+                            await browser.http.ws_connect(browser.base + "/begin", origin=browser.base, headers=headers)
+                with pytest.raises(Exception, match="403"):  # nor may pages of others begin one
+                    await browser.http.ws_connect(browser.base + "/begin", origin="http://evil.example")
+            assert set(server.launcher.sessions) == first
+            async with Browser(server) as browser:
+                await browser.get("/")
+                assert await asyncio.gather(*(browser.begin() for _ in range(3))) == ["ready"] * 3  # three tabs
+                assert len(server.launcher.sessions) == 1
+                assert await browser.pid()
+
+    run(test())
+
+
+def test_whoever_waits_for_a_session_keeps_it_and_the_limit_holds(tmp_path):
+    async def test():
+        async with gate(tmp_path, limit=1, timeout=0.3) as server, Browser(server) as one, Browser(server) as other:
+            await one.get(f"/?token={TOKEN}")
+            await other.get(f"/?token={TOKEN}")
+            assert await one.begin() == "ready"
+            assert await other.begin() == "ask again"
+            assert (await other.get("/"))[0] == 503
+            async with one.socket() as socket:
+                await asyncio.sleep(0.8)  # longer than the time-out, but connected
+                await socket.send_bytes(message(b"here"))
+                assert (await socket.receive_bytes()) == message(b"here")
+            for _ in range(100):
+                if not server.launcher.sessions:
+                    break
+                await asyncio.sleep(0.05)
+            assert not server.launcher.sessions  # and the documented time later it ends
+            assert await other.begin() == "ready"
+
+    run(test())
