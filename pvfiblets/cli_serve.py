@@ -24,12 +24,13 @@ def serve(
     limit: int,
     timeout: float,
     upload: int,
+    memory: str,
     codec: str,
     rendering: str,
     origin: list[str],
 ) -> int:
     """Serve files to browsers until interrupted."""
-    from pvfiblets.web.options import MEBIBYTE, Options, chosen_token
+    from pvfiblets.web.options import MEBIBYTE, Options, chosen_memory, chosen_token
 
     if rendering != "server":
         raise ValueError(
@@ -49,6 +50,7 @@ def serve(
         limit=limit,
         timeout=timeout,
         upload=upload * MEBIBYTE,
+        memory=chosen_memory(memory, 1 if shared else limit),
         codec=codec,
         origins=origin,
     ).checked()

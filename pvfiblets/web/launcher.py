@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pvfiblets.web import scratch
+from pvfiblets.web import endings, scratch
 from pvfiblets.web.options import Options
 
 logger = logging.getLogger("pvfiblets.web")
@@ -49,6 +49,10 @@ class Session:
         Browsers (or tabs) that are connected now.
     folder : Path or None
         Of its temporary files; it goes with the process.
+    doing : str
+        What its process opens now, for people; empty if nothing.
+    last_lines : deque of str
+        What its process wrote to standard error last.
     """
 
     id: str
@@ -62,6 +66,8 @@ class Session:
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     ended: bool = False
     folder: Path | None = None
+    doing: str = ""
+    last_lines: deque[str] = field(default_factory=lambda: deque(maxlen=50), repr=False)
 
     @property
     def short(self) -> str:
@@ -167,13 +173,15 @@ class Launcher:
                 session.ready.set()
             elif isinstance(told, dict) and "failure" in told:
                 said = str(told["failure"])
+            elif isinstance(told, dict) and "doing" in told:
+                session.doing = str(told["doing"])
         code = await process.wait()
         await errors
         if session.folder is not None:
             await asyncio.to_thread(scratch.remove, session.folder)
         if not session.ended:
-            session.failure = said or "its process ended unexpectedly"
-            logger.error("session %s: %s (exit code %s)", session.short, session.failure, code)
+            session.failure = said or endings.reason(code, session.last_lines, session.doing, self._options.memory)
+            logger.error("session %s: %s (%s)", session.short, session.failure, endings.shown(code))
         await self._forget(session)
 
     async def _keep(self, session: Session, stream: asyncio.StreamReader) -> None:
@@ -185,6 +193,7 @@ class Launcher:
             if not line:
                 return
             text = line.decode(errors="replace").rstrip()
+            session.last_lines.append(text)
             logger.info("session %s: | %s", session.short, text)
 
     async def _forget(self, session: Session) -> None:
