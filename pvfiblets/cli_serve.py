@@ -77,6 +77,7 @@ def _run(options: Any) -> int:
             print(
                 f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address."
             )
+        print(memory_of(options), flush=True)
         print("Stop with Ctrl+C.", flush=True)
 
     async def main() -> None:
@@ -92,3 +93,12 @@ def _run(options: Any) -> int:
     with contextlib.suppress(asyncio.CancelledError, KeyboardInterrupt):
         asyncio.run(main())
     return 0
+
+
+def memory_of(options: Any) -> str:
+    """Return what a session may have, as a sentence."""
+    from pvfiblets.memory import shown
+
+    if options.memory is None:
+        return "Sessions have no limit of memory: this system cannot hold a process to one."
+    return f"A session may have {shown(options.memory)} of memory (--memory)."

@@ -7,8 +7,16 @@ from collections.abc import Iterable
 
 from pvfiblets import memory
 
-# What C++, LLVM, Python and VTK write when memory runs out. Each of them may end the process then.
-_SIGNS = ("std::bad_alloc", "MemoryError", "out of memory", "Cannot allocate memory", "Unable to allocate")
+# What C++, LLVM, Python and VTK write when memory runs out, or a file asks for more than any memory holds. Each of them
+# may end the process then.
+_SIGNS = (
+    "std::bad_alloc",
+    "std::length_error",
+    "MemoryError",
+    "out of memory",
+    "Cannot allocate memory",
+    "Unable to allocate",
+)
 
 
 def reason(code: int | None, lines: Iterable[str], doing: str, most: int | None) -> str:

@@ -137,7 +137,10 @@ def chosen_memory(text: str, sessions: int) -> int | None:
     fifth of the machine: four that are full leave the server what it needs.
     """
     if text != "auto":
-        return parse(text)
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise ValueError(f"--memory {error}") from None
     machine = of_machine()
     if not CAN_LIMIT or not machine:
         return None

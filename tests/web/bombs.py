@@ -84,6 +84,15 @@ def nii(target, megabytes, scale=0.0):
     zeros(target, header.binaryblock + bytes(4), megabytes * MEBIBYTE)
 
 
+def nrrd(target, megabytes):
+    head = (
+        f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1024 1024 {megabytes}\nencoding: gzip\n"
+        "space: right-anterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n\n"
+    )
+    zeros(target, b"", megabytes * MEBIBYTE)
+    target.write_bytes(head.encode() + target.read_bytes())
+
+
 def tt(target, megabytes):
     plain_zeros(target, struct.pack("<5i", 0, 0, 0, 0, 1), megabytes * MEBIBYTE)
 
@@ -129,6 +138,21 @@ def vtk(target, megabytes):
         f"ORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA {megabytes * MEBIBYTE}\nSCALARS v unsigned_char 1\n"
         "LOOKUP_TABLE default\n1 2 3\n"
     )
+
+
+def gltf(target, megabytes):
+    """The same in another, with which VTK ends the process."""
+    n = megabytes * MEBIBYTE // 12
+    data = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": n, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]}
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": 12 * n}],
+        "buffers": [{"byteLength": 12 * n, "uri": "data:application/octet-stream;base64," + "A" * 48}],
+    }  # fmt: skip
+    target.write_text(json.dumps(data))
 
 
 def _opened(folder, room, names):

@@ -15,6 +15,7 @@ import pytest
 
 import pvfiblets
 from pvfiblets import memory
+from pvfiblets.cli_serve import memory_of
 from pvfiblets.web import endings
 from pvfiblets.web.launcher import WORKER
 from pvfiblets.web.options import SMALLEST_MEMORY, Options, chosen_memory
@@ -32,6 +33,7 @@ BOMBS = {
     "lines.trx": lambda path: bombs.trx(path, 400),
     "lines.tt.gz": lambda path: bombs.tt(path, 400),
     "head.nii.gz": lambda path: bombs.nii(path, 400),
+    "head.nrrd": lambda path: bombs.nrrd(path, 400),
     "head.vti": lambda path: bombs.vti(path, 400),
     "mesh.vtp": lambda path: bombs.vtp(path, 400),
     # These say less than they take.
@@ -122,6 +124,21 @@ def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it(scene
     assert desk.page.job == {}
 
 
+def test_what_cannot_be_drawn_for_want_of_memory_is_not_kept(scene, folder, monkeypatch):
+    desk = Desk(scene, folder)
+    scene.open("lines.fiblets")
+    state, kept = scene.state, dict(scene.store.loaded)
+
+    def add_actor(*_):
+        raise MemoryError("Unable to allocate 3.00 GiB for an array with shape (3, 1) and data type float32")
+
+    monkeypatch.setattr("pvfiblets.web.scene.add_actor", add_actor)
+    with pytest.raises(ValueError, match="ball.ply was not opened: it needs more memory than is left; remove"):
+        asyncio.run(desk.files.open("ball.ply"))
+    assert scene.state is state
+    assert scene.store.loaded == kept
+
+
 def test_shares_of_the_machine(monkeypatch):
     monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 100 * 2**30)
     assert chosen_memory("auto", 1) == 80 * 2**30
@@ -135,11 +152,19 @@ def test_shares_of_the_machine(monkeypatch):
 
 
 def test_too_little_is_refused_before_anything_starts(tmp_path, monkeypatch):
+    with pytest.raises(ValueError, match="--memory 'lots' is no size of memory; give one such as 4G"):
+        chosen_memory("lots", 8)
     with pytest.raises(ValueError, match=r"--memory 100 MB: a session needs 640 MB .* give as much or more"):
         Options(root=str(tmp_path), token=None, memory=100 << 20).checked()
     monkeypatch.setattr("pvfiblets.web.options.CAN_LIMIT", False)
     with pytest.raises(ValueError, match="--memory: this system cannot"):
         Options(root=str(tmp_path), token=None, memory=2**30).checked()
+
+
+def test_what_a_session_may_have_is_said_at_the_start(tmp_path):
+    options = Options(root=str(tmp_path), token=None, memory=3 * 2**30)
+    assert memory_of(options) == "A session may have 3.0 GB of memory (--memory)."
+    assert "no limit of memory: this system cannot" in memory_of(Options(root=str(tmp_path), token=None))
 
 
 async def _ending(server, browser):
@@ -164,6 +189,23 @@ def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
 
     page = run(test())
     assert re.search(r"--memory 300 MB: a session takes \d+ MB on this machine .* with \d+ MB or more<", page)
+
+
+def test_a_file_with_which_vtk_ends_the_process_is_named(tmp_path):
+    bombs.gltf(tmp_path / "points.gltf", 1000)
+
+    async def test():
+        options = Options(port=0, root=str(tmp_path), mesh=[str(tmp_path / "points.gltf")], memory=768 << 20)
+        server = Gate(options, WORKER)
+        try:
+            await server.start()
+            async with Browser(server) as browser:
+                return await _ending(server, browser)
+        finally:
+            await server.stop()
+
+    page = run(test())
+    assert "ran out of memory (a session may have 768 MB) while it opened points.gltf; open a smaller file, or" in page
 
 
 def test_a_process_that_c_ends_for_want_of_memory_has_a_sentence(tmp_path, caplog):
