@@ -25,6 +25,7 @@ except ImportError:  # Windows
 
 __all__ = [
     "CAN_LIMIT",
+    "ENVIRONMENT",
     "TooLargeError",
     "check_room",
     "limit",
@@ -40,6 +41,9 @@ __all__ = [
 MEBIBYTE = 1 << 20
 CAN_LIMIT = resource is not None and sys.platform.startswith("linux")
 """Whether :func:`limit` is possible: other systems have no such limit, or do not keep to it."""
+ENVIRONMENT = {"MALLOC_ARENA_MAX": "1"}
+"""For a process that :func:`limit` is for: when memory runs out, glibc tries its other arenas one by one, and keeps
+what each of them got, though all of it is free."""
 RESERVE = 48 * MEBIBYTE
 """What must be left after something was loaded, so that the rest of the program goes on."""
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}

@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pvfiblets import memory
 from pvfiblets.web import endings, scratch
 from pvfiblets.web.options import Options
 
@@ -136,6 +137,8 @@ class Launcher:
         session = Session(identifier, folder=None if self._scratch is None else self._scratch.session())
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
+        if self._options.memory is not None:
+            environment |= memory.ENVIRONMENT
         process = await asyncio.create_subprocess_exec(
             *self._command,
             stdin=asyncio.subprocess.PIPE,

@@ -59,6 +59,11 @@ def trk_that_says_so(target, megabytes):
     plain_zeros(target, _trk_header(0), megabytes * MEBIBYTE)
 
 
+def trk_of_none(target, megabytes):
+    """Streamlines without points, and an end that tells the size of the last 16 MB."""
+    zeros(target, _trk_header(0), megabytes * MEBIBYTE)
+
+
 def trx(target, megabytes):
     n = megabytes * MEBIBYTE // 12
     header = {"DIMENSIONS": [1, 1, 1], "VOXEL_TO_RASMM": np.eye(4).tolist(), "NB_VERTICES": n, "NB_STREAMLINES": 1}
@@ -95,6 +100,10 @@ def nrrd(target, megabytes):
 
 def tt(target, megabytes):
     plain_zeros(target, struct.pack("<5i", 0, 0, 0, 0, 1), megabytes * MEBIBYTE)
+
+
+def tt_that_says_less(target, megabytes):
+    zeros(target, struct.pack("<5i", 50, megabytes * MEBIBYTE // 2, 1, 0, 6) + b"track\0", megabytes * MEBIBYTE)
 
 
 def _vtk(target, kind, content, megabytes):
