@@ -226,6 +226,13 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         help="how long a session waits for its browser to come back (default: 300)",
     )
     add("--upload", type=int, default=2048, metavar="MB", help="most in one upload (default: %(default)s)")
+    add(
+        "--memory",
+        default="auto",
+        metavar="SIZE",
+        help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
+        "least 20%%)",
+    )
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
     add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
     add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")

@@ -27,6 +27,7 @@ def serve(
     limit: int,
     timeout: float,
     upload: int,
+    memory: str,
     codec: str,
     rendering: str,
     origin: list[str],
@@ -35,7 +36,7 @@ def serve(
     connections_by_address: int,
 ) -> int:
     """Serve files to browsers until interrupted."""
-    from pvfiblets.web.options import MEBIBYTE, Options
+    from pvfiblets.web.options import MEBIBYTE, Options, chosen_memory
     from pvfiblets.web.tokens import VARIABLE, chosen_token
 
     if rendering != "server":
@@ -56,6 +57,7 @@ def serve(
         limit=limit,
         timeout=timeout,
         upload=upload * MEBIBYTE,
+        memory=chosen_memory(memory, 1 if shared else limit),
         codec=codec,
         origins=origin,
         connections=connections,
@@ -95,6 +97,7 @@ def _run(options: Any, named: str | None) -> int:
             print(
                 f"From another machine: ssh -L {gate.port}:127.0.0.1:{gate.port} THIS_MACHINE, then the same address."
             )
+        print(memory_of(options), flush=True)
         print("Stop with Ctrl+C.", flush=True)
 
     async def main() -> None:
@@ -114,3 +117,12 @@ def _run(options: Any, named: str | None) -> int:
         for path in kept:
             tokens.forget(path)
     return 0
+
+
+def memory_of(options: Any) -> str:
+    """Return what a session may have, as a sentence."""
+    from pvfiblets.memory import shown
+
+    if options.memory is None:
+        return "Sessions have no limit of memory: this system cannot hold a process to one."
+    return f"A session may have {shown(options.memory)} of memory (--memory)."

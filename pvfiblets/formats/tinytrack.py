@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
+from pvfiblets.formats.gzipped import check_swelling, inflate
 from pvfiblets.formats.rows import finite, transformed
-from pvfiblets.formats.trk import inflate
 from pvfiblets.formats.whole import facts, pieces
 from pvfiblets.streamlines import Streamlines
 
@@ -121,6 +121,7 @@ def _records(path: str, track: _Matrix) -> tuple[Array, NDArray[np.int64]]:
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a tt.gz file (see :func:`pvfiblets.formats.read`)."""
     name = fspath(path)
+    check_swelling(name, whole=True)
     with gzip.open(name, "rb") as stream:
         data = inflate(name, stream, -1)
     matrices = _matrices(name, data)

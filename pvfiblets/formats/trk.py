@@ -26,21 +26,23 @@ a record of no points                          a streamline without points, kept
 from __future__ import annotations
 
 import gzip
-import zlib
 from array import array
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike, fspath
+from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
+from pvfiblets.formats.gzipped import DENSEST, check_swelling, inflate
 from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.rows import finite, transformed, without_rows
 from pvfiblets.formats.trk_header import HEADER_SIZE, Header, parse_header
 from pvfiblets.formats.trk_writer import write
+from pvfiblets.memory import check_room
 from pvfiblets.streamlines import Streamlines
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
@@ -71,6 +73,9 @@ class _Words(Protocol):
     def odd_bytes(self) -> int:
         """Return how many bytes at the end do not fill a word (known once the end is met)."""
 
+    def most(self) -> int:
+        """Return how many words there can be at most."""
+
 
 class _MappedWords:
     def __init__(self, file: MappedFile, order: str) -> None:
@@ -88,6 +93,9 @@ class _MappedWords:
 
     def odd_bytes(self) -> int:
         return self._odd
+
+    def most(self) -> int:
+        return len(self._words)
 
 
 class _InflatedWords:
@@ -123,13 +131,8 @@ class _InflatedWords:
     def odd_bytes(self) -> int:
         return len(self._kept) % 4 if self._ended else 0
 
-
-def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
-    """Return up to `n` decompressed bytes; FormatError where the compressed data are damaged."""
-    try:
-        return stream.read(n)
-    except (OSError, EOFError, zlib.error) as error:
-        raise FormatError(path, stream.tell(), f"damaged gzip data ({error})", "an intact gzip file") from error
+    def most(self) -> int:
+        return Path(self.path).stat().st_size * DENSEST // 4
 
 
 class _Batch(NamedTuple):
@@ -206,6 +209,8 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
                     "the end of the file",
                     f"{need} words of the streamline that begins at byte {at}: the file is truncated",
                 )
+            if size == normal and position + need <= words.most():  # else it is damaged, which its end will show
+                check_room(4 * need)
             # Grow by doubling, not to `need` at once: a damaged count must not cost memory.
             size = min(need, 2 * size)
             continue
@@ -235,6 +240,7 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
 def _opened(path: str | PathLike[str]) -> Iterator[tuple[_Words, Header]]:
     name = fspath(path)
     if name.lower().endswith(".gz"):
+        check_swelling(name)
         with gzip.open(name, "rb") as stream:
             header = parse_header(name, inflate(name, stream, HEADER_SIZE))
             yield _InflatedWords(name, stream, header.order), header

@@ -64,8 +64,8 @@ class XmlFile:
     Parameters
     ----------
     path : path-like
-    kind : {"PolyData", "ImageData"}
-        What it must hold.
+    kind : {"PolyData", "ImageData"} or None
+        What it must hold; ``None``: whatever it says.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class XmlFile:
         Of that kind.
     """
 
-    def __init__(self, path: str | PathLike[str], kind: str = "PolyData") -> None:
+    def __init__(self, path: str | PathLike[str], kind: str | None = "PolyData") -> None:
         self.file = MappedFile(path)
         self.path = self.file.path
         head = self.file.bytes(0, min(self.file.size, 4096), "the XML header")
@@ -88,8 +88,9 @@ class XmlFile:
         if match is not None and not tail.rstrip().endswith(b"</VTKFile>"):
             raise FormatError(self.path, self.file.size, repr(tail[-20:]), "</VTKFile>: the file is truncated")
         root = self._parse(self.file.size if match is None else match.start(), match is None)
-        found, content = root.attributes.get("type", ""), root.child(kind)
-        if root.tag != "VTKFile" or found != kind or content is None:
+        found = root.attributes.get("type", "")
+        content = root.child(found if kind is None else kind)
+        if root.tag != "VTKFile" or (kind is not None and found != kind) or content is None:
             remedy = "; extract the lines and save those" if kind == "PolyData" else ""
             raise FormatError(
                 self.path, root.position, f"{root.tag} of type {found!r}", f"VTKFile of type {kind!r}{remedy}"
@@ -216,6 +217,19 @@ class XmlFile:
             self._check_size(element, source.sizes(1)[0], promised)
         else:
             source.compressed_sizes(self._blocks(element, source, promised)[0])
+
+    def stated(self, element: Element, rows: int) -> int:
+        """Return how many bytes a DataArray says that it takes, or as many rows of it would."""
+        kind, form = element.attributes.get("type", ""), element.attributes.get("format", "ascii")
+        size = np.dtype(_TYPES[kind]).itemsize if kind in _TYPES else 1
+        promised = rows * max(1, element.count("NumberOfComponents")) * size
+        if form == "ascii":
+            return promised
+        source = self._source(element, form == "appended")
+        if self._compressor is None:
+            return max(promised, *source.sizes(1))
+        n, block, last = source.sizes(3)
+        return max(promised, (n - 1) * block + (last or block) if n else 0)
 
     def error(self, element: Element, found: str, expected: str) -> FormatError:
         """Make the error that says what is wrong with an array."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.memory import check_room
 
 Array = NDArray[Any]
 
@@ -118,6 +119,7 @@ class ZipArrays:
             raise FormatError(self.path, None, f"no {name} in the archive", f"a file {name}")
         info = self._infos[name]
         self.check_size(info)
+        check_room(info.file_size)
         with self.damage(info.header_offset, name):
             return self.archive.read(info), info.header_offset
 
@@ -225,6 +227,7 @@ class ArrayEntry:
 
     def _read(self, n: int) -> bytes:
         assert self._stream is not None
+        check_room(n)
         data = self._stream.read(n) if n else b""
         if len(data) != n:
             raise FormatError(

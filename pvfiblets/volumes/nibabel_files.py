@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.errors import FormatError
+from pvfiblets.memory import check_room
 
 __all__ = ["opened"]
 
@@ -74,6 +75,7 @@ def _check_size(path: Path, data: Any) -> None:
     needed = int(data.offset) + math.prod(shape) * data.dtype.itemsize
     size = path.stat().st_size
     if path.name.lower().endswith((".gz", ".mgz")):
+        check_room(needed)
         size = needed if needed <= LIKELY * size else _inflated_size(path, needed)
     if size < needed:
         raise FormatError(path, None, f"{size} bytes", f"{needed}, as the header's sizes and type say")

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
+from pvfiblets.memory import check_room
 
 __all__ = ["Packing", "data_file", "numbers"]
 
@@ -94,6 +95,7 @@ def data_file(header: Path, name: str) -> Path:
 
 def _unpacked(path: Path, start: int, needed: int, packing: Packing, skip: int) -> bytearray:
     """Return what compressed data hold from `skip` on, as far as it is needed."""
+    check_room(needed + max(skip, 0))
     kept = bytearray()
     try:
         with path.open("rb") as file:

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FormatError
+from pvfiblets.formats.vtk_sizes import stated_bytes
 from pvfiblets.formats.vtk_xml import Element, XmlFile
+from pvfiblets.memory import check_room
 
 __all__ = ["check_sizes", "read"]
 
@@ -76,6 +78,7 @@ def check_sizes(path: Path) -> None:
                 file.check_sizes(array, rows)
     for array in _arrays(file.content.child("FieldData")):
         file.check_sizes(array, array.count("NumberOfTuples"))
+    check_room(stated_bytes(file))
 
 
 def _arrays(holder: Element | None) -> list[Element]:

@@ -171,6 +171,10 @@ def _progress(app: Any) -> None:
                 v3.VBtn("Cancel", v_if="job.cancellable", size="x-small", variant="tonal", classes="text-none",
                         click=app.files.cancel, data_action="cancel")  # fmt: skip
             v3.VProgressLinear(model_value=("job.share",), indeterminate=("job.share < 0",), color="primary")
+            html.Div(
+                "{{ job.then }}", v_if="job.then", style="font-size: 12px; opacity: .7", classes="text-truncate mt-2",
+                title=("job.then",), id="waiting",
+            )  # fmt: skip
     with v3.VCard(
         v_if="uploading && !job.text", elevation=8, width=340, id="uploading", classes="pv-progress",
     ):  # fmt: skip

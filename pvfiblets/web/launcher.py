@@ -20,7 +20,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pvfiblets.web import scratch, tokens
+from pvfiblets import memory
+from pvfiblets.web import endings, scratch, tokens
 from pvfiblets.web.journal import printable
 from pvfiblets.web.options import Options
 
@@ -52,6 +53,10 @@ class Session:
         Of its temporary files; it goes with the process.
     short : str
         What logs call it: nothing of the cookie.
+    doing : str
+        What its process opens now, for people; empty if nothing.
+    last_lines : deque of str
+        What its process wrote to standard error last.
     """
 
     id: str = field(repr=False)
@@ -66,6 +71,8 @@ class Session:
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     ended: bool = False
     folder: Path | None = None
+    doing: str = ""
+    last_lines: deque[str] = field(default_factory=lambda: deque(maxlen=50), repr=False)
 
 
 class Launcher:
@@ -143,6 +150,8 @@ class Launcher:
         self.sessions[identifier] = session
         environment = os.environ | {"WSLINK_READY_MSG": "", "WSLINK_WS_COMPRESS": "0", "PYTHONUNBUFFERED": "1"}
         environment.pop(tokens.VARIABLE, None)
+        if self._options.memory is not None:
+            environment |= memory.ENVIRONMENT
         try:
             process = await asyncio.create_subprocess_exec(
                 *self._command,
@@ -188,13 +197,15 @@ class Launcher:
                 session.ready.set()
             elif isinstance(told, dict) and "failure" in told:
                 said = str(told["failure"])
+            elif isinstance(told, dict) and "doing" in told:
+                session.doing = str(told["doing"])
         code = await process.wait()
         await errors
         if session.folder is not None:
             await asyncio.to_thread(scratch.remove, session.folder)
         if not session.ended:
-            session.failure = said or "its process ended unexpectedly"
-            logger.error("session %s: %s (exit code %s)", session.short, session.failure, code)
+            session.failure = said or endings.reason(code, session.last_lines, session.doing, self._options.memory)
+            logger.error("session %s: %s (%s)", session.short, session.failure, endings.shown(code))
         await self._forget(session)
 
     async def _keep(self, session: Session, stream: asyncio.StreamReader) -> None:
@@ -206,6 +217,7 @@ class Launcher:
             if not line:
                 return
             text = printable(line.decode(errors="replace").rstrip())
+            session.last_lines.append(text)
             logger.info("session %s: | %s", session.short, text, extra={"about": session.short})
 
     async def _forget(self, session: Session) -> None:

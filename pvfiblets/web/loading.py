@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
+from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
@@ -81,7 +82,7 @@ def kind_of(path: Path) -> str:
     if name.endswith(_EITHER):
         import pyvista as pv
 
-        data = pv.read(path)
+        data = _of_vtk(path)
         if isinstance(data, pv.ImageData):
             return "volume"
         if isinstance(data, pv.PolyData) and data.n_lines:
@@ -188,17 +189,16 @@ class Files:
         if kind == "tubes":
             return _tubes(place, source, name, watch)
         if kind == "volume":
-            import pyvista as pv
-
             from pvfiblets.volumes import as_raycast_volume
 
-            volume = as_raycast_volume(pv.read(place) if name.lower().endswith(_EITHER) else place)
+            volume = as_raycast_volume(_of_vtk(place) if name.lower().endswith(_EITHER) else place)
             watch("reading", 1.0)
             return Loaded(kind, source, name, volume, _volume_facts(volume))
         if kind == "labels":
-            import nibabel
+            from pvfiblets.volumes.nibabel_files import opened
 
-            return Loaded(kind, source, name, nibabel.load(place))
+            with opened(place) as image:  # and read where it is used
+                return Loaded(kind, source, name, image)
         if kind == "colours":
             return Loaded(kind, source, name, _colours(place))
         mesh = _mesh(place)
@@ -272,10 +272,18 @@ def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
     return Loaded("tubes", source, name, tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments})
 
 
+def _of_vtk(place: Path) -> Any:
+    """Read a file with one of VTK's readers, which end the process where memory does not suffice."""
+    import pyvista as pv
+
+    vtk_sizes.check_memory(place)
+    return pv.read(place)
+
+
 def _mesh(place: Path) -> Any:
     import pyvista as pv
 
-    data = pv.read(place)
+    data = _of_vtk(place)
     if isinstance(data, pv.MultiBlock):
         data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()
     if not isinstance(data, pv.PolyData) and hasattr(data, "extract_surface"):
@@ -287,8 +295,6 @@ def _mesh(place: Path) -> Any:
 
 def _colours(place: Path) -> Any:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
-    import pyvista as pv
-
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
     from pvfiblets.plotting.fiblets.volume_sources import as_volume
     from pvfiblets.volumes import as_raycast_volume
@@ -296,7 +302,7 @@ def _colours(place: Path) -> Any:
     if (found := as_volume(place)) is not None:
         return found
     if place.name.lower().endswith(_EITHER):
-        return as_volume(pv.read(place))
+        return as_volume(_of_vtk(place))
     volume = as_raycast_volume(place)
     return VolumeSource(volume.values, volume.affine, name=place.name.partition(".")[0])
 

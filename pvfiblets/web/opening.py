@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets import memory
 from pvfiblets.formats.registry import suffixes
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
@@ -34,6 +36,7 @@ PURPOSES = {
     "region": (*MESHES, *LABELS),
 }
 """What a file may be chosen for, and the suffixes that are shown then."""
+MOST_WAITING = 16
 LATEST = 0.2  # seconds between two reports of progress
 
 
@@ -45,6 +48,8 @@ class FileActions(Actions):
         self._stop = threading.Event()
         self._doing = ""  # what is done beside, for people
         self._working = asyncio.Lock()
+        self._waiting: list[str] = []  # for their turn, for people
+        self.tell: Callable[[str], None] = lambda _: None  # told what is being opened, "" after it
         self._for = ""  # what the file that is chosen next is for, of PURPOSES
 
     # Opening
@@ -84,7 +89,7 @@ class FileActions(Actions):
             loaded = await self.beside(
                 name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel), "opening"
             )
-            layer = app.scene.add(loaded)
+            layer = memory.within(lambda: app.scene.add(loaded), reserve=0)
         except Cancelled:
             app.say(f"{name} was not opened: cancelled.")
             return
@@ -95,7 +100,9 @@ class FileActions(Actions):
         app.refresh()
 
     async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
-        """Do what takes long in a thread of its own, with progress; the page goes on. One thing at a time.
+        """Do what takes long in a thread of its own, with progress; the page goes on.
+
+        One thing at a time: what comes meanwhile waits for its turn, and the page names it.
 
         Parameters
         ----------
@@ -112,6 +119,13 @@ class FileActions(Actions):
         -------
         object
             What `work` returned.
+
+        Raises
+        ------
+        TooLargeError
+            If memory does not suffice; nothing of what was done stays.
+        ValueError
+            If too much waits already.
         """
         app = self._app
         loop = asyncio.get_running_loop()
@@ -122,7 +136,8 @@ class FileActions(Actions):
             if stop.is_set():
                 return
             with app.state:
-                app.page.job = {"text": f"{name}: {what}", "share": 100.0 * share, "cancellable": cancellable}
+                text = f"{name}: {what}"
+                app.page.job = {"text": text, "share": 100.0 * share, "cancellable": cancellable, "then": self._then}
 
         def progress(what: str, share: float) -> None:  # in the thread
             nonlocal reported
@@ -130,22 +145,52 @@ class FileActions(Actions):
                 reported = now
                 loop.call_soon_threadsafe(show, what, share)
 
-        async with self._working:
+        async with self._turn(name):
             self._stop = stop
             self._doing = name
+            self.tell(name)
             show(what, 0.0 if cancellable else -1.0)
             try:
-                return await asyncio.to_thread(work, progress, stop.is_set)
+                return await asyncio.to_thread(memory.within, lambda: work(progress, stop.is_set))
             finally:
+                self.tell("")
                 await asyncio.sleep(0)  # let the last report of the thread come first
                 with app.state:
                     app.page.job = {}
 
     def cancel(self) -> None:
-        """Stop what is being opened or written, as soon as it asks."""
+        """Stop what is being opened or written, as soon as it asks; what waits has its turn then."""
         self._stop.set()
         if self._app.page.job:
-            self._app.page.job = {"text": f"{self._doing}: stopping", "share": -1.0, "cancellable": False}
+            text = f"{self._doing}: stopping"
+            self._app.page.job = {"text": text, "share": -1.0, "cancellable": False, "then": self._then}
+
+    @property
+    def _then(self) -> str:
+        """What waits, for people."""
+        return f"then {', '.join(self._waiting)}" if self._waiting else ""
+
+    @contextlib.asynccontextmanager
+    async def _turn(self, name: str) -> AsyncIterator[None]:
+        """Wait until nothing else is done; the page says so."""
+        if len(self._waiting) >= MOST_WAITING:
+            raise ValueError(f"{name}: {MOST_WAITING} others wait for their turn; wait until some of them are done")
+        self._waiting.append(name)
+        self._show_waiting()
+        try:
+            await self._working.acquire()
+        finally:
+            self._waiting.remove(name)
+        self._show_waiting()
+        try:
+            yield
+        finally:
+            self._working.release()
+
+    def _show_waiting(self) -> None:
+        if self._app.page.job:
+            with self._app.state:
+                self._app.page.job = {**self._app.page.job, "then": self._then}
 
     # The file browser
 

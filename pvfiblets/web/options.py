@@ -7,7 +7,11 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
+from pvfiblets.memory import CAN_LIMIT, of_machine, parse, shown
+
 MEBIBYTE = 1024 * 1024
+SMALLEST_MEMORY = 640 * MEBIBYTE
+"""Of a session: it has taken 320 MB when its page opens, and OpenGL in software takes some for its pictures."""
 SHORTEST_TOKEN = 8  # characters of a token that a person chose
 FEWEST_CONNECTIONS = 8  # six at once for a page's files, its WebSocket, and one to spare
 CODECS = ("jpeg", "png", "webp")
@@ -39,6 +43,8 @@ class Options:
         The greatest size of an uploaded file, in bytes.
     codec : str
         How pictures travel: 'jpeg', 'png' or 'webp'.
+    memory : int or None
+        Bytes that a session may have; ``None``: no limit.
     origins : list of str
         Other origins that pages may come from, such as that of a proxy which renames the host.
     connections, by_address : int
@@ -60,6 +66,7 @@ class Options:
     timeout: float = 300.0
     upload: int = 2048 * MEBIBYTE
     codec: str = "jpeg"
+    memory: int | None = None
     origins: list[str] = field(default_factory=list)
     connections: int = 1000
     by_address: int = 100
@@ -93,6 +100,13 @@ class Options:
             _check_address(proxy)
         if self.upload < 0:
             raise ValueError(f"--upload {self.upload}: a size of zero or more is needed")
+        if self.memory is not None and not CAN_LIMIT:
+            raise ValueError("--memory: this system cannot hold a process to it; leave it out")
+        if self.memory is not None and self.memory < SMALLEST_MEMORY:
+            raise ValueError(
+                f"--memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
+                "large; give as much or more"
+            )
         if self.codec not in CODECS:
             raise ValueError(f"--codec {self.codec!r} is none of {', '.join(CODECS)}")
         if self.token is None and not self.on_loopback:
@@ -119,6 +133,23 @@ class Options:
     def from_dict(cls, data: dict[str, Any]) -> Options:
         """Return the options that :meth:`as_dict` gave."""
         return cls(**data)
+
+
+def chosen_memory(text: str, sessions: int) -> int | None:
+    """Return the bytes that ``--memory auto|SIZE`` means, for each of some sessions; ``None`` where none can be set.
+
+    By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
+    fifth of the machine: four that are full leave the server what it needs.
+    """
+    if text != "auto":
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise ValueError(f"--memory {error}") from None
+    machine = of_machine()
+    if not CAN_LIMIT or not machine:
+        return None
+    return max(machine * 4 // 5 // min(sessions, 4), SMALLEST_MEMORY)
 
 
 def is_loopback(host: str) -> bool:

@@ -238,7 +238,6 @@ class Scene(Showing, Selecting, Questions, Cameras):
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""
-        self.store.put(loaded)
         self._histograms = {key: found for key, found in self._histograms.items() if key[1] != loaded.source}
         layer = Layer(
             self._fresh_id(),
@@ -247,7 +246,8 @@ class Scene(Showing, Selecting, Questions, Cameras):
             loaded.source,
             settings=layers.defaults(loaded.kind),
         )
-        return self._add(layer, f"open {layer.name}")
+        with self.store.with_new(loaded):
+            return self._add(layer, f"open {layer.name}")
 
     def open(
         self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +37,17 @@ class Store:
         """Have all that another one has, too."""
         self.loaded = {**other.loaded, **self.loaded}
         self.shapes = {**other.shapes, **self.shapes}
+
+    @contextmanager
+    def with_new(self, loaded: Loaded) -> Iterator[None]:
+        """Keep what was read, unless what is done with it fails: then all is as it was."""
+        before = self.loaded.copy()
+        self.put(loaded)
+        try:
+            yield
+        except BaseException:
+            self.loaded = before
+            raise
 
     def put(self, loaded: Loaded) -> None:
         """Keep what was read; what was of that place before gives way."""

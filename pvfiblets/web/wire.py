@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pvfiblets.errors import FibletsError
+from pvfiblets.memory import TooLargeError, limited_to, shown
 from pvfiblets.web.journal import printable
 
 logger = logging.getLogger("pvfiblets.web")
@@ -44,7 +45,7 @@ Check = Callable[..., list[Any] | None]
 
 
 # What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.
-EXPECTED = (FibletsError, OSError, ValueError, KeyError)
+EXPECTED = (FibletsError, OSError, ValueError, KeyError, MemoryError)
 
 
 # What unpacking a message raises that is none.
@@ -127,6 +128,12 @@ def view_size(size: object) -> tuple[int, int, float]:
 
 def sentence(error: BaseException) -> str:
     """Return an error as users read it."""
+    if isinstance(error, MemoryError):
+        most = limited_to()
+        said = str(error) if isinstance(error, TooLargeError) else str(TooLargeError())
+        of = "" if most is None else f" of the {shown(most)} that a session may have"
+        remedy = "" if most is None else ", or have the server started with a larger --memory"
+        return f"{said}{of}; remove layers, open less{remedy}"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror  # without the server's path
     return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__

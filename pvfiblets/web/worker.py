@@ -7,6 +7,7 @@ closes. Every request must carry the gate's key, so that nobody else on this mac
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hmac
 import json
 import logging
@@ -18,12 +19,14 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from pvfiblets.errors import FibletsError
 from pvfiblets.web.journal import Quiet
 
 if TYPE_CHECKING:
     from pvfiblets.web.options import Options
 
 KEY_HEADER = "X-Pvfiblets-Key"
+LEAST = 256 << 20  # bytes that must be left for pictures and files
 
 
 def main() -> int:
@@ -38,6 +41,9 @@ def main() -> int:
         handler.addFilter(Quiet())
     try:
         _run(told, speaker)
+    except FibletsError as error:
+        print(json.dumps({"failure": str(error)}), file=speaker)
+        return 1
     except Exception as error:
         print(json.dumps({"failure": f"{type(error).__name__}: {error}"}), file=speaker)
         raise
@@ -56,6 +62,8 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     app = make_app(options, folder)
+    hold_to(options.memory)
+    app.files.tell = lambda doing: print(json.dumps({"doing": doing}), file=speaker)
     server = app.server
 
     def bind(web_server: Any) -> None:
@@ -92,6 +100,29 @@ def listen(server: Any) -> None:
         exec_mode="main",
         backend="aiohttp",
     )
+
+
+def hold_to(most: int | None) -> None:
+    """Let this process have no more memory than it may.
+
+    Raises
+    ------
+    FibletsError
+        If hardly any of it is left already.
+    """
+    if most is None:
+        return
+    from pvfiblets import memory
+
+    taken = memory.taken()
+    if taken + LEAST > most:
+        raise FibletsError(
+            f"--memory {memory.shown(most)}: a session takes {memory.shown(taken)} on this machine before it opens "
+            f"anything; start the server with {memory.shown(taken + LEAST)} or more"
+        )
+    memory.limit(most)
+    with contextlib.suppress(OSError):  # where the machine runs out, a session goes first, never the server
+        Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
 
 
 def make_app(options: Options, folder: Path) -> Any:

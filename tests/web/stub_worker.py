@@ -43,6 +43,10 @@ async def main(told):
     if (failure := Path(told["options"]["root"]) / "fail").exists():
         print(json.dumps({"failure": failure.read_text()}), flush=True)
         sys.exit(1)
+    if (doing := Path(told["options"]["root"]) / "abort").exists():  # as C++ does where memory runs out
+        print(json.dumps({"doing": doing.read_text()}), flush=True)
+        print("terminate called after throwing an instance of 'std::bad_alloc'", file=sys.stderr, flush=True)
+        os.abort()
     (Path(told["folder"]) / "session.tmp").write_text(str(os.getpid()))
     (Path(told["folder"]) / "notes").write_text(str(Path(told["options"]["root"]) / ".pvfiblets-part"))
     app = web.Application(middlewares=[key_check(told["key"])], client_max_size=2**30)
