@@ -18,7 +18,7 @@ from pvfiblets.errors import FormatError
 
 from .packed_numbers import Packing, data_file, numbers
 
-__all__ = ["read_metaimage"]
+__all__ = ["header_fields", "read_metaimage"]
 
 TYPES = {
     "MET_CHAR": "i1", "MET_UCHAR": "u1", "MET_SHORT": "i2", "MET_USHORT": "u2", "MET_INT": "i4", "MET_UINT": "u4",
@@ -98,6 +98,11 @@ def _data(path: Path, fields: dict[str, str], size: int, shape: list[int]) -> np
 
 def _true(fields: dict[str, str], name: str) -> bool:
     return fields.get(name, "False")[:1].upper() in ("T", "1")
+
+
+def header_fields(path: Path) -> dict[str, str]:
+    """Return a header's fields as :func:`read_metaimage` sees them, names in lower case."""
+    return _fields(path)[0]
 
 
 def _fields(path: Path) -> tuple[dict[str, str], int]:

@@ -19,7 +19,7 @@ from pvfiblets.errors import FormatError
 
 from .packed_numbers import Packing, data_file, numbers
 
-__all__ = ["read_nrrd"]
+__all__ = ["header_fields", "read_nrrd"]
 
 TYPES = {
     name: dtype
@@ -131,6 +131,11 @@ def read_nrrd(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
     axes = _spatial_axes(header, sizes)
     values = _data(header, sizes).reshape([sizes[axis] for axis in axes], order="F")
     return values, _affine(header, axes, dimension)
+
+
+def header_fields(path: Path) -> dict[str, str]:
+    """Return a header's fields as :func:`read_nrrd` sees them, names in lower case."""
+    return _header(path).fields
 
 
 def _header(path: Path) -> _Header:

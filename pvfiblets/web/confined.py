@@ -7,11 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 LONGEST_PATH = 4096
+LONGEST_NAME = 255  # bytes, as file systems have it
+UNSUITABLE = frozenset('<>:"|?*&/\\')
+RESERVED = frozenset(["CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))])
+"""Names that are devices on Windows, whatever follows the dot."""
 LISTED = 2000  # entries of one folder that are shown
 
 
 class ConfinedError(ValueError):
     """A browser named a path that it may not have; the message is safe to show it."""
+
+
+class TakenError(ConfinedError):
+    """A name that a file has already."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +89,22 @@ class Confined:
         if not path.parent.is_dir():
             raise ConfinedError(f"{text!r}: there is no such folder")
         if path.exists():
-            raise ConfinedError(f"{text!r} exists already; choose another name")
+            raise TakenError(f"{text!r} exists already; choose another name")
         return path
+
+    def uploaded(self, name: str, suffixes: tuple[str, ...]) -> Path:
+        """Return the path for an upload, as :meth:`writable` does; the name is one that every page can show."""
+        if len(name.encode("utf-8", "surrogatepass")) > LONGEST_NAME:
+            raise ConfinedError(f"the file's name is longer than {LONGEST_NAME} bytes; choose a shorter one")
+        if (
+            not name.isprintable() or name.startswith((".", " ")) or set(name) & UNSUITABLE
+            or name.partition(".")[0].strip().upper() in RESERVED
+        ):  # fmt: skip
+            raise ConfinedError(
+                "the file's name begins with a dot or a blank, is reserved, or has control characters, slashes or one "
+                'of < > : " | ? * & in it; choose a plain one'
+            )
+        return self.writable(name, suffixes)
 
     def relative(self, path: Path) -> str:
         """Return how browsers name a path under the root."""

@@ -145,6 +145,13 @@ class Files:
             raise PermissionError(f"{text}: outside of the folder that is open to you; give a path in it")
         if not (found.parent.is_dir() if new else found.is_file()):
             raise FileNotFoundError(f"{text}: there is no such {'folder' if new else 'file'}")
+        if self.root is not None and not new:
+            from pvfiblets.web.references import check_references
+
+            if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, ".json")):
+                # Some formats name files that nobody here could find before their reader opens them.
+                raise UnknownFormatError(f"{found.name}: such files are not opened here; convert it to .vtp or .nii")
+            check_references(found, [self.root, *self.allowed])
         return found
 
     def name(self, place: Path) -> str:
@@ -283,6 +290,8 @@ def _of_vtk(place: Path) -> Any:
 def _mesh(place: Path) -> Any:
     import pyvista as pv
 
+    if not place.name.lower().endswith(MESHES):  # VTK has readers of its own for volumes, which follow other names
+        raise UnknownFormatError(f"{place.name}: surfaces are in files of {', '.join(MESHES)}; convert it")
     data = _of_vtk(place)
     if isinstance(data, pv.MultiBlock):
         data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()

@@ -17,7 +17,7 @@ from pvfiblets.formats.registry import suffixes
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
-from pvfiblets.web.confined import ConfinedError
+from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.wire import EXPECTED, sentence
@@ -233,34 +233,41 @@ class FileActions(Actions):
 
         app = self._app
         known = (*suffixes(), *VOLUMES, *MESHES)
-        name = Path(request.query.get("name", "")).name
+        name = request.query.get("name", "")
+        limit, size = app.options.upload, 0
         try:
-            target = app.confined.writable(name, tuple(known))
+            target = app.confined.uploaded(name, tuple(known))
+            with app.notes.private(app.confined.root) as hidden:  # gone afterwards, even if this process is killed
+                part = hidden / "part"
+                with part.open("xb") as file:
+                    async for piece in request.content.iter_chunked(PIECE):
+                        size += len(piece)
+                        if size > limit:
+                            raise web.HTTPRequestEntityTooLarge(max_size=limit, actual_size=size)
+                        await asyncio.to_thread(file.write, piece)
+                if request.content_length is not None and size != request.content_length:
+                    raise web.HTTPBadRequest(text="the upload is incomplete")
+                _place(part, target)
+        except (TakenError, FileExistsError) as error:
+            said = f"{name!r} exists already; choose another name"
+            app.complain(said)
+            raise web.HTTPConflict(text=said) from error
         except ConfinedError as error:
             app.complain(str(error))
-            raise web.HTTPBadRequest(text="not a name") from error
-        limit, size = app.options.upload, 0
-        part = target.with_name(f".{target.name}.part")
-        try:
-            with part.open("xb") as file:
-                async for piece in request.content.iter_chunked(PIECE):
-                    size += len(piece)
-                    if size > limit:
-                        raise web.HTTPRequestEntityTooLarge(max_size=limit, actual_size=size)
-                    await asyncio.to_thread(file.write, piece)
-            if request.content_length is not None and size != request.content_length:
-                raise web.HTTPBadRequest(text="incomplete")
-            part.rename(target)
-        except FileExistsError as error:
-            app.complain(f"{name} is being uploaded already")
-            raise web.HTTPConflict from error
+            raise web.HTTPBadRequest(text=str(error)) from error
         except OSError as error:
             app.complain(f"{name} could not be stored: {error.strerror}")
             raise web.HTTPInsufficientStorage from error
-        finally:
-            part.unlink(missing_ok=True)
-        app.later(self.open(app.confined.relative(target)))
+        app.later(self._open_upload(target))
         return web.Response(text="stored")
+
+    async def _open_upload(self, target: Path) -> None:
+        """Open what was uploaded; what cannot be opened is not kept."""
+        try:
+            await self.open(self._app.confined.relative(target))
+        except Exception:
+            target.unlink(missing_ok=True)
+            raise
 
     # Sessions and the script
 
@@ -348,6 +355,18 @@ class FileActions(Actions):
         self._app.stream.settle()  # the script's picture has all pixels
         self._app.page.script = as_script(self._app.scene)
         self._app.page.dialog = "script"
+
+
+def _place(part: Path, target: Path) -> None:
+    """Give a whole file its name; never over another that came meanwhile."""
+    try:
+        os.link(part, target)
+    except FileExistsError:
+        raise
+    except OSError:  # file systems without hard links
+        with target.open("xb"):
+            pass
+        part.replace(target)
 
 
 def _is_lines(path: str) -> bool:
