@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from pvfiblets.errors import FormatError
-from pvfiblets.raycast import metaimage, nrrd
+from pvfiblets.volumes import metaimage, nrrd
 
 __all__ = ["check_references"]
 

@@ -67,7 +67,7 @@ def test_references_in_the_root_are_followed(home, suffix):
         (home / f"a{suffix}").write_text(HEADERS[suffix].format(named))
         assert Files(home).resolve(f"a{suffix}") == home / f"a{suffix}"
     if suffix in (".nhdr", ".mhd"):
-        from pvfiblets.raycast import as_raycast_volume
+        from pvfiblets.volumes import as_raycast_volume
 
         assert as_raycast_volume(home / f"a{suffix}").values.ravel("F").tolist() == list(range(8))
 
