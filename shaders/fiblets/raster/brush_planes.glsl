@@ -8,7 +8,7 @@ struct BrushHeights {
     vec2 at_ends[{{ max_clip_planes }}];   // h / w at the piece's ends
 };
 
-BrushHeights brush_heights(vec3 from, vec3 to, Piece piece) {
+BrushHeights brush_heights(vec3 from, vec3 to, ClippedSegment piece) {
     BrushHeights heights;
     for (int plane = 0; plane < clip_count(); ++plane) {
         precise float ha = clip_height_of(plane, from), hb = clip_height_of(plane, to);
@@ -29,6 +29,6 @@ bool brush_kept(BrushHeights heights, float s, vec2 away) {
 }
 #else
 struct BrushHeights { int none; };
-BrushHeights brush_heights(vec3 from, vec3 to, Piece piece) { return BrushHeights(0); }
+BrushHeights brush_heights(vec3 from, vec3 to, ClippedSegment piece) { return BrushHeights(0); }
 bool brush_kept(BrushHeights heights, float s, vec2 away) { return true; }
 #endif

@@ -31,7 +31,7 @@ struct Vertex {
     bool inside;     // nothing is cut away there
 };
 
-struct Piece {
+struct ClippedSegment {
     vec4 a;
     vec4 b;
     float t0;
@@ -54,31 +54,31 @@ Vertex vertex_of(vec3 p) {
 
 // Each of the next returns false if nothing of the segment is left.
 
-bool clip_in_space(Vertex from, Vertex to, inout Piece piece) {
+bool clip_in_space(Vertex from, Vertex to, inout ClippedSegment piece) {
     if (from.inside && to.inside) return true;
     float t0, t1;
     if (!clip_segment(from.clip, to.clip, t0, t1)) return false;
     if (!clip_by_planes(from.local, to.local, t0, t1)) return false;
     if (t0 > 0.0) piece.a = to_window(from.clip + t0 * (to.clip - from.clip));
     if (t1 < 1.0) piece.b = to_window(from.clip + t1 * (to.clip - from.clip));
-    piece = Piece(piece.a, piece.b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
+    piece = ClippedSegment(piece.a, piece.b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
     return true;
 }
 
-bool clip_in_window(Vertex from, Vertex to, inout Piece piece) {
+bool clip_in_window(Vertex from, Vertex to, inout ClippedSegment piece) {
     float t0, t1;
     bool any_part = clip_window(from.window.xy, to.window.xy, t0, t1);
     precise vec4 run = to.window - from.window, a = from.window + t0 * run, b = t1 < 1.0 ? from.window + t1 * run : to.window;
-    piece = Piece(a, b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
+    piece = ClippedSegment(a, b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
     return any_part;
 }
 
-bool piece_of(Vertex from, Vertex to, bool start, bool cap, out Piece piece) {
-    piece = Piece(from.window, to.window, 0.0, 1.0, start, cap, 0.0, false);
+bool piece_of(Vertex from, Vertex to, bool start, bool cap, out ClippedSegment piece) {
+    piece = ClippedSegment(from.window, to.window, 0.0, 1.0, start, cap, 0.0, false);
 #if FEATURE_TUBES
     Outline outline;
     bool any_part = outline_of(from.clip, to.clip, outline);
-    piece = Piece(outline.a, outline.b, outline.t0, outline.t1, start, cap, outline.reach, outline.thin);
+    piece = ClippedSegment(outline.a, outline.b, outline.t0, outline.t1, start, cap, outline.reach, outline.thin);
     return any_part;
 #elif FEATURE_CLIPPING_DEPTH
     return clip_in_space(from, to, piece);
@@ -89,7 +89,7 @@ bool piece_of(Vertex from, Vertex to, bool start, bool cap, out Piece piece) {
 #endif
 }
 
-bool piece_of(vec3 from, vec3 to, bool start, bool cap, out Piece piece) {
+bool piece_of(vec3 from, vec3 to, bool start, bool cap, out ClippedSegment piece) {
     return piece_of(vertex_of(from), vertex_of(to), start, cap, piece);
 }
 
@@ -98,7 +98,7 @@ float corrected(float s, vec2 w) {
     return clamp(s * w.x / max((1.0 - s) * w.y + s * w.x, 1e-30), 0.0, 1.0);
 }
 
-float along_segment(Vertex from, Vertex to, Piece piece, float s) {
+float along_segment(Vertex from, Vertex to, ClippedSegment piece, float s) {
 #if FEATURE_TUBES
     return s;
 #elif FEATURE_CLIPPING_DEPTH

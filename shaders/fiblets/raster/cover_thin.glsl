@@ -3,7 +3,7 @@
 #include "fiblets/raster/cells.glsl"
 
 void cover(Segment segment) {
-    Piece piece = segment.piece;
+    ClippedSegment piece = segment.piece;
     ivec2 p = ivec2(pixel_of(piece.a)), q = ivec2(pixel_of(piece.b));
     Cells cells = cells_between(p, q);
     precise vec2 slope = cells.square * (piece.b.z - piece.a.z) * cells.run;

@@ -2,7 +2,7 @@
 // the outline reaches, and of these all pixels whose ray meets the tube.
 
 void cover(Segment segment) {
-    Piece piece = segment.piece;
+    ClippedSegment piece = segment.piece;
     Outline outline = Outline(piece.a, piece.b, piece.t0, piece.t1, piece.reach, piece.thin);
     Tube body = tube_of(segment.from.local, segment.to.local, segment.from.clip, piece.start);
     float r = outline.reach;

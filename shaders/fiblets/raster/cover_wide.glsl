@@ -14,7 +14,7 @@ uniform uvec2 share;  // of every fiblet: first segment, and the one after the l
 
 void cover(Segment segment) {
     if (segment.index < share.x || segment.index >= share.y) return;
-    Piece piece = segment.piece;
+    ClippedSegment piece = segment.piece;
     BrushHeights heights = brush_heights(segment.from.local, segment.to.local, piece);
     float r = viewport.z;
     vec2 d = piece.b.xy - piece.a.xy;

@@ -25,7 +25,7 @@ struct Segment {
     uint index;      // within the fiblet
     Vertex from;
     Vertex to;
-    Piece piece;
+    ClippedSegment piece;
     float steps;     // from point to point that it stands for
 };
 
@@ -72,7 +72,7 @@ void draw_fiblet(uint f) {
         bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
         bool drawn = mask_segment(i - 1u, start, cap);
         start_segment(i - 1u, walk_delta, polyline.steps);
-        Piece piece;
+        ClippedSegment piece;
         bool any_part = piece_of(from, to, start, cap, piece);
         if (any_part && drawn) cover(Segment(i - 1u, from, to, piece, polyline.steps));
         from = to;

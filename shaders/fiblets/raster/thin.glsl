@@ -19,7 +19,7 @@ struct Thin {
 
 vec4 at_pixel(vec2 pixel) { return vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0); }
 
-Thin thin_line(Piece piece) {
+Thin thin_line(ClippedSegment piece) {
     vec2 p = pixel_of(piece.a), q = pixel_of(piece.b), run = q - p;
     float n = max(abs(run.x), abs(run.y));
     vec2 more = !piece.cap ? vec2(0.0) : n > 0.0 ? EXIT / n * run : vec2(EXIT, 0.0);
