@@ -170,6 +170,6 @@ class Lens:
         """Return window depth, 0 to 1, of what lies w in front of the eye."""
         return self.far / (self.far - self.near) * (1.0 - self.near / w)
 
-    def distance(self, farness: Array) -> Array:
+    def distance(self, reversed_depth: Array) -> Array:
         """Return the mm in front of the eye of 1 less a window depth."""
-        return self.far * self.near / (farness * (self.far - self.near) + self.near)
+        return self.far * self.near / (reversed_depth * (self.far - self.near) + self.near)

@@ -12,7 +12,7 @@ from pvfiblets.tubes import SplineTubes
 
 from .baselines.tessellated import TessellatedTubes
 from .cameras import Camera, Lens
-from .tubes_pictures import farness_of
+from .tubes_pictures import reversed_depth_of
 
 __all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
 
@@ -71,7 +71,7 @@ class CastTubes:
         from pvfiblets.engine.gbuffer import EMPTY
 
         keys = np.frombuffer(self._gbuffer.depth.read(), np.uint32)
-        return lens.distance(farness_of(keys)), keys != EMPTY
+        return lens.distance(reversed_depth_of(keys)), keys != EMPTY
 
     def release(self) -> None:
         """Give everything back."""

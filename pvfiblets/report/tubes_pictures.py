@@ -119,13 +119,13 @@ class Truth:
         return float(np.quantile(np.abs(kept - right) / self.forwards[there] / self.radius[there], 0.99))
 
 
-def _float32(farness: Array) -> Array:
-    return 1.0 - (1.0 - farness).astype(np.float32).astype(np.float64)
+def _float32(reversed_depth: Array) -> Array:
+    return 1.0 - (1.0 - reversed_depth).astype(np.float32).astype(np.float64)
 
 
 def _fixed(bits: int) -> Callable[[Array], Array]:
     levels = 2.0**bits - 1.0
-    return lambda farness: 1.0 - np.round((1.0 - farness) * levels) / levels
+    return lambda reversed_depth: 1.0 - np.round((1.0 - reversed_depth) * levels) / levels
 
 
 FORMATS: dict[str, Callable[[Array], Array]] = {
@@ -136,6 +136,6 @@ FORMATS: dict[str, Callable[[Array], Array]] = {
 """What depth may be stored as: functions of 1 less the window depth, which give what is left of it."""
 
 
-def farness_of(keys: npt.NDArray[np.uint32]) -> Array:
+def reversed_depth_of(keys: npt.NDArray[np.uint32]) -> Array:
     """Return 1 less the window depth of a G-buffer's keys."""
     return (EMPTY - keys.astype(np.float64)) / EMPTY

@@ -1,4 +1,4 @@
-// Planes of the caller's; pvfiblets/engine/clipping.py packs them. Without the feature nothing of this file is left.
+// Planes of the caller's; pvfiblets/engine/clipping.py packs them. Without the feature there are none.
 //
 // Symbols
 //   plane        (n, d) with |n| = 1 per local millimetre; h(p) = n . p + d is the height of p, kept where h >= 0
@@ -49,4 +49,9 @@ bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
     }
     return t0 <= t1;
 }
+
+bool on_kept_side(vec3 p) { return clip_height(p) >= 0.0; }
+#else
+bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) { return true; }
+bool on_kept_side(vec3 p) { return true; }
 #endif

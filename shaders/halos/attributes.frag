@@ -21,13 +21,13 @@ uniform samplerBuffer value_texels;
 uniform usamplerBuffer colour_texels;
 #endif
 
-layout(location = 0) out uint shown_depth;
-layout(location = 1) out uint shown_owner;
-layout(location = 2) out uvec2 shown_ids;
-layout(location = 3) out vec2 shown_position;
-layout(location = 4) out float shown_ink;
+layout(location = 0) out uint out_depth;
+layout(location = 1) out uint out_owner;
+layout(location = 2) out uvec2 out_ids;
+layout(location = 3) out vec2 out_position;
+layout(location = 4) out float out_ink;
 #if FEATURE_HALO_COLOURS
-layout(location = 5) out vec4 shown_colour;
+layout(location = 5) out vec4 out_colour;
 #endif
 
 #if !FEATURE_HALO_POINTS
@@ -49,22 +49,22 @@ void main() {
     float far = texelFetch(depths, pixel, 0).x;
     int item = int(hit.x);
     float t = float(hit.y >> 16u) / 65535.0;
-    shown_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
-    shown_owner = (hit.y & 1u) != 0u ? hit.x : 0xFFFFFFFFu;
-    shown_ink = float(hit.y >> 8u & 0xFFu) / 255.0;
+    out_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
+    out_owner = (hit.y & 1u) != 0u ? hit.x : 0xFFFFFFFFu;
+    out_ink = float(hit.y >> 8u & 0xFFu) / 255.0;
 #if FEATURE_HALO_POINTS
     int other = item;
-    shown_ids = uvec2(0u, packed_tangent(vec3(0.0), 0u));
-    shown_position = vec2(float(item), 0.0);
+    out_ids = uvec2(0u, packed_tangent(vec3(0.0), 0u));
+    out_position = vec2(float(item), 0.0);
 #else
     int other = item + 1, line = line_of(item);
-    shown_ids = uvec2(uint(line), packed_tangent(local_place(other) - local_place(item), 0u));
-    shown_position = vec2(float(item - int(texelFetch(offset_texels, line).x)) + t, 0.0);
+    out_ids = uvec2(uint(line), packed_tangent(local_place(other) - local_place(item), 0u));
+    out_position = vec2(float(item - int(texelFetch(offset_texels, line).x)) + t, 0.0);
 #endif
 #if FEATURE_HALO_VALUES
-    shown_position.y = mix(texelFetch(value_texels, item).x, texelFetch(value_texels, other).x, t);
+    out_position.y = mix(texelFetch(value_texels, item).x, texelFetch(value_texels, other).x, t);
 #endif
 #if FEATURE_HALO_COLOURS
-    shown_colour = mix(unpackUnorm4x8(texelFetch(colour_texels, item).x), unpackUnorm4x8(texelFetch(colour_texels, other).x), t);
+    out_colour = mix(unpackUnorm4x8(texelFetch(colour_texels, item).x), unpackUnorm4x8(texelFetch(colour_texels, other).x), t);
 #endif
 }

@@ -7,7 +7,7 @@
 #include "halos/vertices.glsl"
 #include "halos/item.glsl"
 #include "frame/clip_planes.glsl"
-#define HANDED flat out
+#define VARYING flat out
 #include "halos/varyings.glsl"
 
 #if FEATURE_HALO_FILTER
@@ -17,13 +17,13 @@ uniform samplerBuffer filter_texels;
 void main() {
     int point = item_of_vertex();
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    handed_item = 0u;
-    handed_ends = handed_depths = vec4(0.0);
+    varying_item = 0u;
+    varying_ends = varying_depths = vec4(0.0);
 #if FEATURE_HALO_CUE
-    handed_cue = vec2(0.0);
+    varying_cue = vec2(0.0);
 #endif
 #if FEATURE_HALO_FILTER
-    handed_filter = vec4(0.0);
+    varying_filter = vec4(0.0);
 #endif
     if (point >= halo_counts.x) return;
     vec3 here = local_place(point);
@@ -35,13 +35,13 @@ void main() {
     float cue = cue_at(here);
     vec2 centre = at.xy / at.w, corner = 2.0 * vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) - 1.0;
     gl_Position = vec4((centre + reaches(cue, at.w).y / at.w * corner) / halo_mask.yz, 0.0, 1.0);
-    handed_item = uint(point);
-    handed_ends = centre.xyxy;
-    handed_depths = vec4(1.0 / at.w, 1.0 / at.w, at.z / at.w, at.z / at.w);
+    varying_item = uint(point);
+    varying_ends = centre.xyxy;
+    varying_depths = vec4(1.0 / at.w, 1.0 / at.w, at.z / at.w, at.z / at.w);
 #if FEATURE_HALO_CUE
-    handed_cue = vec2(cue);
+    varying_cue = vec2(cue);
 #endif
 #if FEATURE_HALO_FILTER
-    handed_filter = vec4(vec2(texelFetch(filter_texels, point).x), 0.0, 0.0);
+    varying_filter = vec4(vec2(texelFetch(filter_texels, point).x), 0.0, 0.0);
 #endif
 }

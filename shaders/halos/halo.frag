@@ -20,7 +20,7 @@
 #include "frame/blocks.glsl"
 #include "halos/block.glsl"
 #include "halos/widths.glsl"
-#define HANDED flat in
+#define VARYING flat in
 #include "halos/varyings.glsl"
 
 layout(location = 0) out uvec2 shown;
@@ -44,31 +44,31 @@ float mask(float x) {
 
 void main() {
     uint beyond = 0u;       // which end of the segment the pixel is beyond
-    vec2 from_start = gl_FragCoord.xy - halo_mask.yz - handed_ends.xy;
-    float over_w = handed_depths.x, far = handed_depths.z, t = 0.0;
+    vec2 from_start = gl_FragCoord.xy - halo_mask.yz - varying_ends.xy;
+    float over_w = varying_depths.x, far = varying_depths.z, t = 0.0;
 #if !FEATURE_HALO_POINTS
-    vec2 axis = handed_ends.zw - handed_ends.xy;
+    vec2 axis = varying_ends.zw - varying_ends.xy;
     float place = dot(from_start, axis) / max(dot(axis, axis), 1e-30), s = clamp(place, 0.0, 1.0);
     beyond = place < 0.0 ? FREE_START : place > 1.0 ? FREE_END : 0u;
-    if ((handed_item & beyond) != 0u) discard;      // corners may be there where bends are sharp for their width
+    if ((varying_item & beyond) != 0u) discard;      // corners may be there where bends are sharp for their width
     from_start -= s * axis;
-    over_w = (1.0 - s) * over_w + s * handed_depths.y;
-    far += s * (handed_depths.w - far);
-    t = s * handed_depths.y / over_w;
+    over_w = (1.0 - s) * over_w + s * varying_depths.y;
+    far += s * (varying_depths.w - far);
+    t = s * varying_depths.y / over_w;
 #endif
     float w = 1.0 / over_w, m = 1.0, cue = 0.0;
 #if FEATURE_HALO_CUE
-    cue = handed_cue.x + t * (handed_cue.y - handed_cue.x);
+    cue = varying_cue.x + t * (varying_cue.y - varying_cue.x);
 #endif
     vec2 reach = reaches(cue, w);
     float r = length(from_start) * w / reach.y, share = reach.x / reach.y;
 #if FEATURE_HALO_TAPER
-    float u = handed_mask.x + t * (handed_mask.y - handed_mask.x);
+    float u = varying_mask.x + t * (varying_mask.y - varying_mask.x);
     m = mask(5.0 * min(u, 1.0 - u));
 #endif
 #if FEATURE_HALO_FILTER
-    vec2 change = handed_filter.yw - handed_filter.xz;      // of number.x, and of how much that changes per mm
-    vec2 number = t < 0.5 ? handed_filter.xz + t * change : handed_filter.yw - (1.0 - t) * change;      // exact at both ends
+    vec2 change = varying_filter.yw - varying_filter.xz;      // of number.x, and of how much that changes per mm
+    vec2 number = t < 0.5 ? varying_filter.xz + t * change : varying_filter.yw - (1.0 - t) * change;      // exact at both ends
     float inside = min(number.x - halo_filter.x, halo_filter.y - number.x);
     if (!(number.x >= halo_filter.x && number.x <= halo_filter.y)) discard;       // NaN as well
     float fall = number.y * halo_filter.z;
@@ -85,7 +85,7 @@ void main() {
     gl_FragDepth = uintBitsToFloat(floatBitsToUint(max(far - back, 1e-9)) - steps);
     float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
 #if FEATURE_HALO_CUT
-    t = handed_part.x + t * (handed_part.y - handed_part.x);
+    t = varying_part.x + t * (varying_part.y - varying_part.x);
 #endif
-    shown = uvec2(handed_item & ~(FREE_START | FREE_END), uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));
+    shown = uvec2(varying_item & ~(FREE_START | FREE_END), uint(t * 65535.0 + 0.5) << 16u | uint(ink * 255.0 + 0.5) << 8u | (line ? 1u : 0u));
 }

@@ -26,30 +26,11 @@
 #include "halos/vertices.glsl"
 #include "halos/item.glsl"
 #include "frame/clip_planes.glsl"
-#define HANDED flat out
+#define VARYING flat out
 #include "halos/varyings.glsl"
+#include "halos/cut_strip.glsl"
+#include "halos/strip_varyings.glsl"
 
-#if FEATURE_HALO_FILTER
-uniform samplerBuffer filter_texels;
-
-// How much the number changes per mm along a segment; x: that, y: 1, or both 0 where it is not known.
-vec2 slope(float from, float to, vec3 way) {
-    float s = abs(to - from) / length(way);
-    return s < 3e38 ? vec2(s, 1.0) : vec2(0.0);
-}
-
-// The number at a vertex and its mean change per mm over the segments that meet there; one has a number other at its end.
-vec2 filter_at(int vertex, vec3 here, float other, vec3 there, int next) {
-    float a = texelFetch(filter_texels, vertex).x;
-    vec2 slopes = slope(a, other, there - here);
-    if (next != vertex) slopes += slope(a, texelFetch(filter_texels, next).x, local_place(next) - here);
-    return vec2(a, slopes.x / max(slopes.y, 1.0));
-}
-#endif
-
-#if FEATURE_HALO_CUT
-const float BESIDE = {{ beside }};      // half pictures from the middle, beyond which an axis is cut off
-#endif
 const float SHARPEST = 0.5;    // cosine of the sharpest bend whose corners meet on the bisector
 const float STEEPEST = 0.5;    // pixels by which half a strip widens per pixel along it, up to which they do
 
@@ -64,61 +45,19 @@ vec3 course(vec4 p, vec3 way) {
     return vec3(v * straight, -(halo_widths.x + halo_widths.y) * d.w / size * straight);
 }
 
-#if FEATURE_HALO_CUT
-// Narrows part to where a height that is a at 0 and b at 1 is not negative.
-void narrow(float a, float b, inout vec2 part) {
-    float t = a / (a - b);
-    if (a < 0.0) part.x = b < 0.0 ? 2.0 : max(part.x, t);
-    else if (b < 0.0) part.y = min(part.y, t);
-}
-
-// What a number that is a at the start and b at the end is at either end of a part of the segment: exact where that is whole.
-vec2 cut(float a, float b, vec2 part) { return vec2(a + part.x * (b - a), b - (1.0 - part.y) * (b - a)); }
-#else
-vec2 cut(float a, float b, vec2 part) { return vec2(a, b); }
-#endif
-
 void main() {
     int segment = item_of_vertex();
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    handed_item = 0u;
-    handed_ends = handed_depths = vec4(0.0);
-#if FEATURE_HALO_CUT
-    handed_part = vec2(0.0);
-#endif
-#if FEATURE_HALO_TAPER
-    handed_mask = vec2(0.0);
-#endif
-#if FEATURE_HALO_CUE
-    handed_cue = vec2(0.0);
-#endif
-#if FEATURE_HALO_FILTER
-    handed_filter = vec4(0.0);
-#endif
+    varying_item = 0u;
+    varying_ends = varying_depths = vec4(0.0);
+    clear_optional_varyings();
     if (segment >= halo_counts.x || is_last(segment)) return;
     vec3 start = local_place(segment), stop = local_place(segment + 1), way = stop - start;
     vec4 a = window_of(start), b = window_of(stop);
     vec2 cue = vec2(cue_at(start), cue_at(stop));
     vec2 part = vec2(0.0, 1.0);
     vec4 first = a, last = b;
-#if FEATURE_HALO_CUT
-    vec2 margin = BESIDE * halo_mask.yz;
-    float reach = 2.0 * max(reaches(cue.x, a.w).y, reaches(cue.y, b.w).y);
-    narrow(a.w - a.z, b.w - b.z, part);
-    narrow(a.z, b.z, part);
-    narrow(margin.x * a.w + reach + a.x, margin.x * b.w + reach + b.x, part);
-    narrow(margin.x * a.w + reach - a.x, margin.x * b.w + reach - b.x, part);
-    narrow(margin.y * a.w + reach + a.y, margin.y * b.w + reach + b.y, part);
-    narrow(margin.y * a.w + reach - a.y, margin.y * b.w + reach - b.y, part);
-#if FEATURE_CLIP_PLANES
-    for (int plane = 0; plane < clip_count(); ++plane) {
-        narrow(clip_height_of(plane, start), clip_height_of(plane, stop), part);
-    }
-#endif
-    if (part.x > part.y) return;
-    first += part.x * (b - a);
-    last -= (1.0 - part.y) * (b - a);
-#endif
+    if (!cut_strip(start, stop, a, b, cue, part, first, last)) return;
     if (min(first.w, last.w) <= 0.0) return;
     vec4 ends = vec4(first.xy / first.w, last.xy / last.w);
 
@@ -148,23 +87,8 @@ void main() {
     vec2 pixel = (end == 0 ? ends.xy : ends.zw) + width * side * corner - past * forward * own.xy;
     gl_Position = vec4(pixel / halo_mask.yz, 0.0, 1.0);
 
-    handed_item = uint(segment) | (free.x ? FREE_START : 0u) | (free.y ? FREE_END : 0u);
-    handed_ends = ends;
-    handed_depths = vec4(1.0 / first.w, 1.0 / last.w, first.z / first.w, last.z / last.w);
-#if FEATURE_HALO_CUT
-    handed_part = part;
-#endif
-#if FEATURE_HALO_CUE
-    handed_cue = cut_cue;
-#endif
-#if FEATURE_HALO_TAPER
-    vec2 u = vec2(float(texelFetch(mask_texels, segment).x), float(texelFetch(mask_texels, segment + 1).x)) / float(LAST);
-    handed_mask = cut(u.x, u.y, part);
-#endif
-#if FEATURE_HALO_FILTER
-    float number = texelFetch(filter_texels, segment).x, number_after = texelFetch(filter_texels, segment + 1).x;
-    vec2 f0 = filter_at(segment, start, number_after, stop, before ? segment - 1 : segment);
-    vec2 f1 = filter_at(segment + 1, stop, number, start, after ? segment + 2 : segment + 1);
-    handed_filter = vec4(cut(f0.x, f1.x, part), cut(f0.y, f1.y, part));
-#endif
+    varying_item = uint(segment) | (free.x ? FREE_START : 0u) | (free.y ? FREE_END : 0u);
+    varying_ends = ends;
+    varying_depths = vec4(1.0 / first.w, 1.0 / last.w, first.z / first.w, last.z / last.w);
+    write_optional_varyings(segment, start, stop, part, cut_cue, before, after);
 }

@@ -23,13 +23,13 @@ uniform samplerBuffer value_texels;      // value and derivative of each node
 uniform samplerBuffer colour_texels;     // RGBA of each node, then its derivatives
 #endif
 
-layout(location = 0) out uint shown_depth;
-layout(location = 1) out uint shown_owner;
-layout(location = 2) out uvec2 shown_ids;
-layout(location = 3) out vec2 shown_position;
-layout(location = 4) out uint shown_normal;
+layout(location = 0) out uint out_depth;
+layout(location = 1) out uint out_owner;
+layout(location = 2) out uvec2 out_ids;
+layout(location = 3) out vec2 out_position;
+layout(location = 4) out uint out_normal;
 #if FEATURE_TUBE_COLOURS
-layout(location = 5) out vec4 shown_colour;
+layout(location = 5) out vec4 out_colour;
 #endif
 
 float inside(vec4 p0, vec4 p1, vec4 p2, vec3 at, float t) {
@@ -100,22 +100,22 @@ void main() {
         if (r > 0.0) normal = out_of / r;
         if (kind == 2u) normal = -normal;                          // the wall from inside
     }
-    shown_depth = key_along(ray, s, seen, l);
-    shown_owner = hit.x;
-    shown_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
-    shown_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);
-    shown_normal = packed_direction(normal);
+    out_depth = key_along(ray, s, seen, l);
+    out_owner = hit.x;
+    out_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
+    out_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);
+    out_normal = packed_direction(normal);
 #if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
     uvec4 nodes = texelFetch(segment_texels, int(hit.x));
     float chord = tube_scale.w > 0.0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0;
 #endif
 #if FEATURE_TUBE_VALUES
     vec2 v_i = texelFetch(value_texels, int(nodes.x)).xy, v_j = texelFetch(value_texels, int(nodes.y)).xy;
-    shown_position.y = blended(vec4(v_i.x), vec4(v_i.y * chord), vec4(v_j.x), vec4(v_j.y * chord), second, t).x;
+    out_position.y = blended(vec4(v_i.x), vec4(v_i.y * chord), vec4(v_j.x), vec4(v_j.y * chord), second, t).x;
 #endif
 #if FEATURE_TUBE_COLOURS
     vec4 c_i = texelFetch(colour_texels, 2 * int(nodes.x)), c_j = texelFetch(colour_texels, 2 * int(nodes.y));
     vec4 d_i = chord * texelFetch(colour_texels, 2 * int(nodes.x) + 1), d_j = chord * texelFetch(colour_texels, 2 * int(nodes.y) + 1);
-    shown_colour = clamp(blended(c_i, d_i, c_j, d_j, second, t), 0.0, 1.0);
+    out_colour = clamp(blended(c_i, d_i, c_j, d_j, second, t), 0.0, 1.0);
 #endif
 }

@@ -45,7 +45,7 @@ bool bounds_of(Segment s, out Bounds box) {
         if (size > 1.0 && size < 1e5) box.along = run / size;
         for (int k = 0; k < 4; ++k) {
             vec2 at = box.seen[k].xy / box.seen[k].w, off = at - box.start;
-            float reach = box.balls[k].w * stretch_at(at) / (box.seen[k].w - box.balls[k].w * slope) + 0.01 + 1e-6 * length(at);
+            float reach = box.balls[k].w * pixel_derivative_at(at) / (box.seen[k].w - box.balls[k].w * slope) + 0.01 + 1e-6 * length(at);
             vec2 place = vec2(dot(off, box.along), dot(off, turned(box.along)));
             box.low = min(box.low, place - reach);
             box.high = max(box.high, place + reach);

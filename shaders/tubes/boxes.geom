@@ -20,7 +20,7 @@ void emit_box(Segment s, int index, Box box, uint which) {
         corners[k] = clip_of(s.centre + s.size * box_corner(box, vec3(float(k & 1), float(k >> 1 & 1), float(k >> 2))));
     }
     for (int k = 0; k < 14; ++k) {
-        hand_over(s, index, which);
+        write_varyings(s, index, which);
         gl_Position = corners[STRIP[k]];
         EmitVertex();
     }

@@ -11,9 +11,9 @@ uniform int first_segment;
 void main() {
     int index = first_segment + (gl_VertexID >> 4);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    handed_centre = handed_seen = handed_a1 = handed_a2 = handed_b2 = handed_b3 = vec4(0.0);
-    handed_depth = vec2(0.0);
-    handed_ids = uvec2(0u);
+    varying_centre = varying_seen = varying_a1 = varying_a2 = varying_b2 = varying_b3 = vec4(0.0);
+    varying_depth = vec2(0.0);
+    varying_ids = uvec2(0u);
     if (index >= tube_counts.y) return;
     Segment s = segment_of(index);
     if (!has_turn(s)) return;
@@ -21,6 +21,6 @@ void main() {
     bool second = (gl_VertexID & 8) != 0;
     Box box = second ? box_of_half(middle, s.b2, s.b3) : box_of_half(s.a1, s.a2, middle);
     vec3 corner = vec3(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1), float(gl_VertexID >> 2 & 1));
-    hand_over(s, index, second ? 2u : 1u);
+    write_varyings(s, index, second ? 2u : 1u);
     gl_Position = clip_of(s.centre + s.size * box_corner(box, corner));
 }

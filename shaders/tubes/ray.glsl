@@ -72,7 +72,7 @@ Seen seen_centre(Segment s) {
 #endif
 
 // 1 - depth.
-float farness_along(Ray ray, float l) {
+float reversed_depth_along(Ray ray, float l) {
     precise vec2 at = ray.depth + l * ray.rise;
     precise float far = at.x / max(at.y, 1e-30);
     return far;
@@ -82,7 +82,7 @@ float farness_along(Ray ray, float l) {
 // centre's 1 - depth, which is small and has all of its digits.
 uint key_along(Ray ray, Segment s, Seen seen, float l) {
     const float KEYS = 4294967296.0;
-    float far = farness_along(ray, l);
+    float far = reversed_depth_along(ray, l);
     uint bits = uint(clamp(far * KEYS, 1.0, 4294967040.0));
 #if __VERSION__ >= 400
     dvec3 p = exact_centre(s);

@@ -13,9 +13,9 @@ uniform int first_segment;
 void main() {
     int index = first_segment + (gl_VertexID >> 2);
     gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
-    handed_centre = handed_seen = handed_a1 = handed_a2 = handed_b2 = handed_b3 = vec4(0.0);
-    handed_depth = vec2(0.0);
-    handed_ids = uvec2(0u);
+    varying_centre = varying_seen = varying_a1 = varying_a2 = varying_b2 = varying_b3 = vec4(0.0);
+    varying_depth = vec2(0.0);
+    varying_ids = uvec2(0u);
     if (index >= tube_counts.y) return;
 #if FEATURE_TUBE_LISTED
     index = int(texelFetch(listed_texels, index).x);
@@ -24,7 +24,7 @@ void main() {
     Bounds box;
     if (!has_turn(s) || !bounds_of(s, box)) return;
     vec2 place = mix(box.low, box.high, vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)));
-    hand_over(s, index, 3u);
+    write_varyings(s, index, 3u);
     vec2 pixel = box.start + place.x * box.along + place.y * turned(box.along);
     gl_Position = vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0);
 }

@@ -13,7 +13,7 @@
 #include "tubes/block.glsl"
 #include "tubes/segment.glsl"
 #include "tubes/ray.glsl"
-#define HANDED flat in
+#define VARYING flat in
 #include "tubes/varyings.glsl"
 #include "tubes/cross_line.glsl"
 #include "tubes/functions.glsl"
@@ -29,8 +29,8 @@ void main() {
 #if FEATURE_TUBE_DISCARD
     discard;
 #else
-    Ray ray = ray_through(gl_FragCoord.xy, handed_centre.xyz, handed_centre.w,
-                          Seen(handed_seen.xy, handed_seen.zw, handed_depth));
+    Ray ray = ray_through(gl_FragCoord.xy, varying_centre.xyz, varying_centre.w,
+                          Seen(varying_seen.xy, varying_seen.zw, varying_depth));
     float first = -3e38, last = 3e38;
     narrow(ray.depth.y - ray.depth.x, ray.rise.y - ray.rise.x, first, last);      // from the near plane
     narrow(ray.depth.x, ray.rise.x, first, last);                                 // to the far plane
@@ -40,7 +40,7 @@ void main() {
 #if FEATURE_CLIP_PLANES && FEATURE_TUBE_CHAIN
     for (int plane = 0; plane < clip_count(); ++plane) {
         vec3 normal = clip_planes[plane].xyz;
-        float height = clip_height_of(plane, handed_centre.xyz) / handed_centre.w + dot(normal, ray.o), before = first;
+        float height = clip_height_of(plane, varying_centre.xyz) / varying_centre.w + dot(normal, ray.o), before = first;
         narrow(height, dot(normal, ray.d), first, last);
         if (first > before) {
             cut = true;
@@ -52,11 +52,11 @@ void main() {
     vec3 y_axis, z_axis;
     across(ray.d, y_axis, z_axis);
     Found best = Found(last, 0.0, MISS);
-    vec4 k0 = in_ray_space(handed_a1, ray.o, ray.d, y_axis, z_axis), k1 = in_ray_space(handed_a2, ray.o, ray.d, y_axis, z_axis),
-         k3 = in_ray_space(handed_b2, ray.o, ray.d, y_axis, z_axis), k4 = in_ray_space(handed_b3, ray.o, ray.d, y_axis, z_axis);
+    vec4 k0 = in_ray_space(varying_a1, ray.o, ray.d, y_axis, z_axis), k1 = in_ray_space(varying_a2, ray.o, ray.d, y_axis, z_axis),
+         k3 = in_ray_space(varying_b2, ray.o, ray.d, y_axis, z_axis), k4 = in_ray_space(varying_b3, ray.o, ray.d, y_axis, z_axis);
     vec4 k2 = 0.5 * (k1 + k3);
-    bool in_first = (handed_ids.y & 0x100u) != 0u && may_meet(k0, k1, k2);
-    bool in_second = (handed_ids.y & 0x200u) != 0u && may_meet(k2, k3, k4);
+    bool in_first = (varying_ids.y & 0x100u) != 0u && may_meet(k0, k1, k2);
+    bool in_second = (varying_ids.y & 0x200u) != 0u && may_meet(k2, k3, k4);
     uint half_hit = 0u;
     // One half after the other; but where the ray can meet only one, that one at once: neighbours then search together. The
     // loop is left at its end, as some processors go through all of a body that any of their lanes has entered.
@@ -66,17 +66,17 @@ void main() {
     for (;;) {
         float before = best.l;
         meet_half(second ? k2 : k0, second ? k3 : k1, second ? k4 : k2, first, cut,
-                  bvec2(second || (handed_ids.y & 1u) != 0u, !second || (handed_ids.y & 2u) != 0u), best);
+                  bvec2(second || (varying_ids.y & 1u) != 0u, !second || (varying_ids.y & 2u) != 0u), best);
         if (best.l < before) half_hit = uint(second);
         if (!again) break;
         again = false;
         second = true;
     }
     if (best.kind == MISS) discard;
-    float far = farness_along(ray, best.l);
+    float far = reversed_depth_along(ray, best.l);
     if (!(far > 0.0 && far <= 1.0)) discard;
     gl_FragDepth = far;                      // the other way round: float32 is fine where much of the picture is, far away
     uint t = min(uint(clamp(best.t, 0.0, 1.0) * 16777216.0), 0xFFFFFFu);
-    shown = uvec2(handed_ids.x, t | half_hit << 24u | uint(best.kind) << 25u | by << 27u);
+    shown = uvec2(varying_ids.x, t | half_hit << 24u | uint(best.kind) << 25u | by << 27u);
 #endif
 }

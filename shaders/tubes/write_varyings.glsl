@@ -3,7 +3,7 @@
 #include "tubes/segment.glsl"
 #include "tubes/ray.glsl"
 #include "frame/clip_planes.glsl"
-#define HANDED flat out
+#define VARYING flat out
 #include "tubes/varyings.glsl"
 
 #if FEATURE_CLIP_PLANES
@@ -31,14 +31,14 @@ bool has_turn(Segment s) {
 #endif
 }
 
-void hand_over(Segment s, int index, uint halves) {
-    handed_centre = vec4(s.centre, s.size);
+void write_varyings(Segment s, int index, uint halves) {
+    varying_centre = vec4(s.centre, s.size);
     Seen seen = seen_centre(s);
-    handed_seen = vec4(seen.whole, seen.part);
-    handed_depth = seen.depth;
-    handed_a1 = s.a1;
-    handed_a2 = s.a2;
-    handed_b2 = s.b2;
-    handed_b3 = s.b3;
-    handed_ids = uvec2(uint(index), s.ids.y | halves << 8u);
+    varying_seen = vec4(seen.whole, seen.part);
+    varying_depth = seen.depth;
+    varying_a1 = s.a1;
+    varying_a2 = s.a2;
+    varying_b2 = s.b2;
+    varying_b3 = s.b3;
+    varying_ids = uvec2(uint(index), s.ids.y | halves << 8u);
 }

@@ -15,13 +15,6 @@
 #include "volumes/nodes.glsl"
 #include "codec/layout.glsl"
 #include "frame/tangent.glsl"
-#if FEATURE_VOLUME_SURFACE
-#include "volumes/surface.glsl"
-#elif FEATURE_VOLUME_LIGHT
-#include "volumes/light.glsl"
-#else
-#include "volumes/peak.glsl"
-#endif
 #if FEATURE_CLIP_REGION
 #include "volumes/parts.glsl"
 #endif
@@ -29,15 +22,18 @@
 uniform usampler2D outside;       // keys of what is opaque
 #endif
 
-layout(location = 0) out uint shown_depth;
-layout(location = 1) out uint shown_owner;
-layout(location = 2) out uvec2 shown_ids;
-layout(location = 3) out vec2 shown_position;
+layout(location = 0) out uint out_depth;
+layout(location = 1) out uint out_owner;
+layout(location = 2) out uvec2 out_ids;
+layout(location = 3) out vec2 out_position;
+
+// bool cast_ray(pixel, ray, step, start, out hit, out value): what the mode shows along a ray; false for nothing.
 #if FEATURE_VOLUME_SURFACE
-layout(location = 4) out uint shown_normal;
-#endif
-#if FEATURE_VOLUME_LIGHT
-layout(location = 4) out vec4 shown_colour;
+#include "volumes/cast_surface.glsl"
+#elif FEATURE_VOLUME_LIGHT
+#include "volumes/cast_light.glsl"
+#else
+#include "volumes/cast_peak.glsl"
 #endif
 
 // A number in 0..1 for each pixel that looks like noise.
@@ -49,14 +45,10 @@ uniform ivec2 last_pixel;
 void main() {
     ivec2 pixel = min(ivec2(gl_FragCoord.xy) * ray_stride + ray_stride / 2, last_pixel);
     Ray ray = ray_of(vec2(pixel) + 0.5);
-    shown_depth = shown_owner = 0xFFFFFFFFu;
-    shown_ids = uvec2(0u);
-    shown_position = vec2(0.0);
-#if FEATURE_VOLUME_SURFACE
-    shown_normal = 0u;
-#elif FEATURE_VOLUME_LIGHT
-    shown_colour = vec4(0.0);
-#endif
+    out_depth = out_owner = 0xFFFFFFFFu;
+    out_ids = uvec2(0u);
+    out_position = vec2(0.0);
+    clear_shown();
 #if FEATURE_SCENE_DEPTH
     uint key = texelFetch(outside, pixel, 0).x;
     if (key != 0xFFFFFFFFu) ray.last = min(ray.last, where_far(ray, float(0xFFFFFFFFu - key) / 4294967296.0));
@@ -67,41 +59,11 @@ void main() {
     start += step * noise(vec2(pixel));
     if (start >= ray.last) return;
 #endif
-    float hit, value = 0.0;
-#if FEATURE_VOLUME_SURFACE
-#if FEATURE_CLIP_REGION
-    if (!find_surface_in_parts(pixel, ray, step, start - ray.first, hit, value)) return;
-#else
-    if (!find_surface(ray, step, start, hit, value)) return;
-#endif
-#if FEATURE_VOLUME_NEAREST
-    vec3 g = gradient_at(floor(at(ray, hit) + 0.5));      // of the voxel, whichever of its sides shows
-#else
-    vec3 g = gradient_at(at(ray, hit));
-#endif
-    vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
-    float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
-    vec3 normal = size > 0.0 ? g / size : -way;
-    shown_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);
-    shown_ids.y = packed_tangent(way - normal * dot(way, normal) / dot(normal, normal), 0u);      // along the surface, away
-#elif FEATURE_VOLUME_LIGHT
-    vec4 light;
-#if FEATURE_CLIP_REGION
-    if (!gather_in_parts(pixel, ray, step, start - ray.first, hit, light)) return;
-#else
-    if (!gather(ray, step, start, hit, light)) return;
-#endif
-    shown_colour = vec4(light.rgb / light.a, light.a);
-#else
-#if FEATURE_CLIP_REGION
-    if (!find_peak_in_parts(pixel, ray, step, start - ray.first, hit, value)) return;
-#else
-    if (!find_peak(ray, step, start, hit, value)) return;
-#endif
-#endif
-    float far = farness(ray, hit);
-    shown_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
+    float hit, value;
+    if (!cast_ray(pixel, ray, step, start, hit, value)) return;
+    float far = reversed_depth(ray, hit);
+    out_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
     ivec3 voxel = clamp(ivec3(floor(at(ray, hit) + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1);
-    shown_owner = uint(voxel.x) + uint(ray_size.x) * (uint(voxel.y) + uint(ray_size.y) * uint(voxel.z));
-    shown_position = vec2(hit, value);
+    out_owner = uint(voxel.x) + uint(ray_size.x) * (uint(voxel.y) + uint(ray_size.y) * uint(voxel.z));
+    out_position = vec2(hit, value);
 }

@@ -24,12 +24,12 @@ uniform int ray_stride;
 uniform ivec2 last_pixel;
 uniform float threshold;
 
-layout(location = 0) out uint shown_depth;
-layout(location = 1) out uint shown_owner;
-layout(location = 2) out uvec2 shown_ids;
-layout(location = 3) out vec2 shown_position;
+layout(location = 0) out uint out_depth;
+layout(location = 1) out uint out_owner;
+layout(location = 2) out uvec2 out_ids;
+layout(location = 3) out vec2 out_position;
 #if FEATURE_VOLUME_SURFACE
-layout(location = 4) out uint shown_normal;
+layout(location = 4) out uint out_normal;
 
 // Inverse of packed_direction().
 vec3 unpacked(uint word) {
@@ -41,7 +41,7 @@ vec3 unpacked(uint word) {
 }
 #endif
 #if FEATURE_VOLUME_LIGHT
-layout(location = 4) out vec4 shown_colour;
+layout(location = 4) out vec4 out_colour;
 #endif
 
 void main() {
@@ -78,7 +78,7 @@ void main() {
     }
     float spread = max(max(far[0], far[1]), max(far[2], far[3])) - min(min(far[0], far[1]), min(far[2], far[3]));
     alike = alike && abs(far[0] + far[3] - far[1] - far[2]) <= max(threshold * spread, 1024.0) && lowest.y == highest.y;
-    shown_normal = alike ? packed_direction(normal) : 0u;
+    out_normal = alike ? packed_direction(normal) : 0u;
     vec3 along = abs(normal.x) < 0.7 * length(normal) ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     uint tangent = alike ? packed_tangent(cross(normal, along), 0u) : 0u;
 #elif FEATURE_VOLUME_LIGHT
@@ -92,19 +92,19 @@ void main() {
     }
     vec4 differ = high_colour - low_colour;
     alike = alike && max(max(differ.x, differ.y), max(differ.z, differ.w)) <= threshold;
-    shown_colour = vec4(colour.rgb / max(colour.a, 1e-6), colour.a);
+    out_colour = vec4(colour.rgb / max(colour.a, 1e-6), colour.a);
 #else
     alike = alike && highest.y - lowest.y <= threshold * (ray_table.y - ray_table.x);
 #endif
     bool nothing = found == 0u;
-    shown_depth = alike ? 0xFFFFFFFFu - uint(clamp(mean, 1.0, 4294967040.0)) : 0xFFFFFFFFu;
-    shown_owner = alike ? texelFetch(coarse_owner, at[weights[0] >= max(weights[1], max(weights[2], weights[3])) ? 0
+    out_depth = alike ? 0xFFFFFFFFu - uint(clamp(mean, 1.0, 4294967040.0)) : 0xFFFFFFFFu;
+    out_owner = alike ? texelFetch(coarse_owner, at[weights[0] >= max(weights[1], max(weights[2], weights[3])) ? 0
         : weights[1] >= max(weights[2], weights[3]) ? 1 : weights[2] >= weights[3] ? 2 : 3], 0).x : 0xFFFFFFFFu;
 #if FEATURE_VOLUME_SURFACE
-    shown_ids = uvec2(0u, tangent);
+    out_ids = uvec2(0u, tangent);
 #else
-    shown_ids = uvec2(0u);
+    out_ids = uvec2(0u);
 #endif
-    shown_position = alike ? position : vec2(0.0);
+    out_position = alike ? position : vec2(0.0);
     gl_FragDepth = alike || nothing ? 0.0 : 1.0;
 }

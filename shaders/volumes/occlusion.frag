@@ -48,8 +48,8 @@ const float LIFT = {{ lift }};      // voxels
 const float BESIDE = 0.1;           // voxels
 const int FIRST_OWN_PLANE = 2;      // after near and far
 
-uniform usampler2D shown_depth;
-uniform sampler2D shown_position;   // mm along the pixel's ray, mu
+uniform usampler2D surface_depth;
+uniform sampler2D surface_position;   // mm along the pixel's ray, mu
 uniform mat3 to_data;
 uniform float radius;
 uniform int samples;                // of this portion
@@ -137,8 +137,8 @@ bool is_open(Ray ray, float low, float high) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     free = 0.0;
-    if (texelFetch(shown_depth, pixel, 0).x == 0xFFFFFFFFu) return;
-    vec2 shown = texelFetch(shown_position, pixel, 0).xy;
+    if (texelFetch(surface_depth, pixel, 0).x == 0xFFFFFFFFu) return;
+    vec2 shown = texelFetch(surface_position, pixel, 0).xy;
     Ray seen = ray_of(gl_FragCoord.xy);
     float mu = shown.y;
     vec3 p = on_surface(seen, shown.x, mu);

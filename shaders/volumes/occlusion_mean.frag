@@ -22,9 +22,9 @@
 const int REACH = 2;
 const uint EMPTY = 0xFFFFFFFFu;
 
-uniform usampler2D shown_depth;
-uniform sampler2D shown_position;
-uniform usampler2D shown_normal;    // unit, mm of the data, octahedral about +x, two snorm16
+uniform usampler2D surface_depth;
+uniform sampler2D surface_position;
+uniform usampler2D surface_normal;    // unit, mm of the data, octahedral about +x, two snorm16
 uniform sampler2D rough;
 uniform float away;
 uniform float near;
@@ -33,7 +33,7 @@ uniform float bend;
 layout(location = 0) out float free;
 
 vec3 normal_of(ivec2 pixel) {
-    uint word = texelFetch(shown_normal, pixel, 0).x;
+    uint word = texelFetch(surface_normal, pixel, 0).x;
     ivec2 s = ivec2(int(word << 16) >> 16, int(word) >> 16);
     vec2 p = vec2(s) / 32767.0;
     float x = 1.0 - abs(p.x) - abs(p.y);
@@ -52,18 +52,18 @@ vec3 place_of(ivec2 pixel, float t) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(shown_depth, 0) - 1;
+    ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(surface_depth, 0) - 1;
     free = 0.0;
-    if (texelFetch(shown_depth, pixel, 0).x == EMPTY) return;
-    vec2 shown = texelFetch(shown_position, pixel, 0).xy;
+    if (texelFetch(surface_depth, pixel, 0).x == EMPTY) return;
+    vec2 shown = texelFetch(surface_position, pixel, 0).xy;
     vec3 place = place_of(pixel, shown.x), normal = normal_of(pixel);
     vec2 sum = vec2(texelFetch(rough, pixel, 0).x, 1.0);
     for (int y = -REACH; y <= REACH; ++y) {
         for (int x = -REACH; x <= REACH; ++x) {
             ivec2 other = pixel + ivec2(x, y);
             if (other == pixel || any(lessThan(other, ivec2(0))) || any(greaterThan(other, last))) continue;
-            if (texelFetch(shown_depth, other, 0).x == EMPTY) continue;
-            vec2 there = texelFetch(shown_position, other, 0).xy;
+            if (texelFetch(surface_depth, other, 0).x == EMPTY) continue;
+            vec2 there = texelFetch(surface_position, other, 0).xy;
             if (there.y != shown.y) continue;
             vec3 apart = place_of(other, there.x) - place;
             float weight = max(0.0, 1.0 - abs(dot(normal, apart)) / away) * max(0.0, 1.0 - dot(apart, apart) / (near * near))

@@ -1,4 +1,4 @@
-// What a ray shows of its parts inside the caller's region, from the eye on.
+// A ray's parts inside the caller's region, from the eye on; volumes/cast_*.glsl find what each mode shows of them.
 //
 // This work is based on: Schertzer et al. 2022, section 5.1, which cuts by one front and one back depth of a mesh. Here the region
 // may begin and end any number of times along a ray: pvfiblets/engine/regions/ray_intervals.py draws the depths at which it does.
@@ -28,46 +28,3 @@ bool next_part(ivec2 pixel, Ray whole, inout int number, out float begin, out fl
         if (begin < end) return true;
     }
 }
-
-#if FEATURE_VOLUME_SURFACE
-bool find_surface_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out float value) {
-    Ray part = whole;
-    float begin;
-    for (int number = 0; next_part(pixel, whole, number, begin, part.last);) {
-        if (find_surface(part, step, min(begin + late, part.last), hit, value)) return true;
-    }
-    return false;
-}
-#elif FEATURE_VOLUME_LIGHT
-bool gather_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out vec4 light) {
-    Ray part = whole;
-    float begin, here;
-    vec4 more;
-    light = vec4(0.0);
-    hit = -1.0;
-    for (int number = 0; light.a < ray_high.w && next_part(pixel, whole, number, begin, part.last);) {
-        if (!gather(part, step, min(begin + late, part.last), here, more)) continue;
-        if (light.a <= 0.0) hit = here;
-        light += (1.0 - light.a) * more;
-    }
-    if (light.a >= ray_high.w) light /= light.a;
-    return light.a > 0.0;
-}
-#else
-bool find_peak_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out float value) {
-    Ray part = whole;
-    float begin, here, peak;
-    value = -3e38;
-    hit = whole.first;
-    for (int number = 0; next_part(pixel, whole, number, begin, part.last);) {
-        if (find_peak(part, step, min(begin + late, part.last), here, peak) && peak > value) {
-            value = peak;
-            hit = here;
-        }
-#if FEATURE_VOLUME_LOCAL
-        if (value >= ray_table.w) break;
-#endif
-    }
-    return value > -3e38;
-}
-#endif

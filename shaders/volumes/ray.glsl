@@ -25,7 +25,7 @@ float where_far(Ray ray, float far) {
     return rise < 0.0 ? (far * w - u) / rise : 3e38;
 }
 
-float farness(Ray ray, float t) {
+float reversed_depth(Ray ray, float t) {
     vec4 p = vec4(at(ray, t), 1.0);
     return dot(ray_depth[0], p) / max(dot(ray_depth[1], p), 1e-30);
 }

@@ -15,8 +15,8 @@ from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
 from pvfiblets.engine.fiblets.pipelines.raster import FIRST_ROUND_UNIT
 from pvfiblets.engine.shaders import assemble
 
-TASK_WORDS, VERTICES, INDICES, HANDED, MOST = 16, 480, 180, 24, 60
-MESH_WORDS = VERTICES + INDICES + HANDED * MOST + 4
+TASK_WORDS, VERTICES, INDICES, VARYING, MOST = 16, 480, 180, 24, 60
+MESH_WORDS = VERTICES + INDICES + VARYING * MOST + 4
 SHARES = {False: 1, True: 4}
 
 TASK = """
@@ -48,7 +48,7 @@ layout(local_size_x = THREADS_OF) in;
 layout(std430, binding = 8) readonly buffer Tasks { uint tasks[]; };
 layout(std430, binding = 9) writeonly buffer Meshes { uint meshes[]; };
 LAYOUT
-#define HANDED
+#define VARYING
 #define TO(name) name
 #include "fiblets/raster/write_varyings.glsl"
 uint mesh;
@@ -57,31 +57,31 @@ void put_vertex(uint vertex, vec4 at) {
 }
 void put_index(uint slot, uint vertex) { meshes[mesh + INDICES + slot] = vertex; }
 void put_count(uint primitives) { meshes[mesh + COUNT] = primitives; }
-void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) {
-    hand_over(handed, piece, from, to);
+void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
+    write_varyings(varyings, piece, from, to);
     uint at = mesh + HANDED_AT + 24u * primitive;
-    for (uint a = 0u; a < 4u; ++a) meshes[at + a] = handed_ids[a];
-    meshes[at + 4u] = floatBitsToUint(handed_first);
+    for (uint a = 0u; a < 4u; ++a) meshes[at + a] = varying_ids[a];
+    meshes[at + 4u] = floatBitsToUint(varying_first);
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(handed_start[a]);
-    for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(handed_end[a]);
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(varying_start[a]);
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(varying_end[a]);
 #elif !FEATURE_TUBES
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = handed_cells[a];
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(handed_depths[a]);
-    meshes[at + 9u] = floatBitsToUint(handed_ratio);
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = varying_cells[a];
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(varying_depths[a]);
+    meshes[at + 9u] = floatBitsToUint(varying_ratio);
 #endif
 #if FEATURE_CLIPPING && !FEATURE_TUBES
-    meshes[at + 13u] = handed_part;
+    meshes[at + 13u] = varying_part;
 #endif
 #if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-    for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(handed_from[a]);
-    for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(handed_to[a]);
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(varying_from[a]);
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(varying_to[a]);
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(handed_values[a]);
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(varying_values[a]);
 #endif
 }
-#include "mesh/STAGE.glsl"
+#include "fiblets/mesh/STAGE.glsl"
 void main() {
     uint at = gl_WorkGroupID.y * 16u, k = gl_WorkGroupID.x;
     mesh = (gl_WorkGroupID.y * gl_NumWorkGroups.x + k) * MESH_WORDS;
@@ -99,7 +99,7 @@ void main() {
 VERTEX = """
 #version 430
 #include "fiblets/raster/clipped_segment.glsl"
-#define HANDED flat out
+#define VARYING flat out
 #include "fiblets/raster/varyings.glsl"
 layout(std430, binding = 9) readonly buffer Meshes { uint meshes[]; };
 LAYOUT
@@ -116,25 +116,25 @@ void main() {
     if (primitive >= meshes[mesh + COUNT]) return;
     uint vertex = mesh + 4u * meshes[mesh + INDICES + corners * primitive + corner];
     gl_Position = vec4(value(vertex), value(vertex + 1u), value(vertex + 2u), value(vertex + 3u));
-    handed_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
-    handed_first = value(at + 4u);
+    varying_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
+    varying_first = value(at + 4u);
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    handed_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
-    handed_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
+    varying_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
+    varying_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
 #elif !FEATURE_TUBES
-    handed_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
-    handed_depths = vec2(value(at + 7u), value(at + 8u));
-    handed_ratio = value(at + 9u);
+    varying_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
+    varying_depths = vec2(value(at + 7u), value(at + 8u));
+    varying_ratio = value(at + 9u);
 #endif
 #if FEATURE_CLIPPING && !FEATURE_TUBES
-    handed_part = meshes[at + 13u];
+    varying_part = meshes[at + 13u];
 #endif
 #if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-    handed_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
-    handed_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
+    varying_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
+    varying_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
-    handed_values = vec2(value(at + 20u), value(at + 21u));
+    varying_values = vec2(value(at + 20u), value(at + 21u));
 #endif
 }
 """

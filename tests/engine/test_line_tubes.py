@@ -370,7 +370,7 @@ def test_tubes_hand_over_no_more_than_wide_lines():
     def components(features):
         sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
         lines = switched(read_shader("fiblets/raster/varyings.glsl"), features)
-        return sum(sizes[line.split()[1]] for line in lines if line.startswith("HANDED "))
+        return sum(sizes[line.split()[1]] for line in lines if line.startswith("VARYING "))
 
     for more in ([], ["CLIPPING"], ["CLIPPING", "CLIP_PLANES"]):
         for values in ([], ["VALUES_CURVATURE"]):

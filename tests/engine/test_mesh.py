@@ -100,7 +100,7 @@ def test_the_compiler_sees_every_stage(tmp_path):
     for stage in sources:
         broken = {**sources, stage: sources[stage].replace("void main() {", "void main() { nonsense();")}
         assert link(tmp_path, broken).returncode != 0
-    unmatched = {**sources, "frag": sources["frag"].replace("uvec4 handed_ids", "uvec3 handed_ids")}
+    unmatched = {**sources, "frag": sources["frag"].replace("uvec4 varying_ids", "uvec3 varying_ids")}
     assert link(tmp_path, unmatched).returncode != 0
 
 
@@ -115,7 +115,7 @@ def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     vertices, primitives = (int(re.search(rf"max_{what} = (\d+)", text)[1]) for what in ("vertices", "primitives"))
     share, shares = (int(n) for n in re.search(r"SHARE = (\d+)u, SHARES = (\d+)u", text).groups())
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4, "ivec3": 3}
-    handed = sum(sizes[kind] for kind in re.findall(r"perprimitiveNV out (\w+) handed_", text))
+    handed = sum(sizes[kind] for kind in re.findall(r"perprimitiveNV out (\w+) varying_", text))
     shared = sum(sizes[kind] for kind in re.findall(r"shared (\w+) \w+ *\[ *2u \* PREFIX_THREADS *\]", text))
     assert vertices <= 256
     assert primitives <= 512

@@ -94,7 +94,7 @@ def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, w
     features = {*values, *clipping, *(("WIDE_LINES",) if wide else ())}
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
     declared = [
-        re.match(r"HANDED (\w+) handed", line)
+        re.match(r"VARYING (\w+) varying", line)
         for line in switched(read_shader("fiblets/raster/varyings.glsl"), features)
     ]
     components = 4 + sum(sizes[match[1]] for match in declared if match)

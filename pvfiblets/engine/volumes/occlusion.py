@@ -124,7 +124,7 @@ class RayOcclusionPass(ScreenEffect):
         elif _MEAN in self._targets:
             self._drop(_MEAN)
             self._queries.pop(_MEAN, None)
-        read = {"shown_depth": buffer.depth, "shown_position": buffer.position}
+        read = {"surface_depth": buffer.depth, "surface_position": buffer.position}
 
         def bound(program: moderngl.Program, textures: Mapping[str, Any]) -> None:
             for unit, (name, of_picture) in enumerate(textures.items(), start=FIRST_UNIT + 8):
@@ -133,7 +133,7 @@ class RayOcclusionPass(ScreenEffect):
 
         def mean() -> None:
             program, array = self._programs.screen("volumes/occlusion_mean.frag")
-            bound(program, read | {"shown_normal": buffer.across, "rough": self._targets[_NAME][0]})
+            bound(program, read | {"surface_normal": buffer.across, "rough": self._targets[_NAME][0]})
             # The less chance there is in a pixel, the less may be lost to the mean.
             reach = math.sqrt(MEAN_SAMPLES / samples)
             in_data = float(radius) * float(np.linalg.norm(turn, 2))

@@ -4,10 +4,10 @@
 #if FEATURE_CROSS_LINE && FEATURE_TUBES
 #include "frame/tangent.glsl"
 layout(r32ui, binding = 4) writeonly uniform uimage2D across_image;
-void store_across(ivec2 pixel) { imageStore(across_image, pixel, uvec4(packed_direction(normal_here))); }
+void store_relief(ivec2 pixel, vec3 normal) { imageStore(across_image, pixel, uvec4(packed_direction(normal))); }
 #elif FEATURE_CROSS_LINE
 layout(r16f, binding = 4) writeonly uniform image2D across_image;
-void store_across(ivec2 pixel) { imageStore(across_image, pixel, vec4(across_here)); }
+void store_relief(ivec2 pixel, vec3 across) { imageStore(across_image, pixel, vec4(across.x)); }
 #else
-void store_across(ivec2 pixel) {}
+void store_relief(ivec2 pixel, vec3 relief) {}
 #endif

@@ -42,14 +42,15 @@ bool may_show(ivec2 pixel, float z, uint segment) {
     return new_surface(pixel, segment);
 }
 
-void plot(ivec2 pixel, float z, float s, uint segment) {
+void plot(Fragment fragment, Segment segment) {
+    ivec2 pixel = fragment.pixel;
 #if FEATURE_INT64_ATOMICS
     uint at = pixel_index(pixel);
-    uint64_t word = nearest_word(depth_key(z), owner);
-    if (word < nearest[at] && may_show(pixel, z, segment)) atomicMin(nearest[at], word);
+    uint64_t word = nearest_word(depth_key(fragment.z), owner);
+    if (word < nearest[at] && may_show(pixel, fragment.z, segment.index)) atomicMin(nearest[at], word);
 #else
-    uint key = depth_key(z), there = imageLoad(depth_image, pixel).x;
-    if (key > there || !may_show(pixel, z, segment)) return;
+    uint key = depth_key(fragment.z), there = imageLoad(depth_image, pixel).x;
+    if (key > there || !may_show(pixel, fragment.z, segment.index)) return;
     if (key < there) there = imageAtomicMin(depth_image, pixel, key);
     if (key <= there) won = true;
 #endif

@@ -28,15 +28,16 @@ uint owner;
 bool kept;
 bool tied;
 
-void plot(ivec2 pixel, float z, float s, uint segment) {
-    if (depth_key(z) != imageLoad(depth_image, pixel).x || !new_surface(pixel, segment)) return;
+void plot(Fragment fragment, Segment segment) {
+    ivec2 pixel = fragment.pixel;
+    if (depth_key(fragment.z) != imageLoad(depth_image, pixel).x || !new_surface(pixel, segment.index)) return;
     kept = true;
     uint before = imageAtomicMin(owner_image, pixel, owner);
     if (before < owner) return;
     if (before > owner && before != NO_FIBLET) tied = true;
     imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
-    store_across(pixel);
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    store_relief(pixel, fragment.relief);
 }
 
 void main() {

@@ -21,12 +21,13 @@ layout(rg32f, binding = 3) writeonly uniform image2D position_image;
 
 uint owner;
 
-void plot(ivec2 pixel, float z, float s, uint segment) {
-    if (imageLoad(owner_image, pixel).x != owner || depth_key(z) != imageLoad(depth_image, pixel).x) return;
-    if (!new_surface(pixel, segment)) return;
+void plot(Fragment fragment, Segment segment) {
+    ivec2 pixel = fragment.pixel;
+    if (imageLoad(owner_image, pixel).x != owner || depth_key(fragment.z) != imageLoad(depth_image, pixel).x) return;
+    if (!new_surface(pixel, segment.index)) return;
     imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment, along(s)), 0.0, 0.0));
-    store_across(pixel);
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    store_relief(pixel, fragment.relief);
 }
 
 void main() {

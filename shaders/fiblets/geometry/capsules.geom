@@ -40,13 +40,13 @@ void main() {
     // Backwards, as shares are: of two segments with the same depth the later one stays, as with the compute pipeline.
     for (uint i = end; i > first; --i) {
         uint segment = i - 1u, k = segment - first;
-        Piece piece;
+        ClippedSegment piece;
         bool start = segment == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
         if (!mask_segment(segment, start, cap) || !piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
-        Handed handed = Handed(uvec2(pixel_ids.x, tangents[k]), chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
+        Varyings varyings = Varyings(uvec2(pixel_ids.x, tangents[k]), chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
         for (int corner = 0; corner < 4; ++corner) {
             gl_Position = corner_of(piece, corner);
-            hand_over(handed, piece, points[k], points[k + 1u]);
+            write_varyings(varyings, piece, points[k], points[k + 1u]);
             EmitVertex();
         }
         EndPrimitive();

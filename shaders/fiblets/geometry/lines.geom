@@ -33,18 +33,18 @@ void main() {
         next_point(i);
         start_segment(i - 1u, walk_delta, polyline.steps);
         if (i <= first) continue;
-        Piece piece;
+        ClippedSegment piece;
         bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
         if (!mask_segment(i - 1u, start, cap) || !piece_of(from, walk_point, start, cap, piece)) {
             open = false;
             continue;
         }
-        Handed handed = Handed(pixel_ids, chunk.y + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
+        Varyings varyings = Varyings(pixel_ids, chunk.y + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
         Thin line = thin_line(piece);
         for (int side = open && piece.t0 == 0.0 ? 1 : 0; side < 2; ++side) {
             if (side == 0) EndPrimitive();
             gl_Position = side == 0 ? line.first : line.last;
-            hand_over(handed, piece, from, walk_point);
+            write_varyings(varyings, piece, from, walk_point);
             EmitVertex();
         }
         open = !piece.cap;

@@ -1,18 +1,18 @@
 // Writes one segment by the functions of fiblets/mesh/outputs.glsl; fiblets/mesh/segment.glsl says how.
 
 // slot: place in the share, which has `count` segments. handed: what the fragments need beside the piece.
-void draw_segment(uint slot, uint count, Handed handed, vec3 from, vec3 to, bool start, bool cap) {
-    Piece piece;
+void draw_segment(uint slot, uint count, Varyings varyings, vec3 from, vec3 to, bool start, bool cap) {
+    ClippedSegment piece;
     uint primitive = PRIMITIVES * (count - 1u - slot);
-    bool any = mask_segment(handed.segment, start, cap) && piece_of(from, to, start, cap, piece);
+    bool any = mask_segment(varyings.segment, start, cap) && piece_of(from, to, start, cap, piece);
 #if FEATURE_WIDE_LINES
     for (int corner = 0; corner < 4; ++corner) put_vertex(4u * slot + uint(corner), any ? corner_of(piece, corner) : NOWHERE);
     for (uint i = 0u; i < 3u; ++i) {
         put_index(3u * primitive + i, 4u * slot + i);
         put_index(3u * primitive + 3u + i, 4u * slot + 1u + i);
     }
-    put_handed(primitive, handed, piece, from, to);
-    put_handed(primitive + 1u, handed, piece, from, to);
+    put_varyings(primitive, varyings, piece, from, to);
+    put_varyings(primitive + 1u, varyings, piece, from, to);
 #else
     Thin line = thin_line(piece);
 #if FEATURE_CLIPPING
@@ -26,6 +26,6 @@ void draw_segment(uint slot, uint count, Handed handed, vec3 from, vec3 to, bool
 #endif
     put_index(2u * primitive, first);
     put_index(2u * primitive + 1u, first + 1u);
-    put_handed(primitive, handed, piece, from, to);
+    put_varyings(primitive, varyings, piece, from, to);
 #endif
 }

@@ -2,11 +2,11 @@
 // handed (fiblets/raster/varyings.glsl). Tests put storage buffers in the place of this file and run the same stages as compute
 // shaders.
 
-#define HANDED perprimitiveNV out
+#define VARYING perprimitiveNV out
 #define EACH []
-#define TO(name) name[handed_primitive]
+#define TO(name) name[varying_primitive]
 
-uint handed_primitive;
+uint varying_primitive;
 
 #include "fiblets/raster/write_varyings.glsl"
 
@@ -14,9 +14,9 @@ void put_vertex(uint vertex, vec4 at) { gl_MeshVerticesNV[vertex].gl_Position = 
 
 void put_index(uint slot, uint vertex) { gl_PrimitiveIndicesNV[slot] = vertex; }
 
-void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) {
-    handed_primitive = primitive;
-    hand_over(handed, piece, from, to);
+void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
+    varying_primitive = primitive;
+    write_varyings(varyings, piece, from, to);
 }
 
 void put_count(uint primitives) { gl_PrimitiveCountNV = primitives; }

@@ -148,9 +148,9 @@ void draw_share(uint f, uint share) {
     uint streamline = streamline_of(f);
     float first_point = float(points_before(f));
     for (uint i = first + gl_LocalInvocationIndex; i < end; i += PREFIX_THREADS) {
-        Handed handed = Handed(uvec2(streamline, tangent_of(i)), chunk.y + f, first_point, i, group.spans, values_of(i));
+        Varyings varyings = Varyings(uvec2(streamline, tangent_of(i)), chunk.y + f, first_point, i, group.spans, values_of(i));
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
-        draw_segment(i - first, end - first, handed, point_of(i), point_of(i + 1u), start, cap);
+        draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }
     if (gl_LocalInvocationIndex == 0u) put_count(PRIMITIVES * (end - first));
 }

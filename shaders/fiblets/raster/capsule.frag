@@ -18,18 +18,18 @@
 #endif
 
 void main() {
-    precise vec4 c0 = to_homogeneous(handed_from), c1 = to_homogeneous(handed_to);
-    Tube body = tube_of(handed_from, handed_to, c0, (handed_ids.w & 0x10000u) != 0u);
+    precise vec4 c0 = to_homogeneous(varying_from), c1 = to_homogeneous(varying_to);
+    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u);
     Hit hit;
 #if FEATURE_PEEL
     Outline outline;
     if (!outline_of(c0, c1, outline) || !tube_at(body, c0, outline, gl_FragCoord.xy, hit)) discard;
-    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((handed_ids.w >> 8u) & 255u));
+    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((varying_ids.w >> 8u) & 255u));
 #else
     if (!tube_found(body, c0, c1, gl_FragCoord.xy, hit)) discard;
 #endif
 #if FEATURE_CROSS_LINE
-    shown_across = packed_direction(hit.normal);
+    out_across = packed_direction(hit.normal);
 #endif
     shade(hit.t, 1.0, hit.z);
 }
@@ -39,8 +39,8 @@ void main() {
 // Heights over clip w are linear in the window; `away` is how far the pixel is from the segment's point s.
 bool brush_kept(float s, vec2 away) {
     for (int plane = 0; plane < clip_count(); ++plane) {
-        vec2 heights = vec2(clip_height_of(plane, handed_from), clip_height_of(plane, handed_to));
-        precise vec2 h = max(heights / max(vec2(handed_start.w, handed_end.w), vec2(1e-30)), vec2(0.0));
+        vec2 heights = vec2(clip_height_of(plane, varying_from), clip_height_of(plane, varying_to));
+        precise vec2 h = max(heights / max(vec2(varying_start.w, varying_end.w), vec2(1e-30)), vec2(0.0));
         precise float there = h.x + s * (h.y - h.x) + dot(clip_tilts[plane].xy, away);
         if (there < 0.0) return false;
     }
@@ -49,18 +49,18 @@ bool brush_kept(float s, vec2 away) {
 #endif
 
 void main() {
-    vec2 run = handed_end.xy - handed_start.xy, centre = gl_FragCoord.xy - handed_start.xy;
+    vec2 run = varying_end.xy - varying_start.xy, centre = gl_FragCoord.xy - varying_start.xy;
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && (handed_ids.w & 0x10000u) == 0u || dot(away, away) > viewport.z * viewport.z) discard;
+    if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > viewport.z * viewport.z) discard;
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif
-    precise float depth = handed_start.z + (handed_end.z - handed_start.z) * s;
+    precise float depth = varying_start.z + (varying_end.z - varying_start.z) * s;
 #if FEATURE_CROSS_LINE
-    shown_across = clamp(dot(vec2(-run.y, run.x), centre) / (viewport.z * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
+    out_across = clamp(dot(vec2(-run.y, run.x), centre) / (viewport.z * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
 #endif
-    shade(s, handed_start.w / handed_end.w, depth);
+    shade(s, varying_start.w / varying_end.w, depth);
 }
 #endif

@@ -20,6 +20,17 @@
 //
 // A pixel drawn is therefore at most one pixel away from the true line, and has its depth within one pixel.
 
+#include "frame/project.glsl"
+
+// The pixel that holds a point of the window; one on the right or upper edge belongs to the last pixel.
+vec2 pixel_of(vec4 window) {
+#if FEATURE_CLIPPING
+    return floor(clamp(window.xy, vec2(0.0), viewport.xy - 0.01));
+#else
+    return floor(window.xy);
+#endif
+}
+
 struct Cells {
     ivec2 first;
     vec2 run;

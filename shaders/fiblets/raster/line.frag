@@ -9,14 +9,14 @@
 #include "fiblets/raster/shade.glsl"
 
 void main() {
-    ivec2 p = ivec2(handed_cells.x & 0xFFFFu, handed_cells.x >> 16u), q = ivec2(handed_cells.y & 0xFFFFu, handed_cells.y >> 16u);
+    ivec2 p = ivec2(varying_cells.x & 0xFFFFu, varying_cells.x >> 16u), q = ivec2(varying_cells.y & 0xFFFFu, varying_cells.y >> 16u);
     vec2 run = vec2(q - p), at = floor(gl_FragCoord.xy) - vec2(p);
     if (at == run) {  // drawn only where the line ends
-        shade(1.0, handed_ratio, handed_depths.y);
+        shade(1.0, varying_ratio, varying_depths.y);
         return;
     }
     float square = 1.0 / max(dot(run, run), 1.0);
-    precise vec2 slope = square * (handed_depths.y - handed_depths.x) * run;
-    precise float depth = handed_depths.x - dot(CELL_SHIFT, slope) + dot(at, slope);
-    shade(dot(at - CELL_SHIFT, run) * square, handed_ratio, depth);
+    precise vec2 slope = square * (varying_depths.y - varying_depths.x) * run;
+    precise float depth = varying_depths.x - dot(CELL_SHIFT, slope) + dot(at, slope);
+    shade(dot(at - CELL_SHIFT, run) * square, varying_ratio, depth);
 }

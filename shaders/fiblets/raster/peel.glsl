@@ -51,6 +51,10 @@ void peel_segment(vec2 a, vec2 b, float r, float steps) {
 bool behind_layers(ivec2 pixel, uint key) {
     return key > texelFetch(peeled_depth, ivec3(pixel, peeled_layers - 1), 0).x;
 }
+#else
+void begin_peel(uint streamline, float first_point) {}
+void peel_segment(vec2 a, vec2 b, float r, float steps) {}
+bool behind_layers(ivec2 pixel, uint key) { return true; }
 #endif
 
 // Whether what is drawn there is no part of an earlier layer's surface. It is asked last, of what would show.

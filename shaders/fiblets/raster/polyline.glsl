@@ -1,6 +1,6 @@
 // The points that a fiblet is drawn by, one after the other: its own and the next fiblet's first, or, from far enough
-// (is_one_segment() of culling/bounds.glsl), the ends of its capsule. fiblets/raster/segments.glsl does the same for the compute
-// pipeline and must agree.
+// (is_one_segment() of culling/bounds.glsl), the ends of its capsule. FEATURE_ONE_SEGMENT: it is known that it is far enough,
+// and nothing is decoded.
 //
 // Use: begin_polyline(f); then next_point(i) for i = 1 .. polyline.count, after each of which walk_point and walk_delta hold
 // the end and the run of segment i - 1.
@@ -20,18 +20,26 @@ struct Polyline {
 
 Polyline polyline;
 
+// One segment, numbered 0, between the ends of the capsule.
+void begin_one_segment(uint f, Capsule capsule) {
+    walk_point = capsule.a;
+    polyline.last = 0u;
+    polyline.count = 1u;
+    polyline.steps = float(fiblet_last(decoding_words(f)) + (polyline.end ? 0u : 1u));
+    polyline.next = capsule.b;
+}
+
 void begin_polyline(uint f) {
     begin_point_mask(f);
     polyline.begin = begins(f);
     polyline.end = ends(f);
+#if FEATURE_ONE_SEGMENT
+    begin_one_segment(f, capsule_of(f));
+#else
 #if FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
     if (is_one_segment(capsule) && all_points_shown()) {
-        walk_point = capsule.a;
-        polyline.last = 0u;
-        polyline.count = 1u;
-        polyline.steps = float(fiblet_last(decoding_words(f)) + (polyline.end ? 0u : 1u));
-        polyline.next = capsule.b;
+        begin_one_segment(f, capsule);
         return;
     }
 #endif
@@ -40,13 +48,16 @@ void begin_polyline(uint f) {
     polyline.count = walk.last + (polyline.end && walk.last > 0u ? 0u : 1u);
     polyline.steps = polyline.end && walk.last == 0u ? 0.0 : 1.0;
     polyline.next = polyline.end ? walk_anchor : anchor_local(f + 1u);
+#endif
 }
 
 void next_point(uint i) {
+#if !FEATURE_ONE_SEGMENT
     if (i <= polyline.last) {
         walk_next(i);
-    } else {
-        walk_delta = polyline.next - walk_point;
-        walk_point = polyline.next;
+        return;
     }
+#endif
+    walk_delta = polyline.next - walk_point;
+    walk_point = polyline.next;
 }

@@ -7,6 +7,7 @@
 //
 // Parts have been clipped: nothing is left for OpenGL to clip or to divide by, and fiblets/raster/line.frag finds the depth.
 
+#include "fiblets/raster/cells.glsl"
 #include "fiblets/raster/clipped_segment.glsl"
 
 const float EXIT = 0.6;
@@ -18,15 +19,7 @@ struct Thin {
 
 vec4 at_pixel(vec2 pixel) { return vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0); }
 
-vec2 pixel_of(vec4 window) {
-#if FEATURE_CLIPPING
-    return floor(clamp(window.xy, vec2(0.0), viewport.xy - 0.01));  // a point on the upper edge belongs to the last pixel
-#else
-    return floor(window.xy);
-#endif
-}
-
-Thin thin_line(Piece piece) {
+Thin thin_line(ClippedSegment piece) {
     vec2 p = pixel_of(piece.a), q = pixel_of(piece.b), run = q - p;
     float n = max(abs(run.x), abs(run.y));
     vec2 more = !piece.cap ? vec2(0.0) : n > 0.0 ? EXIT / n * run : vec2(EXIT, 0.0);

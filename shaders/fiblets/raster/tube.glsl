@@ -95,7 +95,7 @@ bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
     vec4 c = a, d = b;
     a = to_window(a);
     b = to_window(b);
-    float at_a = tube.x * stretch_at(a.xy), at_b = tube.x * stretch_at(b.xy);
+    float at_a = tube.x * pixel_derivative_at(a.xy), at_b = tube.x * pixel_derivative_at(b.xy);
     float reach = max(max(at_a, at_b) / close, BRUSH) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
     if (!(reach < viewport.x + viewport.y)) return box_of(c, d, outline);
     vec2 least = min(a.xy, b.xy) - reach, most = max(a.xy, b.xy) + reach;

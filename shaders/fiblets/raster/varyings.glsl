@@ -1,5 +1,5 @@
 // What the last stage before the rasteriser hands to the fragments of a segment. The including stage says which way:
-// `#define HANDED flat out`, or `flat in` for the fragment stage. OpenGL's last vertex decides (its default), so that the
+// `#define VARYING flat out`, or `flat in` for the fragment stage. OpenGL's last vertex decides (its default), so that the
 // vertices of a strip carry the segment that ends there. A mesh stage has primitives carry it (shaders/fiblets/mesh/outputs.glsl), and
 // declares arrays: `#define EACH []`. Nothing is interpolated by OpenGL: fragments compute depth and place from their
 // pixel, which is the same on all drivers and in all pipelines.
@@ -9,41 +9,41 @@
 //
 //                      thin lines   wide lines   tubes
 //   position                4            4         4
-//   handed_ids              4            4         4
-//   handed_first            1            1         1
-//   handed_ends             4            8         0
-//   handed_ratio            1            0         0
-//   handed_part             1            1         0     where segments may be cut
-//   handed_from, _to        0            6         6     of wide lines, at planes of the caller's
-//   handed_values           2            2         2     with some per-point values
+//   varying_ids              4            4         4
+//   varying_first            1            1         1
+//   varying_ends             4            8         0
+//   varying_ratio            1            0         0
+//   varying_part             1            1         0     where segments may be cut
+//   varying_from, _to        0            6         6     of wide lines, at planes of the caller's
+//   varying_values           2            2         2     with some per-point values
 
 #ifndef EACH
 #define EACH
 #endif
 
-HANDED uvec4 handed_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
+VARYING uvec4 varying_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
                                    // and whether the streamline starts here in bit 16
-HANDED float handed_first EACH;    // index of the fiblet's first point within the streamline
+VARYING float varying_first EACH;    // index of the fiblet's first point within the streamline
 #if FEATURE_TUBES
-HANDED vec3 handed_from EACH;      // ends of the segment, local mm
-HANDED vec3 handed_to EACH;
+VARYING vec3 varying_from EACH;      // ends of the segment, local mm
+VARYING vec3 varying_to EACH;
 #else
 #if FEATURE_WIDE_LINES
-HANDED vec4 handed_start EACH;     // ends of the part that is drawn: window x, y; depth; clip w
-HANDED vec4 handed_end EACH;
+VARYING vec4 varying_start EACH;     // ends of the part that is drawn: window x, y; depth; clip w
+VARYING vec4 varying_end EACH;
 #else
-HANDED uvec2 handed_cells EACH;    // pixels of its ends, x in the lower half
-HANDED vec2 handed_depths EACH;    // and their depths
-HANDED float handed_ratio EACH;    // clip w at its start over that at its end: corrects perspective
+VARYING uvec2 varying_cells EACH;    // pixels of its ends, x in the lower half
+VARYING vec2 varying_depths EACH;    // and their depths
+VARYING float varying_ratio EACH;    // clip w at its start over that at its end: corrects perspective
 #endif
 #if FEATURE_CLIPPING
-HANDED uint handed_part EACH;      // which part of the segment it is: start and end in 65535ths, rounded inwards
+VARYING uint varying_part EACH;      // which part of the segment it is: start and end in 65535ths, rounded inwards
 #endif
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-HANDED vec3 handed_from EACH;      // the part's ends, local mm
-HANDED vec3 handed_to EACH;
+VARYING vec3 varying_from EACH;      // the part's ends, local mm
+VARYING vec3 varying_to EACH;
 #endif
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
-HANDED vec2 handed_values EACH;    // at the segment's ends
+VARYING vec2 varying_values EACH;    // at the segment's ends
 #endif

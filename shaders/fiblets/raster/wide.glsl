@@ -10,7 +10,7 @@
 const float ROUNDING = 0.05;  // pixels
 
 // Corner 0 to 3 of a triangle strip, clip coordinates.
-vec4 corner_of(Piece piece, int corner) {
+vec4 corner_of(ClippedSegment piece, int corner) {
     vec2 run = piece.b.xy - piece.a.xy;
 #if FEATURE_TUBES
     float size = length(run), reach = piece.reach, before = reach;

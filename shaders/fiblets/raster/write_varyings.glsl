@@ -2,13 +2,13 @@
 // over: itself, or with a mesh stage an element of an array.
 
 #include "fiblets/raster/clipped_segment.glsl"
-#ifndef HANDED
-#define HANDED flat out
+#ifndef VARYING
+#define VARYING flat out
 #define TO(name) name
 #endif
 #include "fiblets/raster/varyings.glsl"
 
-struct Handed {
+struct Varyings {
     uvec2 ids;      // streamline; tangent
     uint owner;     // fiblet counted over all chunks
     float first;    // index of its first point within the streamline
@@ -17,32 +17,32 @@ struct Handed {
     vec2 values;    // per-point value at its ends, where that is not looked up by the fragments
 };
 
-void hand_over(Handed handed, Piece piece, vec3 from, vec3 to) {
-    uint flags = handed.segment | (uint(handed.steps) << 8u) | (piece.start ? 0x10000u : 0u);
-    TO(handed_ids) = uvec4(handed.ids, handed.owner, flags);
-    TO(handed_first) = handed.first;
+void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
+    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u);
+    TO(varying_ids) = uvec4(varyings.ids, varyings.owner, flags);
+    TO(varying_first) = varyings.first;
 #if FEATURE_TUBES
-    TO(handed_from) = from;
-    TO(handed_to) = to;
+    TO(varying_from) = from;
+    TO(varying_to) = to;
 #else
 #if FEATURE_WIDE_LINES
-    TO(handed_start) = piece.a;
-    TO(handed_end) = piece.b;
+    TO(varying_start) = piece.a;
+    TO(varying_end) = piece.b;
 #else
     uvec2 p = uvec2(pixel_of(piece.a)), q = uvec2(pixel_of(piece.b));
-    TO(handed_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));
-    TO(handed_depths) = vec2(piece.a.z, piece.b.z);
-    TO(handed_ratio) = piece.a.w / piece.b.w;
+    TO(varying_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));
+    TO(varying_depths) = vec2(piece.a.z, piece.b.z);
+    TO(varying_ratio) = piece.a.w / piece.b.w;
 #endif
 #if FEATURE_CLIPPING
-    TO(handed_part) = uint(ceil(65535.0 * piece.t0)) | (uint(65535.0 * piece.t1) << 16u);
+    TO(varying_part) = uint(ceil(65535.0 * piece.t0)) | (uint(65535.0 * piece.t1) << 16u);
 #endif
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-    TO(handed_from) = mix(from, to, piece.t0);
-    TO(handed_to) = mix(from, to, piece.t1);
+    TO(varying_from) = mix(from, to, piece.t0);
+    TO(varying_to) = mix(from, to, piece.t1);
 #endif
 #endif
 #if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
-    TO(handed_values) = handed.values;
+    TO(varying_values) = varyings.values;
 #endif
 }

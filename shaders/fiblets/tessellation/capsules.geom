@@ -15,13 +15,13 @@ flat in float segment_first[];
 void main() {
     vec4 from = end_point[0], to = end_point[1];
     uvec4 ids = segment_ids[0];
-    Piece piece;
+    ClippedSegment piece;
     if ((ids.w & 0x40000u) != 0u) return;
     if (!piece_of(from.xyz, to.xyz, (ids.w & 0x10000u) != 0u, (ids.w & 0x20000u) != 0u, piece)) return;
-    Handed handed = Handed(ids.xy, ids.z, segment_first[0], ids.w & 255u, float((ids.w >> 8u) & 255u), vec2(from.w, to.w));
+    Varyings varyings = Varyings(ids.xy, ids.z, segment_first[0], ids.w & 255u, float((ids.w >> 8u) & 255u), vec2(from.w, to.w));
     for (int corner = 0; corner < 4; ++corner) {
         gl_Position = corner_of(piece, corner);
-        hand_over(handed, piece, from.xyz, to.xyz);
+        write_varyings(varyings, piece, from.xyz, to.xyz);
         EmitVertex();
     }
     EndPrimitive();

@@ -8,14 +8,14 @@
 
 void main() {
     Segment segment = this_segment();
-    Piece piece;
+    ClippedSegment piece;
     if (!segment.drawn || !piece_of(segment.from.xyz, segment.to.xyz, segment.start, segment.cap, piece)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside, at both ends
         return;
     }
     Thin line = thin_line(piece);
     gl_Position = at_start ? line.first : line.last;
-    Handed handed = Handed(segment.ids, patch_ids.y, patch_first, segment.index, segment.steps,
+    Varyings varyings = Varyings(segment.ids, patch_ids.y, patch_first, segment.index, segment.steps,
                            vec2(segment.from.w, segment.to.w));
-    hand_over(handed, piece, segment.from.xyz, segment.to.xyz);
+    write_varyings(varyings, piece, segment.from.xyz, segment.to.xyz);
 }

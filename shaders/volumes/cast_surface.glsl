@@ -1,0 +1,36 @@
+// What a ray shows of surfaces: the first that it meets, its normal and the direction along it.
+
+#include "volumes/surface.glsl"
+#if FEATURE_CLIP_REGION
+bool find_surface_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out float value) {
+    Ray part = whole;
+    float begin;
+    for (int number = 0; next_part(pixel, whole, number, begin, part.last);) {
+        if (find_surface(part, step, min(begin + late, part.last), hit, value)) return true;
+    }
+    return false;
+}
+#endif
+
+layout(location = 4) out uint out_normal;
+
+void clear_shown() { out_normal = 0u; }
+
+bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out float value) {
+#if FEATURE_CLIP_REGION
+    if (!find_surface_in_parts(pixel, ray, step, start - ray.first, hit, value)) return false;
+#else
+    if (!find_surface(ray, step, start, hit, value)) return false;
+#endif
+#if FEATURE_VOLUME_NEAREST
+    vec3 g = gradient_at(floor(at(ray, hit) + 0.5));      // of the voxel, whichever of its sides shows
+#else
+    vec3 g = gradient_at(at(ray, hit));
+#endif
+    vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
+    float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
+    vec3 normal = size > 0.0 ? g / size : -way;
+    out_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);
+    out_ids.y = packed_tangent(way - normal * dot(way, normal) / dot(normal, normal), 0u);      // along the surface, away
+    return true;
+}
