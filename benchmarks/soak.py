@@ -21,10 +21,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import gpu_memory
 import moderngl
 import numpy as np
 import pyvista as pv
-import volume_memory
 from soak_acts import WEIGHTS, Data
 
 from pvfiblets.engine.gl_loader import loader
@@ -190,7 +190,7 @@ class Soak:
         """
         first = self.open()
         self._draw()
-        before = held()
+        before = opengl_objects()
         start = len(self.told)
         for _ in range(frames):
             self.frame()
@@ -202,7 +202,7 @@ class Soak:
         self._draw()
         gc.collect()
         self._draw()
-        after, ours = held(), unreleased()
+        after, ours = opengl_objects(), unreleased()
         contexts = sum(len(context.slots) for context in windows._contexts.values())  # noqa: SLF001
         self.windows.pop().close()
         del first
@@ -233,14 +233,14 @@ def error_of_current() -> str:
     return names.get(code, hex(code)) if code else "GL_NO_ERROR"
 
 
-def held() -> dict[str, int]:
+def opengl_objects() -> dict[str, int]:
     """Return how many objects of each kind the current context has, and the bytes of them."""
     address_of = loader()
     found = {}
     for kind in KINDS:
         is_one = ctypes.CFUNCTYPE(ctypes.c_ubyte, ctypes.c_uint)(address_of(f"glIs{kind}"))
-        found[kind] = sum(bool(is_one(name)) for name in range(1, volume_memory.MOST_NAMES))
-    found["bytes"] = volume_memory.held() or 0
+        found[kind] = sum(bool(is_one(name)) for name in range(1, gpu_memory.MOST_NAMES))
+    found["bytes"] = gpu_memory.allocated() or 0
     error_of_current()  # it asks textures for levels that they lack
     return found
 
@@ -296,7 +296,7 @@ def walk(frames: int, per_round: int, seed: int, size: int, show: Any = None) ->
     return soak, rounds
 
 
-def told(soak: Soak, rounds: list[dict[str, Any]]) -> str:
+def to_page(soak: Soak, rounds: list[dict[str, Any]]) -> str:
     """Return the table of a page."""
     keys = [kind for kind in KINDS if kind != "Program"]
     lines = [
@@ -332,7 +332,7 @@ def main() -> None:
         print(json.dumps(row), flush=True)
 
     soak, rounds = walk(options.frames, options.round, options.seed, options.size, show)
-    page = told(soak, rounds)
+    page = to_page(soak, rounds)
     print(page)
     if options.output is not None:
         options.output.mkdir(parents=True, exist_ok=True)

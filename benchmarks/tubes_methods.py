@@ -1,7 +1,7 @@
-"""The ways of drawing spline tubes that the benchmark compares, and how each is timed.
+"""The methods of drawing spline tubes that the benchmark compares, and how each is timed.
 
-Every way draws the same tubes from the same cameras, without anti-aliasing, opaque and of one colour, in the light of
-one lamp at the eye. What differs is said with each way in :data:`ABOUT`.
+Every method draws the same tubes from the same cameras, without anti-aliasing, opaque and of one colour, in the light
+of one lamp at the eye. What differs is said with each method in :data:`ABOUT`.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from orbit import context
-from tube_reference import covered, fine_coverage
+from common import Window, data_bytes, percentiles
+from tubes_reference import covered, fine_coverage
 
+from pvfiblets.engine.standalone import bare_context
 from pvfiblets.report.baselines.tessellated import TessellatedTubes
 from pvfiblets.report.cameras import Camera, orbit
 from pvfiblets.report.tubes_pictures import helices
@@ -31,17 +32,16 @@ ABOUT = {
     "culling, and empty fragments leave nothing to hide behind",
     "engine-unculled": "the same without culling, as the paper has it",
     "engine-exact": "the same with tubes thinner than a pixel left as thin as they are",
-    "splines": "`plotter.add_spline_tubes`: the same in a PyVista scene, lit by VTK",
+    "plotter": "`plotter.add_spline_tubes`: the same in a PyVista scene, lit by VTK",
 }
 MESHES = ("lines-as-tubes", "tube-6", "tube-12", "tube-30", "tube-12x4", "tube-30x4")
 TESSELLATED = ("tessellated", "tessellated-culled")
-DEFAULT = (*MESHES, *TESSELLATED, "engine", "engine-unculled", "engine-exact", "splines")
-PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")  # grow with the picture, not with the data
+DEFAULT = (*MESHES, *TESSELLATED, "engine", "engine-unculled", "engine-exact", "plotter")
 TUBE = re.compile(r"tube-(\d+)(?:x(\d+))?")
 
 
 class TooMuchError(Exception):
-    """A way needs more than it may take, or something that is not there."""
+    """A method needs more than it may take, or something that is not there."""
 
 
 def make_set(name: str, seed: int = 0) -> Any:
@@ -82,16 +82,16 @@ def polylines(tubes: Any, samples: int = 1) -> Any:
     return mesh
 
 
-def run(way: str, tubes: Any, options: Any) -> list[dict[str, Any]]:
+def run(method: str, tubes: Any, options: Any) -> list[dict[str, Any]]:
     """Return one row for each view: times, sizes, and under ``covered`` where the first camera's picture shows tubes.
 
     Raises
     ------
     TooMuchError
-        If the way would need more memory than ``options.limit`` allows, or is not there.
+        If the method would need more memory than ``options.limit`` allows, or is not there.
     """
-    kinds = {"tessellated": _Tessellated, "engine": _Engine, "splines": _Splines}
-    drawn = kinds.get(way.split("-")[0], _Mesh)(way, tubes, options)
+    kinds = {"tessellated": _Tessellated, "engine": _Engine, "plotter": _Plotter}
+    drawn = kinds.get(method.split("-")[0], _Mesh)(method, tubes, options)
     rows: list[dict[str, Any]] = []
     try:
         empty = drawn.empty()
@@ -101,8 +101,7 @@ def run(way: str, tubes: Any, options: Any) -> list[dict[str, Any]]:
             times = _times(draws, cameras, options.seconds)
             row = {"view": view, "frames": len(times["ms"]), **drawn.facts(cameras)}
             for name, seconds in times.items():
-                low, row[name], high = (1e3 * float(np.percentile(seconds, q)) for q in (10, 50, 90))
-                row[f"{name}_spread"] = [low, high]
+                row |= percentiles(seconds, name)
             drawn.draw(cameras[0])
             rows.append({**row, "covered": drawn.covered()})
     finally:
@@ -122,7 +121,7 @@ def reference(tubes: Any, options: Any) -> dict[str, Any]:
 def _times(draws: dict[str, Any], cameras: list[Camera], seconds: float) -> dict[str, list[float]]:
     """Return the seconds of each frame, without two to warm up; fewer than all of them where they take too long.
 
-    Ways that are compared with each other take turns, so that whatever else the machine does hits both.
+    Methods that are compared with each other take turns, so that whatever else the machine does hits both.
     """
     times: dict[str, list[float]] = {name: [] for name in draws}
     began = time.perf_counter()
@@ -144,22 +143,8 @@ def _check(needed: float, options: Any) -> None:
         raise TooMuchError(f"needs about {needed / 1e9:.1f} GB of memory, more than the {options.limit[1]:g} allowed")
 
 
-class _Plotted:
-    """What all ways in a PyVista window share."""
-
-    def __init__(self, options: Any) -> None:
-        import pyvista as pv
-
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(options.size), lighting="none")
-        self.plotter.disable_anti_aliasing()
-        self.plotter.add_light(pv.Light(light_type="headlight"))
-        self.plotter.set_background("black")
-
-    def draw(self, camera: Camera) -> None:
-        camera.aim(self.plotter)
-        self.plotter.render()
-        self.plotter.render_window.WaitForCompletion()
-        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
+class _Window(Window):
+    """A PyVista window whose picture tells what it covers."""
 
     def empty(self) -> None:
         """VTK has no way to leave out the fragments alone."""
@@ -167,24 +152,21 @@ class _Plotted:
     def covered(self) -> np.ndarray:
         return covered(self.plotter)
 
-    def close(self) -> None:
-        self.plotter.close()
 
-
-class _Mesh(_Plotted):
+class _Mesh(_Window):
     """VTK's tube filter, or its lines drawn as tubes."""
 
-    def __init__(self, way: str, tubes: Any, options: Any) -> None:
-        super().__init__(options)
+    def __init__(self, method: str, tubes: Any, options: Any) -> None:
+        super().__init__(options.size)
         self.radius = float(tubes.radius[tubes.segments].mean())
-        self.wide = way == "lines-as-tubes"
+        self.wide = method == "lines-as-tubes"
         if self.wide:
             mesh = polylines(tubes)
             segments = mesh.n_points - mesh.n_lines
             self.bytes, self.primitives = 12 * mesh.n_points + 8 * segments, 2 * segments
             self.actor = self.plotter.add_mesh(mesh, color="steelblue", render_lines_as_tubes=True)
         else:
-            sides, samples = (int(n or 1) for n in TUBE.fullmatch(way).groups())
+            sides, samples = (int(n or 1) for n in TUBE.fullmatch(method).groups())
             points = (tubes.n_segments * samples + tubes.n_tubes) * sides
             _check(0.7e9 + 115.0 * points, options)  # measured: an empty window, and what VTK holds of each corner
             mesh = polylines(tubes, samples).tube(scalars="radius", absolute=True, n_sides=sides)
@@ -206,32 +188,27 @@ class _Mesh(_Plotted):
         return {"gpu_bytes": self.bytes, "primitives": self.primitives}
 
 
-class _Splines(_Plotted):
+class _Plotter(_Window):
     """Spline tubes by this program in a PyVista scene."""
 
     def __init__(self, _: str, tubes: Any, options: Any) -> None:
-        super().__init__(options)
-        if not hasattr(self.plotter, "add_spline_tubes"):
-            self.plotter.close()
-            raise TooMuchError("there is no plotter.add_spline_tubes here")
+        super().__init__(options.size)
         self.actor = self.plotter.add_spline_tubes(tubes, color="steelblue", **_choices(options))
         self.plotter.show(auto_close=False)
 
     def facts(self, _: list[Camera]) -> dict[str, Any]:
-        return _told(self.actor.explain())
+        return _facts(self.actor.explain())
 
 
 class _Engine:
     """Spline tubes by this program without VTK."""
 
-    def __init__(self, way: str, tubes: Any, options: Any) -> None:
-        try:
-            from pvfiblets.engine.tubes import TubeRenderer
-        except ImportError as error:
-            raise TooMuchError(f"the engine draws no spline tubes: {error}") from error
-        self.ctx = context()
+    def __init__(self, method: str, tubes: Any, options: Any) -> None:
+        from pvfiblets.engine.tubes import TubeRenderer
+
+        self.ctx = bare_context()
         self.made: list[Any] = []
-        more = {"engine-exact": {"min_width": 0.0}, "engine-unculled": {"culling": None}}.get(way, {})
+        more = {"engine-exact": {"min_width": 0.0}, "engine-unculled": {"culling": None}}.get(method, {})
         self.make = functools.partial(TubeRenderer, self.ctx, tubes, **{**_choices(options), **more})
         self.renderer = self._add()
 
@@ -249,7 +226,7 @@ class _Engine:
         self.ctx.finish()
 
     def facts(self, _: list[Camera]) -> dict[str, Any]:
-        return _told(self.renderer.explain())
+        return _facts(self.renderer.explain())
 
     def covered(self) -> np.ndarray:
         width, height = self.gbuffer.size
@@ -268,13 +245,13 @@ class _Engine:
 
 
 class _Tessellated:
-    """The paper's rival."""
+    """The paper's baseline."""
 
-    def __init__(self, way: str, tubes: Any, options: Any) -> None:
-        self.ctx = context()
+    def __init__(self, method: str, tubes: Any, options: Any) -> None:
+        self.ctx = bare_context()
         self.made: list[TessellatedTubes] = []
         self.make = functools.partial(
-            TessellatedTubes, self.ctx, tubes, tuple(options.size), cull=way == "tessellated-culled"
+            TessellatedTubes, self.ctx, tubes, tuple(options.size), cull=method == "tessellated-culled"
         )
         self.tubes = self._add()
 
@@ -318,6 +295,5 @@ def _choices(options: Any) -> dict[str, Any]:
     }
 
 
-def _told(report: dict[str, Any]) -> dict[str, Any]:
-    sizes = [buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE]
-    return {"gpu_bytes": sum(sizes), "primitives": report.get("primitives")}
+def _facts(report: dict[str, Any]) -> dict[str, Any]:
+    return {"gpu_bytes": data_bytes(report), "primitives": report.get("primitives")}

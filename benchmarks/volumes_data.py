@@ -1,4 +1,4 @@
-"""Data of the benchmarks of ray-cast volumes, by name; what is shown of them is `pvfiblets.report.volume_scene`."""
+"""Data of the benchmarks of ray-cast volumes, by name; what is shown of them is `pvfiblets.report.volumes_scene`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def make_data(name: str, seed: int = 0, folder: Path = FOLDER) -> RaycastVolume:
     ----------
     name : str
         ``vessels-N``, a tree of vessels of N^3 voxels; ``brain``, the template in the folder if it is there, else made
-        up; ``brain-N``, made up.
+        up; ``brain-N``, synthetic.
     seed : int
     folder : Path
     """

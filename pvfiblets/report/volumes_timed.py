@@ -47,7 +47,7 @@ class Timed:
             yield record
         if self._late:
             left_out.append(LeftOut(f"{self._name}: {', '.join(self._late)}", LATE))
-        self._options.log(f"volume: {self._name}: {len(self._done)} ways")
+        self._options.log(f"volumes: {self._name}: {len(self._done)} ways")
 
 
 def drawn(ctx: Any, renderer: Any, camera: Camera, style: Any) -> Any:

@@ -1,7 +1,7 @@
-"""The ways of drawing lines and points that the benchmark of halos compares, and how each is timed.
+"""The methods of drawing lines and points that the benchmark of halos compares, and how each is timed.
 
-Every way draws the same data from the same cameras, black on white, without anti-aliasing, light or filter. What
-differs is said with each way in :data:`ABOUT`.
+Every method draws the same data from the same cameras, black on white, without anti-aliasing, light or filter. What
+differs is said with each method in :data:`ABOUT`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from orbit import context
+from common import Window, data_bytes, percentiles
 
+from pvfiblets.engine.standalone import bare_context
 from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.halos_pictures import darkness_of, helices, orbit
@@ -25,14 +26,11 @@ ABOUT = {
     "engine-unculled": "the same without culling, as the paper has it",
 }
 STEREO = ("vtk", "plotter")
-"""Ways that draw anaglyphs."""
-
-PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth")
-"""Buffers that grow with the picture, not with the data."""
+"""Methods that draw anaglyphs."""
 
 
-class UnmeasuredError(Exception):
-    """A way is not there."""
+class AbsentError(Exception):
+    """A method is not there."""
 
 
 @dataclass(frozen=True)
@@ -77,29 +75,27 @@ def make_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
     return halo_set(name, seed)
 
 
-def run(way: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
-    """Return times and sizes of one way.
+def run(method: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
+    """Return times and sizes of one method.
 
     Raises
     ------
-    UnmeasuredError
-        If the way is not there.
+    AbsentError
+        If the method is not there.
     """
     kinds = {"vtk": _VTK, "plotter": _Plotter, "engine": _Engine, "engine-unculled": _Engine}
     cameras = orbit(drawn, options.places, options.frames, tuple(options.size))
-    way_drawn = kinds[way](way, row, drawn, look, options, cameras[0][0])
+    drawn_by = kinds[method](method, row, drawn, look, options, cameras[0][0])
     try:
-        times = timed(way_drawn.draw, cameras, options.seconds)
-        facts = way_drawn.facts()
-        way_drawn.draw(cameras[0][1])
-        dark = way_drawn.darkness()
+        times = timed(drawn_by.draw, cameras, options.seconds)
+        facts = drawn_by.facts()
+        drawn_by.draw(cameras[0][1])
+        dark = drawn_by.darkness()
     finally:
-        way_drawn.close()
-    low, median, high = (1e3 * float(np.percentile(times, q)) for q in (10, 50, 90))
+        drawn_by.close()
     scale = scale_of(cameras[0][0])
     strip = look.strip_width * scale + max(look.min_width - look.line_width * scale, 0.0)
-    return {"ms": median, "ms_spread": [low, high], "frames": len(times), "darkness": dark, "strip_pixels": strip,
-            **facts}  # fmt: skip
+    return {**percentiles(times), "frames": len(times), "darkness": dark, "strip_pixels": strip, **facts}
 
 
 def scale_of(camera: Camera) -> float:
@@ -134,15 +130,11 @@ def polydata(drawn: HaloLines | HaloPoints) -> Any:
     return pv.PolyData(drawn.points, lines=cells)
 
 
-class _Window:
-    """What ways in a PyVista window share."""
+class _Window(Window):
+    """Black on white in a PyVista window, as an anaglyph if the row says so."""
 
     def __init__(self, row: Row, options: Any) -> None:
-        import pyvista as pv
-
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(options.size))
-        self.plotter.disable_anti_aliasing()
-        self.plotter.set_background("white")
+        super().__init__(options.size, "white", headlight=False)
         self.anaglyph = row.anaglyph
 
     def show(self) -> None:
@@ -150,18 +142,9 @@ class _Window:
         if self.anaglyph:
             self.plotter.enable_stereo_render()
 
-    def draw(self, camera: Camera) -> None:
-        camera.aim(self.plotter)
-        self.plotter.render()
-        self.plotter.render_window.WaitForCompletion()
-        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
-
     def darkness(self) -> float:
         """Return the mean of the picture, 0 white, 1 black."""
         return 1.0 - float(np.asarray(self.plotter.screenshot(None))[..., :3].mean()) / 255.0
-
-    def close(self) -> None:
-        self.plotter.close()
 
 
 class _VTK(_Window):
@@ -192,9 +175,6 @@ class _Plotter(_Window):
         lines = isinstance(drawn, HaloLines)
         name, widths = ("add_halo_lines", ("line_width", "strip_width")) if lines else (
             "add_halo_points", ("point_size", "halo_size"))  # fmt: skip
-        if not hasattr(self.plotter, name):
-            self.plotter.close()
-            raise UnmeasuredError(f"there is no plotter.{name} here")
         # Its own defaults, measured already.
         given = dict(zip(widths, (look.line_width, look.strip_width), strict=True))
         given |= {"max_displacement": look.max_displacement, "width_cue": look.width_cue}
@@ -202,20 +182,20 @@ class _Plotter(_Window):
         self.show()
 
     def facts(self) -> dict[str, Any]:
-        return _told(self.actor.explain())
+        return _facts(self.actor.explain())
 
 
 class _Engine:
     """Halos by this program without VTK."""
 
-    def __init__(self, way: str, row: Row, drawn: Any, look: Look, _: Any, __: Camera) -> None:
+    def __init__(self, method: str, row: Row, drawn: Any, look: Look, _: Any, __: Camera) -> None:
         from pvfiblets.engine.halos import HaloRenderer, HaloStyle
 
         if row.anaglyph:
-            raise UnmeasuredError("stereo is VTK's")
-        self.ctx = context()
+            raise AbsentError("stereo is VTK's")
+        self.ctx = bare_context()
         self.style = HaloStyle(look=look)
-        self.renderer = HaloRenderer(self.ctx, drawn, culling=None if way == "engine-unculled" else "two-phase")
+        self.renderer = HaloRenderer(self.ctx, drawn, culling=None if method == "engine-unculled" else "two-phase")
 
     def draw(self, camera: Camera) -> None:
         from pvfiblets.engine import View
@@ -224,7 +204,7 @@ class _Engine:
         self.ctx.finish()
 
     def facts(self) -> dict[str, Any]:
-        return _told(self.renderer.explain())
+        return _facts(self.renderer.explain())
 
     def darkness(self) -> float:
         """Return the mean of the picture that this G-buffer means, 0 white, 1 black."""
@@ -235,6 +215,5 @@ class _Engine:
         self.ctx.release()
 
 
-def _told(report: dict[str, Any]) -> dict[str, Any]:
-    sizes = [buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE]
-    return {"gpu_bytes": sum(sizes), "passes": report["passes"], "culling": report.get("culling")}
+def _facts(report: dict[str, Any]) -> dict[str, Any]:
+    return {"gpu_bytes": data_bytes(report), "passes": report["passes"], "culling": report.get("culling")}

@@ -5,7 +5,7 @@ that circles (512x512) and one that rests, whose picture is made anew each time 
 IV. Errors are those of sampled pixels against rays in float64. VTK's GPU mapper is measured at the same step, and at
 the step with which it is as wrong as this program in a plotter; where it never is, the row says so and shows its best::
 
-    python benchmarks/volume.py --output docs/benchmarks
+    python benchmarks/volumes.py --output docs/benchmarks
 
 writes ``volume-CARD.json``, ``.md`` and ``.png``, named after the card. ``--quick`` measures little of it.
 """
@@ -14,24 +14,21 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import pickle
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from orbit import card_slug, context, machine, write
-from volume_effects import EFFECTS, effects
-from volume_measure import run
-from volume_scene import FOLDER, MODES, known_data, make_data
-from volume_told import plot, table
-from volume_ways import EQUAL, WAYS
+from common import machine, passed_on, run_child, write
+from volumes_data import FOLDER, MODES, known_data, make_data
+from volumes_effects import EFFECTS, effects
+from volumes_methods import EQUAL, METHODS
+from volumes_tables import plot, table
+from volumes_timing import run
 
-from pvfiblets.report.volume_scene import circle, look_of, truth
+from pvfiblets.report.volumes_scene import circle, look_of, truth
 from pvfiblets.volumes import RaycastVolume
 
 DATA = ("vessels-64", "vessels-128", "vessels-256", "vessels-512", "brain")
@@ -39,43 +36,41 @@ PICTURE = 256  # pixels along a side of the pictures whose errors are measured
 QUICK = {"data": ["vessels-64"], "frames": 3, "seconds": 1.0, "search": 1.0, "pixels": 500, "size": 192, "still": 256,
          "effects_data": ["vessels-64"]}  # fmt: skip
 PASSED_ON = (
-    "data_folder", "step", "seed", "size", "still", "frames", "seconds", "search", "longest",
-    "pixels", "effects_mode",
+    "data_folder", "step", "seed", "size", "still", "frames", "seconds", "search", "longest", "pixels", "effects_mode",
+    "modes", "effects",
 )  # fmt: skip
 
 
 def main() -> None:
-    """Measure every way on every volume, one process each, and write the table."""
+    """Measure every method on every volume, one process each, and write the table."""
     parser = parsed()
     options = parser.parse_args()
     if options.quick:
         parser.set_defaults(**QUICK)
         options = parser.parse_args()
     if options.run:
-        for told in child(*options.run, options):
-            print(json.dumps(told), flush=True)
+        for row in child(*options.run, options):
+            print(json.dumps(row), flush=True)
         return
     with tempfile.TemporaryDirectory() as folder:
         results = measure_all(options, Path(folder))
     table_one: list[dict[str, Any]] = []
     for data in options.effects_data if options.effects else []:
-        told, why = started("effects", data, Path(), options)
+        found, why = started("effects", data, Path(), options)
         wanted = [{"data": data, "mode": options.effects_mode, "effect": effect, "view": view}
                   for effect in options.effects for view in ("static", "circle")]  # fmt: skip
-        table_one += [*told, *({**row, "unmeasured": why} for row in wanted[len(told) :])]
-    ctx = context()
+        table_one += [*found, *({**row, "unmeasured": why} for row in wanted[len(found) :])]
     about = {
-        **machine(ctx),
+        **machine(seed=options.seed),
         "size": options.size,
         "still": options.still,
         "step": options.step,
         "longest": options.longest,
-        "seed": options.seed,
         "pixels": options.pixels,
         "effects": table_one,
         "volumes": {row["data"]: row.pop("about") for row in results if "about" in row},
     }
-    write(options.output / f"volume-{card_slug(ctx)}", about, results, table(about, results), plot)
+    write("volume", about, results, table(about, results), plot, options.output)
 
 
 def parsed() -> argparse.ArgumentParser:
@@ -85,7 +80,7 @@ def parsed() -> argparse.ArgumentParser:
                         help="of vessels-N and brain-N, of N voxels along each side, and brain")  # fmt: skip
     parser.add_argument("--data-folder", type=Path, default=FOLDER, help="where a brain's template may lie")
     parser.add_argument("--modes", nargs="+", choices=MODES, default=list(MODES))
-    parser.add_argument("--ways", nargs="+", choices=list(WAYS), default=list(WAYS))
+    parser.add_argument("--methods", nargs="+", choices=list(METHODS), default=list(METHODS))
     parser.add_argument("--step", type=float, default=0.5, help="voxels")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--size", type=int, default=512, help="pixels along a side of the circling view")
@@ -95,7 +90,7 @@ def parsed() -> argparse.ArgumentParser:
     parser.add_argument("--search", type=float, default=8.0, help="seconds that pictures of VTK's finest step may take")
     parser.add_argument("--longest", type=float, default=15.0, help="seconds of a frame of the static view")
     parser.add_argument("--pixels", type=int, default=3000, help="whose errors are measured, in each of two pictures")
-    parser.add_argument("--limit", type=float, default=600.0, help="seconds that one way may take with one volume")
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds that one method may take with one volume")
     parser.add_argument("--effects", nargs="*", choices=list(EFFECTS), default=list(EFFECTS), help="of Table I")
     parser.add_argument("--effects-data", nargs="+", type=known_data, default=["vessels-256", "brain"], metavar="DATA")
     parser.add_argument("--effects-mode", choices=MODES, default="isosurface")
@@ -106,7 +101,7 @@ def parsed() -> argparse.ArgumentParser:
 
 
 def child(what: str, data: str, file: str, options: Any) -> Iterator[dict[str, Any]]:
-    """Do one thing with one volume, and return row by row what came out: what is right of it, one way, or Table I."""
+    """Do one thing with one volume, and return its rows: the ground truth, one method, or the paper's Table I."""
     if what == "effects":
         yield from effects(data, options.effects_mode, options.effects, options)
     elif what == "truth":
@@ -123,30 +118,30 @@ def child(what: str, data: str, file: str, options: Any) -> Iterator[dict[str, A
 
 
 def measure_all(options: Any, folder: Path) -> list[dict[str, Any]]:
-    """Return a row for every volume, mode and way, in this order."""
+    """Return a row for every volume, mode and method, in this order."""
     results = []
     for data in options.data:
         file, targets = folder / f"{data}.pickle", {}
         about, why = started("truth", data, file, options)
         if not about:
             common = {"data": data, "unmeasured": why}
-            results += [{**common, "mode": mode, "way": way} for mode in options.modes for way in options.ways]
+            results += [{**common, "mode": mode, "method": one} for mode in options.modes for one in options.methods]
             continue
         rows = []
         # Ours come first: what VTK's errors shall be is theirs.
-        for way in sorted(options.ways, key=list(WAYS).index):
+        for method in sorted(options.methods, key=list(METHODS).index):
             file.with_suffix(".json").write_text(json.dumps(targets))
-            told, why = started(way, data, file, options)
-            rows += [{"data": data, **row} for row in told]
-            wanted = [(mode, way) for mode in options.modes]
-            wanted += [(mode, EQUAL) for mode in targets] if way == "vtk-gpu" else []
-            done = [(row["mode"], row["way"]) for row in told]
-            rows += [{"data": data, "mode": mode, "way": one, "unmeasured": why} for mode, one in wanted
+            found, why = started(method, data, file, options)
+            rows += [{"data": data, **row} for row in found]
+            wanted = [(mode, method) for mode in options.modes]
+            wanted += [(mode, EQUAL) for mode in targets] if method == "vtk-gpu" else []
+            done = [(row["mode"], row["method"]) for row in found]
+            rows += [{"data": data, "mode": mode, "method": one, "unmeasured": why} for mode, one in wanted
                      if (mode, one) not in done]  # fmt: skip
-            if way in ("engine", "plotter"):
-                targets |= {row["mode"]: row["error"] for row in told}
-        order = [*WAYS, EQUAL]
-        rows.sort(key=lambda row: (options.modes.index(row["mode"]), order.index(row["way"])))
+            if method in ("engine", "plotter"):
+                targets |= {row["mode"]: row["error"] for row in found}
+        order = [*METHODS, EQUAL]
+        rows.sort(key=lambda row: (options.modes.index(row["mode"]), order.index(row["method"])))
         rows[0] = {**rows[0], "about": about[0]}
         results += rows
     return results
@@ -154,25 +149,11 @@ def measure_all(options: Any, folder: Path) -> list[dict[str, Any]]:
 
 def started(what: str, data: str, file: Path, options: Any) -> tuple[list[dict[str, Any]], str]:
     """Do one thing in a process of its own, for as long as it may take; return its rows, and why there are no more."""
-    command = [sys.executable, __file__, "--run", what, data, str(file)]
-    for key in PASSED_ON:
-        command += ["--" + key.replace("_", "-"), str(getattr(options, key))]
-    for key in ("modes", "effects"):
-        command += [f"--{key}", *getattr(options, key)]
-    environment = dict(os.environ)
-    if sys.platform.startswith("linux") and not environment.get("DISPLAY"):
-        environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     print(f"{data}, {what} ...", flush=True)
-    try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, check=False, timeout=options.limit, env=environment)
-        said, why = done.stdout, f"failed with {done.returncode}; what it said is above the table"
-    except subprocess.TimeoutExpired as error:
-        said, why = error.stdout or b"", f"takes more than {options.limit:g} s here"
-    lines = said.decode().splitlines(keepends=True)
-    rows = [json.loads(line) for line in lines if line.startswith("{") and line.endswith("}\n")]
+    rows, reason = run_child(__file__, ["--run", what, data, file, *passed_on(options, PASSED_ON)], options.limit)
     for row in rows:
         print({key: value for key, value in row.items() if key != "passes"}, flush=True)
-    return rows, why
+    return rows, reason
 
 
 if __name__ == "__main__":

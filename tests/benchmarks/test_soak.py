@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-import importlib
 import os
-import sys
-from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,8 +13,7 @@ from pvfiblets import compress
 from pvfiblets.mappers import windows
 from pvfiblets.streamlines import Streamlines
 
-ROOT = Path(__file__).resolve().parents[2]
-MODULES = ("soak", "soak_acts", "volume_memory")
+from .scripts import imported
 
 FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "100"))
 PER_ROUND = max(FRAMES // 5, 10)
@@ -32,14 +27,9 @@ MOST_GROWTH = 40.0
 
 @pytest.fixture(scope="module")
 def bench():
-    """Return the soak's modules, which are no package."""
-    sys.path.insert(0, str(ROOT / "benchmarks"))
-    try:
-        yield SimpleNamespace(**{name: importlib.import_module(name) for name in MODULES})
-    finally:
-        sys.path.remove(str(ROOT / "benchmarks"))
-        for name in MODULES:
-            sys.modules.pop(name, None)
+    """Return the soak's modules."""
+    with imported(soak="soak", soak_acts="soak_acts", gpu_memory="gpu_memory") as modules:
+        yield modules
 
 
 @pytest.fixture(scope="module")

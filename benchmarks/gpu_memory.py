@@ -18,7 +18,7 @@ _OF_RENDERBUFFER = (0x8D42, 0x8D43, 0x8CAB, *range(0x8D50, 0x8D56))  # without d
 _READS_BUFFER, _BUFFER_SIZE = 0x8C2D, 0x8764
 
 
-def held() -> int | None:
+def allocated() -> int | None:
     """Return bytes of all that the current context holds, None where it cannot be asked (before OpenGL 4.5)."""
     try:
         asked = _Asked()

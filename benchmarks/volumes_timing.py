@@ -1,4 +1,4 @@
-"""How the benchmark of ray-cast volumes times each way, and finds the step with which one is as wrong as another."""
+"""How the benchmark of ray-cast volumes times each method, and finds the step with which one is as wrong as another."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from volume_scene import make_data
-from volume_ways import EQUAL, WAYS, Way
+from volumes_data import make_data
+from volumes_methods import EQUAL, METHODS, Method
 
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.volume_scene import Look, Truth, circle, look_of
+from pvfiblets.report.volumes_scene import Look, Truth, circle, look_of
 
 STATIC_TOO = ("engine", "plotter", "vtk-gpu", EQUAL)
-"""Ways that are also timed in the static view: the other one is the mapper of these once more."""
+"""Methods that are also timed in the static view: the other one is the mapper of these once more."""
 
 BYTES = 1.0 / (255.0 * math.sqrt(12.0))
 """What rounding colours to bytes costs: no picture of bytes need be nearer to what is right."""
@@ -30,7 +30,7 @@ COARSEST = 8.0  # voxels: no step is longer
 WARM = "vessels-16"
 
 
-class Measured:
+class FrameTimes:
     """Milliseconds of frames, by the clock and of all of this process's threads."""
 
     def __init__(self) -> None:
@@ -57,11 +57,11 @@ def timed(draw: Any, cameras: list[Camera], seconds: float) -> dict[str, Any]:
 
     What is nearly the first one is drawn once before; if that alone takes longer than that, it is what is measured.
     """
-    warm = Measured()
+    warm = FrameTimes()
     warm.time(draw, nudged(cameras[0], 3)[2])
     if warm.wall[0] > 1500.0 * seconds:
         return warm.report()
-    measured = Measured()
+    measured = FrameTimes()
     for camera in cameras:
         measured.time(draw, camera)
         if sum(measured.wall) > 1e3 * seconds:
@@ -80,11 +80,11 @@ def nudged(camera: Camera, count: int) -> list[Camera]:
 def run(
     name: str, data: str, truths: dict[str, Truth], targets: dict[str, float], options: Any
 ) -> Iterator[dict[str, Any]]:
-    """Return row by row, for each mode of one way: its error, its times, what it holds, how long it takes to be there.
+    """Return a row for each mode of one method: its error, times and bytes, and how long it takes to be there.
 
     Of VTK's GPU mapper there is a second one where an error to reach is given.
     """
-    kind = WAYS[name]
+    kind = METHODS[name]
     volume = make_data(data, options.seed, options.data_folder)
     size, still = (options.size, options.size), (options.still, options.still)
     cameras, static = circle(volume, options.frames, size), nudged(circle(volume, 1, still)[0], options.frames)
@@ -94,30 +94,30 @@ def run(
         first.draw(circle(small, 1, size)[0])
         first.close()
         look = look_of(volume, mode)
-        build = Measured()
-        made: list[Way] = []
+        build = FrameTimes()
+        made: list[Method] = []
 
-        def begin(look: Look = look, made: list[Way] = made) -> None:
+        def begin(look: Look = look, made: list[Method] = made) -> None:
             made.append(kind(name, volume, look, options.step, size))
             made[0].draw(cameras[0])
 
         build.time(begin)
-        (way,) = made
+        (method,) = made
         try:
-            row = {"mode": mode, "way": name, "step": options.step, "error": way.error(of)}
-            row["circle"] = timed(way.draw, cameras, options.seconds)
+            row = {"mode": mode, "method": name, "step": options.step, "error": method.error(of)}
+            row["circle"] = timed(method.draw, cameras, options.seconds)
             if name in STATIC_TOO and affordable(row["circle"], options):
-                row["static"] = timed(way.draw, static, options.seconds)
-            row["gpu_bytes"] = way.bytes()
+                row["static"] = timed(method.draw, static, options.seconds)
+            row["gpu_bytes"] = method.bytes()
             report = build.report()
             # The first picture itself is no part of building.
             row["build_ms"] = max(report["ms"] - row["circle"]["ms"], 0.0)
             row["build_cpu_ms"] = max(report["cpu_ms"] - row["circle"]["cpu_ms"], 0.0)
-            yield {**row, **way.facts()}
+            yield {**row, **method.facts()}
             if name == "vtk-gpu" and mode in targets:
-                yield equal(way, mode, row, of, targets[mode], cameras, static, options)
+                yield equal(method, mode, row, of, targets[mode], cameras, static, options)
         finally:
-            way.close()
+            method.close()
 
 
 def affordable(circle: dict[str, Any], options: Any) -> bool:
@@ -126,30 +126,32 @@ def affordable(circle: dict[str, Any], options: Any) -> bool:
 
 
 def equal(
-    way: Any, mode: str, same: dict[str, Any], of: Truth, target: float, cameras: list[Camera], static: list[Camera],
+    method: Any, mode: str, same: dict[str, Any], of: Truth, target: float, cameras: list[Camera], static: list[Camera],
     options: Any,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return the row of VTK's GPU mapper at a step with which it is as wrong as another way."""
+    """Return the row of VTK's GPU mapper at a step with which it is as wrong as another method."""
     target = max(target, BYTES)
-    step, error, reached = search(way, of, target, (same["step"], same["error"]), options.search)
-    row = {"mode": mode, "way": EQUAL, "step": step, "error": error, "target": target, "reached": reached}
+    step, error, reached = search(method, of, target, (same["step"], same["error"]), options.search)
+    row = {"mode": mode, "method": EQUAL, "step": step, "error": error, "target": target, "reached": reached}
     if step == same["step"]:
         return {**row, **{key: same[key] for key in ("circle", "static") if key in same}}
-    way.step(step)
-    row["circle"] = timed(way.draw, cameras, options.seconds)
+    method.step(step)
+    row["circle"] = timed(method.draw, cameras, options.seconds)
     if reached and affordable(row["circle"], options):
-        row["static"] = timed(way.draw, static, options.seconds)
+        row["static"] = timed(method.draw, static, options.seconds)
     return row
 
 
-def search(way: Any, of: Truth, target: float, start: tuple[float, float], seconds: float) -> tuple[float, float, bool]:
-    """Return the longest step found with which a way is as wrong as another, or the best one, its error, and which.
+def search(
+    method: Any, of: Truth, target: float, start: tuple[float, float], seconds: float
+) -> tuple[float, float, bool]:
+    """Return the longest step found with which a method is as wrong as another, or the best one, its error, and which.
 
     Steps are halved or doubled until the error is on the other side, then what lies between is halved in turn.
 
     Parameters
     ----------
-    way : Way
+    method : Method
         With a method `step`.
     of : Truth
     target : float
@@ -167,15 +169,15 @@ def search(way: Any, of: Truth, target: float, start: tuple[float, float], secon
         if step > COARSEST or (not fine and 2.0 * took > seconds):
             break
         began = time.perf_counter()
-        way.step(step)
-        tried.append((step, way.error(of)))
+        method.step(step)
+        tried.append((step, method.error(of)))
         took = time.perf_counter() - began
     else:
         (a, error_a), (b, _) = sorted(tried[-2:])  # a keeps to it, b does not
         while b / a > CLOSE:
             step = math.sqrt(a * b)
-            way.step(step)
-            error = way.error(of)
+            method.step(step)
+            error = method.error(of)
             if error <= target * NEAR:
                 a, error_a = step, error
             else:

@@ -1,7 +1,7 @@
-"""The ways of casting rays through volumes that the benchmark compares.
+"""The methods of casting rays through volumes that the benchmark compares.
 
-Every way shows the same (`pvfiblets.report.volume_scene`) at the same step, on black, without anti-aliasing and without
-jitter. What differs is said with each way in :data:`ABOUT`.
+Every method shows the same (`pvfiblets.report.volumes_scene`) at the same step, on black, without anti-aliasing and
+without jitter. What differs is said with each method in :data:`ABOUT`.
 """
 
 from __future__ import annotations
@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from orbit import context
-from volume_memory import held
+from common import Window
+from gpu_memory import allocated
 
+from pvfiblets.engine.standalone import bare_context
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.volume_pictures import colours_of
-from pvfiblets.report.volume_scene import Look, Truth
+from pvfiblets.report.volumes_pictures import colours_of
+from pvfiblets.report.volumes_scene import Look, Truth
 from pvfiblets.volumes import RaycastVolume
 
 ABOUT = {
@@ -28,8 +29,8 @@ ABOUT = {
 EQUAL = "vtk-gpu-equal"
 
 
-class Way:
-    """What ways share.
+class Method:
+    """What methods share.
 
     Parameters
     ----------
@@ -73,14 +74,14 @@ class Way:
         raise NotImplementedError
 
 
-class Engine(Way):
+class Engine(Method):
     """The engine on a bare context."""
 
     def __init__(self, _: str, volume: RaycastVolume, look: Look, step: float, __: tuple[int, int]) -> None:
         from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 
-        self.ctx, self.look, self.volume = context(), look, volume
-        self.before = held()
+        self.ctx, self.look, self.volume = bare_context(), look, volume
+        self.before = allocated()
         self.renderer = VolumeRenderer(self.ctx, volume)
         self.style = VolumeStyle(casting=look.casting(step=step))
 
@@ -98,11 +99,11 @@ class Engine(Way):
 
     def facts(self) -> dict[str, Any]:
         """Return what the engine tells."""
-        return told(self.renderer.explain(), self.volume)
+        return octree_facts(self.renderer.explain(), self.volume)
 
     def bytes(self) -> int | None:
         """Return what has come since the context was empty."""
-        now = held()
+        now = allocated()
         return None if now is None or self.before is None else now - self.before
 
     def close(self) -> None:
@@ -111,45 +112,33 @@ class Engine(Way):
         self.ctx.release()
 
 
-class _Window(Way):
-    """What ways in a PyVista window share."""
+class _Window(Window, Method):
+    """A PyVista window, of any size."""
 
     def __init__(self, size: tuple[int, int]) -> None:
-        import pyvista as pv
-
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
-        self.plotter.disable_anti_aliasing()
-        self.plotter.set_background("black")
-        self.plotter.add_light(pv.Light(light_type="headlight"))
+        super().__init__(size)
         self.drawn: list[Camera] = []  # the first of each size
 
     def draw(self, camera: Camera) -> None:
-        plotter = self.plotter
         if not self.drawn or self.drawn[-1].size != camera.size:
-            plotter.window_size = list(camera.size)
+            self.plotter.window_size = list(camera.size)
             self.drawn.append(camera)
-        camera.aim(plotter)
-        plotter.render()
-        plotter.render_window.WaitForCompletion()
-        plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)  # one pixel needs the whole picture
+        super().draw(camera)
 
     def picture(self) -> np.ndarray:
         return np.asarray(self.plotter.screenshot(None))[::-1, :, :3] / 255.0
 
     def bytes(self) -> int | None:
         self.plotter.render_window.MakeCurrent()
-        now = held()
+        now = allocated()
         empty = _Window(self.drawn[0].size)
         empty.plotter.show(auto_close=False)
         for camera in self.drawn:
             empty.draw(camera)
         empty.plotter.render_window.MakeCurrent()
-        before = held()
+        before = allocated()
         empty.close()
         return None if now is None or before is None else now - before
-
-    def close(self) -> None:
-        self.plotter.close()
 
 
 class Plotter(_Window):
@@ -163,7 +152,7 @@ class Plotter(_Window):
 
     def facts(self) -> dict[str, Any]:
         """Return what the actor tells."""
-        return told(self.actor.explain(), self.volume)
+        return octree_facts(self.actor.explain(), self.volume)
 
 
 class VTK(_Window):
@@ -193,7 +182,7 @@ class VTK(_Window):
         self.mapper.SetSampleDistance(voxels * self.spacing)
 
 
-WAYS = {"engine": Engine, "plotter": Plotter, "vtk-gpu": VTK, "vtk-smart": VTK}
+METHODS = {"engine": Engine, "plotter": Plotter, "vtk-gpu": VTK, "vtk-smart": VTK}
 
 
 def added(plotter: Any, volume: RaycastVolume, look: Look, **more: Any) -> Any:
@@ -258,7 +247,7 @@ def transfer_to(prop: Any, look: Look) -> None:
         prop.GetIsoSurfaceValues().SetValue(0, look.value)
 
 
-def told(report: dict[str, Any], volume: RaycastVolume) -> dict[str, Any]:
+def octree_facts(report: dict[str, Any], volume: RaycastVolume) -> dict[str, Any]:
     """Return what an engine tells of its octree and its passes."""
     nodes = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] in ("nodes", "means"))
     return {"skipped": report["skipped"], "octree_share": nodes / volume.nbytes, "passes": report["passes"]}

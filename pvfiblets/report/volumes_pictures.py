@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume, reference
 
 from .cameras import Camera
-from .volume_scene import Look, Truth, grey_of, lit, truth
+from .volumes_scene import Look, Truth, grey_of, lit, truth
 
 __all__ = ["Right", "along_of", "colours_of", "directions_of", "light_of", "places", "right_of"]
 

@@ -17,11 +17,11 @@ from .cameras import Camera, by_turns
 from .drawing import Part, run_parts
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
-from .volume_fields import DENSE, field, tables
-from .volume_occlusion import RADIUS, openness
-from .volume_pictures import Right, colours_of, light_of, places, right_of
-from .volume_scene import TOLERANCE, Look, circle, look_of
-from .volume_timed import LATE, Timed, drawing, drawn, some
+from .volumes_fields import DENSE, field, tables
+from .volumes_occlusion import RADIUS, openness
+from .volumes_pictures import Right, colours_of, light_of, places, right_of
+from .volumes_scene import TOLERANCE, Look, circle, look_of
+from .volumes_timed import LATE, Timed, drawing, drawn, some
 
 __all__ = ["STUDY", "VolumeStudy", "settings"]
 
@@ -231,7 +231,7 @@ PARTS: dict[Part, float] = {integrators: 4.0, pictures: 4.0, openness: 2.0}
 class VolumeStudy:
     """Ray-cast volumes by all that may be set, thin to stiff."""
 
-    name = "volume"
+    name = "volumes"
     title = "Ray-cast volumes"
     approximates = (
         "Light along rays through a volume, added up step by step: ways of integration, steps, early ends, skipped "

@@ -1,13 +1,14 @@
-"""How the benchmark of ray-cast volumes tells what it measured: a table, the goals, and a plot."""
+"""Tables and plot of the benchmark of ray-cast volumes, and whether it reached its goals."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-import volume_effects
-from volume_measure import BYTES
-from volume_ways import ABOUT, EQUAL
+from common import card_of, on_machine, pyplot, to_table, verdict
+from volumes_effects import table as effects_table
+from volumes_methods import ABOUT, EQUAL
+from volumes_timing import BYTES
 
 SURFACES = 3.0
 """The goal: so many times as fast as VTK's GPU mapper with surfaces of sparse data, and faster in all else."""
@@ -16,7 +17,7 @@ SPARSE = {"speed_up": 1.8, "differing": 0.01}
 """The goals of sparse casting in a moving view."""
 
 VIEWS = ("circle", "static")
-COLUMNS = ("mode", "way", "step", "error", "circle ms", "CPU", "static ms", "CPU", "bytes", "build ms", "CPU",
+COLUMNS = ("mode", "method", "step", "error", "circle ms", "CPU", "static ms", "CPU", "bytes", "build ms", "CPU",
            "skipped", "octree")  # fmt: skip
 
 
@@ -25,9 +26,9 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
     lines = [
         f"# Ray-cast volumes beside VTK's on {about['card']}",
         "",
-        f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}; circling "
+        f"{on_machine(about)}; circling "
         f"{about['size']}×{about['size']} and static {about['still']}×{about['still']}, steps of {about['step']:g} "
-        "voxels, each way in its own process, no anti-aliasing, no jitter. One transfer function, one step and one "
+        "voxels, each method in its own process, no anti-aliasing, no jitter. One transfer function, one step and one "
         "surface for all; data of 16 bits.",
         "",
         "*error*: root mean square of colours from 0 to 1 against rays in float64, of pixels whose rays meet the "
@@ -37,26 +38,24 @@ def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:
         f"{about['longest']:g} s. *build*: until the first picture is there, without drawing it, from voxels in "
         "memory. *skipped*: of the octree's leaves; *octree*: its bytes over the voxels'.",
         "",
-        *(f"- *{way}*: {text}." for way, text in ABOUT.items()),
+        *(f"- *{method}*: {text}." for method, text in ABOUT.items()),
     ]
     for data in dict.fromkeys(row["data"] for row in results):
         facts = about["volumes"].get(data)
         size = f": {' × '.join(map(str, facts['shape']))} voxels, {facts['bytes']:,} bytes" if facts else ""
         lines += ["", f"## {data}{size}", ""]
-        lines.append("| " + " | ".join(COLUMNS) + " |")
-        lines.append("|" + len(COLUMNS) * "---|")
-        lines += [line(row) for row in results if row["data"] == data]
-    lines += ["", *volume_effects.table(about["effects"]), *goals(results), *sparse_goals(about["effects"])]
+        lines += to_table(COLUMNS, (line(row) for row in results if row["data"] == data))
+    lines += ["", *effects_table(about["effects"]), *goals(results), *sparse_goals(about["effects"])]
     return "\n".join(lines) + "\n"
 
 
 def line(row: dict[str, Any]) -> str:
     """Return one row of the table."""
-    head = f"| {row['mode']} | {row['way']} | "
+    head = f"| {row['mode']} | {row['method']} | "
     if "unmeasured" in row:
         return head + f"unmeasured: {row['unmeasured']} |" + " |" * 10
-    step = "own" if row["way"] == "vtk-smart" else f"{row['step']:.3g}"
-    if row["way"] == EQUAL and not row["reached"]:
+    step = "own" if row["method"] == "vtk-smart" else f"{row['step']:.3g}"
+    if row["method"] == EQUAL and not row["reached"]:
         step += f", not {row['target']:.4f}"
     cells = [step, f"{row['error']:.4f}"]
     for view in VIEWS:
@@ -76,11 +75,11 @@ def compared(results: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
     Where VTK never gets there, the times are those of its best, or at the same step, and the ratio is a lower bound.
     """
-    found = {(row["data"], row["mode"], row["way"]): row for row in results if "unmeasured" not in row}
+    found = {(row["data"], row["mode"], row["method"]): row for row in results if "unmeasured" not in row}
     rows = []
-    for data, mode, way in found:
+    for data, mode, method in found:
         ours, theirs = found.get((data, mode, "plotter")), found.get((data, mode, EQUAL))
-        if way != "plotter" or theirs is None:
+        if method != "plotter" or theirs is None:
             continue
         for view in VIEWS:
             other = theirs.get(view, None if theirs["reached"] else found[data, mode, "vtk-gpu"].get(view))
@@ -118,29 +117,20 @@ def goals(results: list[dict[str, Any]]) -> list[str]:
 def sparse_goals(effects: list[dict[str, Any]]) -> list[str]:
     """Say whether sparse casting is as fast and as right as wanted."""
     rows = [row for row in effects if row["effect"].startswith("sparse") and row["view"] == "circle" and "rms" in row]
-    told = []
+    said = []
     for row in rows:
         fast, right = row["cpu_speed_up"] >= SPARSE["speed_up"], row["differing"] <= SPARSE["differing"]
-        told.append(
+        said.append(
             f"- {row['effect']}, {row['data']}, circling: {row['cpu_speed_up']:.2f} times as fast, {verdict(fast)}; "
             f"{100 * row['differing']:.2f} % of the pixels differ, {verdict(right)}."
         )
     head = f"Sparse casting, {SPARSE['speed_up']:g} times and {100 * SPARSE['differing']:g} % are wanted:"
-    return [head, "", *told] if told else []
-
-
-def verdict(kept: bool) -> str:
-    """Return one word."""
-    return "kept" if kept else "missed"
+    return [head, "", *said] if said else []
 
 
 def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> None:
     """Draw time per frame over error, a panel for each volume and mode, an open mark for the static view."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
+    plt = pyplot()
     data = list(dict.fromkeys(row["data"] for row in results))
     modes = list(dict.fromkeys(row["mode"] for row in results))
     figure, axes = plt.subplots(len(modes), len(data), figsize=(1.5 + 2.7 * len(data), 1.2 + 2.4 * len(modes)),
@@ -148,9 +138,9 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
     for i, mode in enumerate(modes):
         for j, name in enumerate(data):
             axis = axes[i][j]
-            rows = {row["way"]: row for row in results if (row["data"], row["mode"]) == (name, mode)}
-            for colour, way in enumerate(ABOUT):
-                row = rows.get(way)
+            rows = {row["method"]: row for row in results if (row["data"], row["mode"]) == (name, mode)}
+            for colour, method in enumerate(ABOUT):
+                row = rows.get(method)
                 if row is None or "error" not in row:
                     continue
                 for view, fill in zip(VIEWS, ("full", "none"), strict=True):
@@ -165,9 +155,9 @@ def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> No
                 axis.set_xlabel("root mean square error", size="small")
             if j == 0:
                 axis.set_ylabel("CPU ms per frame", size="small")
-    marks = {way: axes[0][0].plot([], [], "o", color=f"C{colour}")[0] for colour, way in enumerate(ABOUT)}
+    marks = {method: axes[0][0].plot([], [], "o", color=f"C{colour}")[0] for colour, method in enumerate(ABOUT)}
     figure.legend(marks.values(), marks, loc="outside lower center", ncols=3, fontsize="small")
-    card, size, still = about["card"].split("(")[0].strip(), about["size"], about["still"]
+    card, size, still = card_of(about), about["size"], about["still"]
     title = f"{card}; filled: circling {size}×{size},\nopen: static {still}×{still}; dotted: the error to keep to"
     figure.suptitle(title, size="medium")
     figure.savefig(path, dpi=110)

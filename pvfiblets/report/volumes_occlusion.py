@@ -14,8 +14,8 @@ from pvfiblets.volumes.options import RaycastOptions
 
 from .record import Figure, LeftOut, Record
 from .study import Options
-from .volume_openness import SETS, exact_openness, seen_from
-from .volume_timed import LATE, Timed, some
+from .volumes_openness import SETS, exact_openness, seen_from
+from .volumes_timed import LATE, Timed, some
 
 __all__ = ["RADIUS", "openness"]
 

@@ -11,11 +11,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from volume_measure import Measured, nudged
-from volume_scene import make_data
-from volume_ways import Plotter
+from common import to_table
+from volumes_data import make_data
+from volumes_methods import Plotter
+from volumes_timing import FrameTimes, nudged
 
-from pvfiblets.report.volume_scene import circle, look_of
+from pvfiblets.report.volumes_scene import circle, look_of
 
 PAPER = {
     "dof": {"static": (15.70, 16.15), "circle": (14.25, 14.63)},
@@ -33,18 +34,18 @@ class AbsentError(Exception):
     """There is no such effect here."""
 
 
-def _depth_of_field(way: Plotter) -> None:
-    picture = getattr(way.plotter, "picture", None)
+def _depth_of_field(method: Plotter) -> None:
+    picture = getattr(method.plotter, "picture", None)
     if picture is None or not hasattr(picture, "depth_of_field"):
         raise AbsentError("there is no plotter.picture.depth_of_field here")
     picture.depth_of_field = True
 
 
 def _of_actor(name: str, value: Any) -> Any:
-    def switch(way: Plotter) -> None:
-        if not hasattr(type(way.actor), name):
+    def switch(method: Plotter) -> None:
+        if not hasattr(type(method.actor), name):
             raise AbsentError(f"volumes have no {name} here")
-        setattr(way.actor, name, value)
+        setattr(method.actor, name, value)
 
     return switch
 
@@ -70,8 +71,8 @@ ABOUT = {
     "recon": "no reconstruction where that does not show, of light, `actor.recon`; the paper's is of a filter",
     "ray-occlusion": "ambient occlusion by rays from every hit, `actor.ray_occlusion`: not in the paper's table",
 }
-WITHOUT_CHANGE = ("sparse-2", "sparse-4", "recon")
-"""They ought to show the same picture."""
+COLUMNS = ("data", "effect", "view", "ms with", "without", "CPU ms with", "without", "×", "× CPU", "differing", "rms",
+           "paper")  # fmt: skip
 
 
 def effects(name: str, mode: str, wanted: list[str], options: Any) -> Iterator[dict[str, Any]]:
@@ -85,29 +86,29 @@ def effects(name: str, mode: str, wanted: list[str], options: Any) -> Iterator[d
             size = (side, side)
             cameras = circle(volume, options.frames, size)
             cameras = nudged(cameras[0], options.frames) if view == "static" else cameras
-            ways = [Plotter("", volume, look, options.step, size) for _ in range(2)]
+            methods = [Plotter("", volume, look, options.step, size) for _ in range(2)]
             try:
-                EFFECTS[effect](ways[0])
-                yield {**common, **turns(ways, cameras, options.seconds)}
+                EFFECTS[effect](methods[0])
+                yield {**common, **turns(methods, cameras, options.seconds)}
             except AbsentError as error:
                 yield {**common, "unmeasured": str(error)}
             finally:
-                for way in ways:
-                    way.close()
+                for method in methods:
+                    method.close()
 
 
-def turns(ways: list[Plotter], cameras: list[Any], seconds: float) -> dict[str, Any]:
+def turns(methods: list[Plotter], cameras: list[Any], seconds: float) -> dict[str, Any]:
     """Return times with and without, which take turns, and how the pictures differ."""
-    times = [Measured(), Measured()]
+    times = [FrameTimes(), FrameTimes()]
     pictures: list[tuple[np.ndarray, np.ndarray]] = []
-    for way in ways:
-        way.draw(cameras[-1])
+    for method in methods:
+        method.draw(cameras[-1])
     for k, camera in enumerate(cameras):
         order = (0, 1) if k % 2 == 0 else (1, 0)  # whoever comes second finds warmer caches
         for one in order:
-            times[one].time(ways[one].draw, camera)
+            times[one].time(methods[one].draw, camera)
         if k < SHOWN:
-            pictures.append((ways[0].picture(), ways[1].picture()))
+            pictures.append((methods[0].picture(), methods[1].picture()))
         if sum(times[0].wall) + sum(times[1].wall) > 1e3 * seconds:
             break
     found = {"with": times[0].report(), "without": times[1].report()}
@@ -137,8 +138,7 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
         "",
         *(f"- *{effect}*: {ABOUT[effect]}." for effect in used),
         "",
-        "| data | effect | view | ms with | without | CPU ms with | without | × | × CPU | differing | rms | paper |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+        *to_table(COLUMNS, ()),
     ]
     for row in rows:
         head = f"| {row['data']}, {row['mode']} | {row['effect']} | {row['view']} | "

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from pvfiblets.report import volume, volume_fields, volume_occlusion, volume_scene
+from pvfiblets.report import volumes, volumes_fields, volumes_occlusion, volumes_scene
 from pvfiblets.report.study import Budget, Unavailable
 from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
 
@@ -18,21 +18,21 @@ from .little import little
 @pytest.fixture
 def small(monkeypatch):
     """Have the study measure hardly anything."""
-    monkeypatch.setattr(volume, "BALL", 16)
-    monkeypatch.setattr(volume, "LIGHT_SIZE", (40, 30))
-    monkeypatch.setattr(volume, "QUICK_DENSITIES", (0.1, 1e3))
-    for module in (volume, volume_occlusion):
+    monkeypatch.setattr(volumes, "BALL", 16)
+    monkeypatch.setattr(volumes, "LIGHT_SIZE", (40, 30))
+    monkeypatch.setattr(volumes, "QUICK_DENSITIES", (0.1, 1e3))
+    for module in (volumes, volumes_occlusion):
         monkeypatch.setattr(module, "QUICK_SIZE", 48)
-    monkeypatch.setattr(volume, "QUICK_VESSELS", 24)
-    monkeypatch.setattr(volume_occlusion, "QUICK_VOXELS", 32)
-    monkeypatch.setattr(volume_occlusion, "QUICK_PIXELS", 12)
-    monkeypatch.setattr(volume_occlusion, "QUICK_SAMPLES", (4, 256))
+    monkeypatch.setattr(volumes, "QUICK_VESSELS", 24)
+    monkeypatch.setattr(volumes_occlusion, "QUICK_VOXELS", 32)
+    monkeypatch.setattr(volumes_occlusion, "QUICK_PIXELS", 12)
+    monkeypatch.setattr(volumes_occlusion, "QUICK_SAMPLES", (4, 256))
 
 
 def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     left = []
     options = little()
-    records = list(volume.STUDY.run(options, left))
+    records = list(volumes.STUDY.run(options, left))
     assert not left
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
@@ -74,7 +74,7 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
 
 def test_what_there_was_no_time_for_is_told(gl, small):
     left = []
-    assert not list(volume.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(volumes.STUDY.run(little(budget=Budget(0.0)), left))
     assert {item.reason for item in left} == {"the time given was used up"}
     told = " ".join(item.what for item in left)
     assert all(name in told for name in ("ramp, κΔ 0.1", "24³ vessels, mip", "32³ head, occlusion"))
@@ -83,31 +83,31 @@ def test_what_there_was_no_time_for_is_told(gl, small):
 def test_without_opengl_it_is_unavailable(monkeypatch):
     monkeypatch.setitem(sys.modules, "moderngl", None)
     with pytest.raises(Unavailable, match="moderngl"):
-        next(volume.STUDY.run(little(), []))
+        next(volumes.STUDY.run(little(), []))
 
 
 @pytest.mark.parametrize("quick", [False, True])
 @pytest.mark.parametrize("mode", ["composite", "mip", "isosurface"])
 def test_settings_can_be_cast_and_are_told_apart(mode, quick):
-    look = volume_scene.look_of(volume_fields.field("ball", 8), mode)
-    found = list(volume.settings(mode, quick, 1.0))
+    look = volumes_scene.look_of(volumes_fields.field("ball", 8), mode)
+    found = list(volumes.settings(mode, quick, 1.0))
     casts = [look.casting(**fields) for _, _, fields in found]
     assert casts[0] == look.casting()
     assert len({(way, how) for way, how, _ in found}) == len(found)
     # The refinement's own default is among what it is compared with under another name.
     assert all(cast != casts[0] for cast in casts[1:])
-    assert {way for way, _, _ in volume.settings(mode, True, 1.0)} <= {way for way, _, _ in found}
+    assert {way for way, _, _ in volumes.settings(mode, True, 1.0)} <= {way for way, _, _ in found}
 
 
 def test_fields_and_tables_are_what_they_are_called():
-    ball, slope = (volume_fields.field(name, 17).values for name in ("ball", "slope"))
+    ball, slope = (volumes_fields.field(name, 17).values for name in ("ball", "slope"))
     assert ball[8, 8, 8] == ball.max() == 1.0
     assert ball[0, 0, 0] == 0.0
     assert np.allclose(np.diff(slope, axis=0), 0.6 / 16.0, atol=1e-6)
-    alpha = {name: table[:, 3] for name, table in volume_fields.tables().items()}
+    alpha = {name: table[:, 3] for name, table in volumes_fields.tables().items()}
     assert (np.diff(alpha["ramp"]) > 0.0).all()
     assert (np.diff(alpha["edge"]) != 0.0).sum() == 1
     assert (alpha["peak"] > 0.0).sum() == 1
     assert (alpha["peaks"] > 0.0).sum() == 16
-    assert all(values.max() == volume_fields.DENSE for values in alpha.values())
+    assert all(values.max() == volumes_fields.DENSE for values in alpha.values())
     assert RaycastOptions.integrator == "adaptive"
