@@ -5,6 +5,6 @@ A *study* (:mod:`.study`) measures one approximation beside its rivals and setti
 report is the file ``report.json``; the Markdown page (:mod:`.page`) and the plots (:mod:`.plots`) are made from that
 file alone, so that they can be made again, or differently, without measuring.
 
-Studies are named in :mod:`.studies`, which says how one is added. No VTK and no PyVista; matplotlib is imported when
-plots are made.
+Studies are named in :mod:`.studies`, which says how one is added. They draw by the engine alone, without VTK, but for
+:mod:`.features_window`; matplotlib is imported when plots are made.
 """

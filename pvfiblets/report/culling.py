@@ -15,7 +15,7 @@ from pvfiblets.engine.errors import EngineError
 
 from .culling_pictures import Shown, Singles, apart, averaged, colours, errors, shown, views
 from .data import file_sets
-from .drawing import drawing_context, turns_of
+from .drawing import LATE, drawing_context, turns_of
 from .flights import Flight
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
@@ -198,7 +198,7 @@ class CullingStudy:
                 yield record
         if late:
             what = ", ".join(late) if done else "everything"
-            left_out.append(LeftOut(f"{scene.name}: {what}", "the time given was used up"))
+            left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
         options.log(f"culling: {scene.name}: {len(done)} ways")
 
 

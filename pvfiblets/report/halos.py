@@ -15,7 +15,7 @@ from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.halos.style import TABLE_SIZE
 
 from .data import DataSet, file_sets, made_up
-from .drawing import clock_of, drawing_context, timing, turns_of
+from .drawing import LATE, clock_of, drawing_context, timing, turns_of
 from .flights import Flight
 from .halos_drawing import Drawing, FibletHalos, Strips
 from .halos_exact import Crossings, crossings, gaps, pixel_errors
@@ -226,7 +226,7 @@ def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut])
         yield from done
     if late:
         what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{scene.name}: {what}", "the time given was used up"))
+        left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
     options.log(f"halos: {scene.name}: {len(done)} ways")
 
 
@@ -265,7 +265,7 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
     name, drawn = f"{count} helices", helices(count)
     if not options.budget.allows():
-        left_out.append(LeftOut(f"{name}: everything", "the time given was used up"))
+        left_out.append(LeftOut(f"{name}: everything", LATE))
         return
     look, path = look_of(drawn), orbit(drawn, 1, 1, size)[0]
     camera = path[1]
@@ -320,7 +320,7 @@ def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Recor
         record.times = {"draw": turns.timing(number, 1, FRAME)}
         yield record
     if late:
-        left_out.append(LeftOut(f"crossings: {', '.join(late)}", "the time given was used up"))
+        left_out.append(LeftOut(f"crossings: {', '.join(late)}", LATE))
     options.log(f"halos: crossings: {len(done)} ways")
 
 

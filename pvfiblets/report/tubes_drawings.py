@@ -59,7 +59,7 @@ class CastTubes:
         buffers: Any = self._renderer.explain()["buffers"]
         self.nbytes = sum(part["bytes"] for part in buffers if part["name"] not in GROWS)
 
-    def draw(self, camera: Camera) -> None:
+    def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
         from pvfiblets.engine import Style, View
 

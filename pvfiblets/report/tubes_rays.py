@@ -155,7 +155,7 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
         chosen = rng.integers(0, tubes.n_segments, 40 * count)
         middle = tubes.points[tubes.segments[chosen]].mean(axis=1)
         reach = tubes.radius[tubes.segments[chosen]].max(axis=1)
-        x, y, w = lens.seen(middle).T
+        x, y, w = lens.project(middle).T
         shown = (w > lens.near + 2.0 * reach) & (np.abs(y) < lens.slant) & (np.abs(x) < lens.slant * size[0] / size[1])
         some = curves.controls(tubes, chosen[shown][: count // 2])
         parts.append(aimed(some[np.arange(len(some)), rng.integers(0, 2, len(some))], rng, eye=lens.eye))

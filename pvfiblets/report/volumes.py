@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -10,110 +9,28 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.synthetic.vessels import vessel_tree
-from pvfiblets.volumes import FILTERS, RaycastVolume, Transfer, reference
+from pvfiblets.volumes import FILTERS
 from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
 
-from .cameras import Camera, by_turns
-from .drawing import Part, run_parts
+from .cameras import by_turns
+from .drawing import LATE, Part, run_parts
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
-from .volumes_fields import DENSE, field, tables
+from .volumes_integrators import LIGHT_SIZE, SIDE, formulae, integrators
 from .volumes_occlusion import RADIUS, openness
-from .volumes_pictures import Right, colours_of, light_of, places, right_of
-from .volumes_scene import TOLERANCE, Look, circle, look_of
-from .volumes_timed import LATE, Timed, drawing, drawn, some
+from .volumes_pictures import Right, colours_of, places, right_of
+from .volumes_scene import Look, circle, look_of
+from .volumes_timed import Timed, drawing, drawn
 
 __all__ = ["STUDY", "VolumeStudy", "settings"]
 
-DENSITIES, QUICK_DENSITIES = (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3), (0.1, 10.0, 1e3)
-STEPS, QUICK_STEPS = (0.25, 0.5, 1.0), (0.5,)  # voxels, of integrators
-BALL = 32  # voxels along each side
-LIGHT_SIZE = (96, 72)
-LIGHT_PIXELS, QUICK_LIGHT_PIXELS = 3000, 300
 PICTURE_STEPS, QUICK_PICTURE_STEPS = (2.0, 1.0, 0.5, 0.25, 0.125), (1.0, 0.25)
 VESSELS, QUICK_VESSELS = 128, 48
 SIZE, QUICK_SIZE = 256, 128
 PIXELS, QUICK_PIXELS = 3000, 500
-
-
-# --------------------------------------------------------------------------------------------------------- integrators
-
-
-def integrators(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Yield records of every integrator by transfer function, density and step; then how errors grow with density."""
-    from pvfiblets.engine.volumes import VolumeRenderer
-
-    volume = field("ball", BALL)
-    camera = circle(volume, 1, LIGHT_SIZE)[0]
-    renderer = VolumeRenderer(ctx, volume)
-    looks = tables()
-    chosen = ("ramp", "peaks") if options.quick else tuple(looks)
-    try:
-        for number, name in enumerate(chosen):
-            part = replace(options, budget=options.budget.share(1.0 / (len(chosen) - number)))
-            found: list[tuple[float, Record]] = []
-            for density in QUICK_DENSITIES if options.quick else DENSITIES:
-                transfer = Transfer(looks[name].astype(np.float32), (0.0, 1.0), -0.5 * math.log1p(-DENSE) / density)
-                if part.budget.left <= 0.0:
-                    left_out.append(LeftOut(f"{name}, κΔ {density:g}", LATE))
-                    continue
-                for record in _integrated(ctx, renderer, volume, camera, transfer, f"{name}, κΔ {density:g}", part,
-                                          left_out):  # fmt: skip
-                    found.append((density, record))
-                    yield record
-            yield from _by_density(name, found)
-    finally:
-        renderer.release()
-
-
-def _integrated(
-    ctx: Any, renderer: Any, volume: RaycastVolume, camera: Camera, transfer: Transfer, name: str, options: Options,
-    left_out: list[LeftOut],
-) -> Iterator[Record]:  # fmt: skip
-    from pvfiblets.engine.volumes import VolumeStyle
-
-    through = reference.rays(camera.model_view_projection, camera.size, volume)
-    at = some(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
-    right = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
-    timed = Timed(ctx, options, name, "draw")
-    for step in QUICK_STEPS if options.quick else STEPS:
-        for integrator in INTEGRATORS:
-            if not timed.allows(f"{integrator} step {step:g}"):
-                continue
-            casting = RaycastOptions("composite", transfer=transfer, integrator=integrator, step=step, stop=0.9999)
-            style = VolumeStyle(casting=casting)
-            off = light_of(drawn(ctx, renderer, camera, style))[at[:, 0], at[:, 1]] - right
-            record = Record(
-                data=name,
-                group=name.partition(",")[0],
-                approximation="light along a ray",
-                way=integrator,
-                setting=f"step {step:g}",
-                errors={
-                    "light rms": Figure(float(np.sqrt((off**2).mean())), "of 1"),
-                    "light max": Figure(float(np.abs(off).max()), "of 1"),
-                },
-                ours=True,
-                default=(integrator, step) == (RaycastOptions.integrator, RaycastOptions.step),
-                machine=options.machine,
-            )
-            timed.add(record, by_turns(drawing(ctx, renderer, style), [camera]), 1)
-    yield from timed.finish(left_out)
-
-
-def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record]:
-    """Yield the largest errors at the default step as lines over the density."""
-    for integrator in INTEGRATORS:
-        errors = {
-            f"max at κΔ {density:g}": record.errors["light max"]
-            for density, record in found
-            if (record.way, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
-        }
-        if errors:
-            machine = found[0][1].machine
-            yield Record(name, "stiff", "light along a ray", integrator, f"step {RaycastOptions.step:g}", errors,
-            ours=True,
-                         machine=machine)  # fmt: skip
+REFINEMENTS = {"no refinement": ("none", (1,)), "regula falsi": ("regula-falsi", (1, 2, 3, 5, 8)),
+               "Newton": ("newton", (1, 2, 4))}  # fmt: skip
+DIFFERS = 4  # levels of 255: pixels farther from the default's are counted
 
 
 # ------------------------------------------------------------------------------------------------------------ pictures
@@ -134,18 +51,15 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
     steps = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
     yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != RaycastOptions.step)
     if mode == "isosurface":
-        yield "no refinement", "", {"refine": "none", "iterations": 1}
-        for count in (1, 3):
-            yield (
-                "regula falsi",
-                f"{count} iteration{'s' if count > 1 else ''}",
-                {"refine": "regula-falsi", "iterations": count},
-            )
-            yield "Newton", f"{count} iteration{'s' if count > 1 else ''}", {"refine": "newton", "iterations": count}
+        for name, (refine, counts) in REFINEMENTS.items():
+            for count in (1, 3) if quick and len(counts) > 1 else counts:
+                yield from _at_steps(name, _iterations(count) if len(counts) > 1 else "", quick,
+                                     {"refine": refine, "iterations": count})  # fmt: skip
     if mode == "composite":
-        yield from (("integrator", name, {"integrator": name}) for name in ("exponential", "romberg"))
+        for name in INTEGRATORS if not quick else ("exponential", "romberg"):
+            yield from _at_steps("integrator", name, quick, {"integrator": name})
         yield from (("early end", f"opacity {stop:g}", {"stop": stop}) for stop in (0.9, 1.0))
-        for part in (0.01,) if quick else (0.01, 0.05):
+        for part in (0.01,) if quick else (0.002, 0.01, 0.05):
             yield "homogeneous nodes", f"{100.0 * part:g} % of the range", {"homogeneous": part * spread}
         yield "nodes as one", "", {"recon": True}
     yield "jitter", "", {"jitter": True}
@@ -154,6 +68,21 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
         for at in (0.05,) if quick else (0.01, 0.05, 0.2):
             how = f"every {'other' if stride == 2 else 'fourth'} pixel, threshold {at:g}"
             yield "sparse", how, {"sparse": stride, "sparse_threshold": at}
+
+
+def _iterations(count: int) -> str:
+    return f"{count} iteration{'s' if count > 1 else ''}"
+
+
+def _at_steps(name: str, how: str, quick: bool, fields: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Yield fields at the default step and, in a full report, at all others; never the program's own default."""
+    own = {key: RaycastOptions.__dataclass_fields__[key].default for key in fields}
+    for step in (RaycastOptions.step,) if quick else PICTURE_STEPS:
+        usual = step == RaycastOptions.step
+        if fields != own:
+            at = [how] if how else []
+            at += [] if usual else [f"step {step:g}"]
+            yield name, ", ".join(at), fields if usual else {**fields, "step": step}
 
 
 def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -190,6 +119,7 @@ def _varied(
 
     cameras = right.colours.cameras
     timed = Timed(ctx, options, name, "draw")
+    plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
         if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
             continue  # a tricubic picture takes ten times as long
@@ -201,7 +131,10 @@ def _varied(
             buffer = drawn(ctx, renderer, camera, style)
             shown.append(colours_of(buffer, look, camera))
             depths.append(np.frombuffer(buffer.depth.read(), np.uint32).reshape(camera.size[::-1]))
+        plain = plain or shown
         errors = {"colour rms": Figure(right.colours.error(shown), "of 1")}
+        levels = np.rint(255.0 * np.abs(np.stack(shown) - np.stack(plain)).max(axis=-1))
+        errors["unlike the default"] = Figure(100.0 * float((levels > DIFFERS).mean()), "%")
         if look.mode == "isosurface":
             found = places(right, depths, spacing)
             errors["place"] = Figure(found["position"], "voxels")
@@ -224,7 +157,7 @@ def _varied(
 # --------------------------------------------------------------------------------------------------------------- study
 
 
-PARTS: dict[Part, float] = {integrators: 4.0, pictures: 4.0, openness: 2.0}
+PARTS: dict[Part, float] = {integrators: 4.0, formulae: 0.5, pictures: 4.0, openness: 2.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
@@ -249,18 +182,22 @@ class VolumeStudy:
         "What is right is found in float64, ray by ray and cell by cell, without steps "
         "(pvfiblets/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and opacities "
         "are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of rms.",
-        f"Integrators: a ball of {BALL}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer functions that rise "
-        "gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or several (*peaks*). κΔ "
-        "is the optical depth of a step of half a voxel where they are densest. The program's default is *adaptive*: "
-        "it halves steps where one look-up in a pre-integrated table is not enough, and is *preintegrated* elsewhere.",
-        "Pictures: a made-up tree of vessels in each mode, one thing varied at a time: length of the step in voxels; "
-        "*early end*, the opacity at which a ray ends; *homogeneous nodes*, whose values are taken as one if they "
-        "differ by no more; *nodes as one*, where neither colour nor opacity changes; *sparse*, rays for every other "
-        "or fourth pixel first, and between them where those differ by more than the threshold. Surfaces: *place* is "
-        "the mean distance along the ray from where the surface is, what is missed or false counted as a voxel.",
+        f"Integrators: a ball and a slope of {SIDE}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer "
+        "functions that rise gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or "
+        "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "
+        "*adaptive*: it halves steps where one look-up in a pre-integrated table is not enough, and is *preintegrated* "
+        "elsewhere. *bare formulae*: in float32 on profiles of 64 steps whose light has a closed form, without the "
+        "limits that shaders set to what a step may give; *leaves 0 to 1*: profiles whose colours or opacities do.",
+        "Pictures: a synthetic tree of vessels in each mode, one thing varied at a time, integrators and refinements "
+        "at each step: its length in voxels; *early end*, the opacity at which a ray ends; *homogeneous nodes*, whose "
+        " values are taken as one if they differ by no more; *nodes as one*, where neither colour nor opacity "
+        "changes; *sparse*, rays for every other or fourth pixel first, and between them where those differ by more "
+        "than the threshold. Surfaces: *place* is the mean distance along the ray from where the surface is, what is "
+        f"missed or false counted as a voxel. *unlike the default*: pixels more than {DIFFERS} of 255 levels off it.",
         f"Occlusion: the share of a surface's open side that rays of {RADIUS:g} mm find empty (Lesar 2015, equation "
-        "10), beside a rule of 48² directions whose rays end at exact roots; the time is that of the pass alone. Where "
-        "software draws, times are of the processor, of all threads; those of cards are by the clock.",
+        "10), beside a rule of 48² directions whose rays end at exact roots; *independent rays*: the rms that as many "
+        "rays have by chance. The time is that of the pass alone. Where software draws, times are of the processor, of "
+        "all threads; those of cards are by the clock.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:

@@ -12,14 +12,15 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume, reference
 from pvfiblets.volumes.options import RaycastOptions
 
+from .drawing import LATE
 from .record import Figure, LeftOut, Record
 from .study import Options
 from .volumes_openness import SETS, exact_openness, seen_from
-from .volumes_timed import LATE, Timed, some
+from .volumes_timed import Timed, some
 
 __all__ = ["RADIUS", "openness"]
 
-SAMPLES, QUICK_SAMPLES = (4, 8, 16, 32, 64, 128, 256), (4, 16, 64)
+SAMPLES, QUICK_SAMPLES = (4, 8, 16, 32, 64, 128, 256, 512), (4, 16, 64)
 PIXELS, QUICK_PIXELS = 150, 40
 VOXELS, QUICK_VOXELS = 128, 48
 SIZE, QUICK_SIZE = 256, 96
@@ -44,7 +45,8 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                     way, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"
                     if not timed.allows(f"{way}, {setting}"):
                         continue
-                    off = np.abs(picture.openness(samples, smooth)[at[:, 0], at[:, 1]] - right)
+                    bias = picture.openness(samples, smooth)[at[:, 0], at[:, 1]] - right
+                    off = np.abs(bias)
                     record = Record(
                         data=data,
                         group="occlusion",
@@ -54,12 +56,21 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                         errors={
                             "openness rms": Figure(float(np.sqrt((off**2).mean())), "of 1"),
                             "openness p99": Figure(float(np.quantile(off, 0.99)), "of 1"),
+                            "openness mean": Figure(float(off.mean()), "of 1"),
+                            "openness max": Figure(float(off.max()), "of 1"),
+                            "openness bias": Figure(float(bias.mean()), "of 1"),
                         },
                         ours=True,
                         machine=options.machine,
                     )
                     timed.add(record, picture.drawing(samples, smooth), 1)
             yield from timed.finish(left_out)
+            for samples in QUICK_SAMPLES if options.quick else SAMPLES:
+                chance = Figure(float(np.sqrt(np.mean(right * (1.0 - right)) / samples)), "of 1")
+                yield Record(
+                    data, "occlusion", "ambient occlusion", "independent rays, by chance", f"{samples} rays",
+                    {"openness rms": chance}, machine=options.machine,
+                )  # fmt: skip
         finally:
             picture.release()
 

@@ -40,7 +40,8 @@ def seen_from(volume: RaycastVolume, size: tuple[int, int], away: tuple[float, f
     middle, reach = bounds.mean(axis=1), float(np.ptp(bounds, axis=1).max())
     backwards = unit(np.array(away))
     slant = float(np.tan(np.radians(27.0) / 2.0))
-    return Lens(size, middle + 2.2 * reach * backwards, backwards, slant, 1.2 * reach, 3.4 * reach).matrix
+    lens = Lens(size, middle + 2.2 * reach * backwards, backwards, slant, 1.2 * reach, 3.4 * reach)
+    return lens.model_view_projection
 
 
 def exact_openness(

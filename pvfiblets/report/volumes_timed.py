@@ -9,13 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .cameras import Camera
-from .drawing import turns_of
+from .drawing import LATE, turns_of
 from .record import FRAME, LeftOut, Record
 from .study import Options
 
-__all__ = ["LATE", "Timed", "drawing", "drawn", "some"]
-
-LATE = "the time given was used up"
+__all__ = ["Timed", "drawing", "drawn", "some"]
 
 
 class Timed:

@@ -11,7 +11,7 @@ import pytest
 from pvfiblets import compress, regions
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.report import features
+from pvfiblets.report import features, features_window
 from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
 from pvfiblets.report.features_scenes import PLAIN, Drawn, brain_subject, torus
 from pvfiblets.report.front import mark_fronts
@@ -22,6 +22,7 @@ from .little import little
 
 SIZE = (96, 64)
 PIXELS = SIZE[0] * SIZE[1]
+IN_WINDOW = ("plane", "mesh", "length", "ambient occlusion", "depth cue", "one")  # of all that take half a minute
 
 
 @pytest.fixture
@@ -35,9 +36,11 @@ def small(monkeypatch):
 @pytest.fixture(scope="module")
 def measured(_headless, request):
     """What is found on very little data, by subject and feature."""
+    every = features_window.window_features
     with pytest.MonkeyPatch.context() as patch, _headless.context(request.module):
         for name, value in {"SEGMENTS": 10_000, "TUBES": 6, "VOXELS": 12, "SIZE": SIZE}.items():
             patch.setattr(features, f"QUICK_{name}", value)
+        patch.setattr(features_window, "window_features", lambda made: [f for f in every(made) if f.name in IN_WINDOW])
         left = []
         records = list(features.STUDY.run(little(), left))
     assert not left
@@ -51,11 +54,22 @@ def more(found, *name):
 
 def test_every_subject_is_beside_its_plain_self(measured):
     plain = {key: record for key, record in measured.items() if record.default}
-    assert {key[0] for key in plain} == {"streamlines", "spline-tubes", "lines-with-halos", "volume"}
+    assert {key[0] for key in plain} == {"streamlines", "spline-tubes", "lines-with-halos", "volume", "window"}
     assert all(key[1] == PLAIN for key in plain)
     for record in plain.values():
         assert record.costs["more memory"].value == record.costs["more time"].value == 0.0
         assert record.costs["memory"].value > PIXELS * 24 / 1e6  # the G-buffer alone
+
+
+def test_features_in_a_window_cost_frames_and_changes(measured):
+    found = {key[1:]: record for key, record in measured.items() if key[0] == "window"}
+    assert {group for group, _ in found} == {"cut", "criterion", "effects", "colours", PLAIN}
+    assert found["effects", "depth cue"].costs["more memory"].value == 0.0  # VTK's shader alone
+    assert found["effects", "ambient occlusion"].costs["more memory"].value == pytest.approx(2 * PIXELS / 1e6)
+    assert found["cut", "mesh"].costs["more memory"].value > found["cut", "plane"].costs["more memory"].value
+    varied = [name for name, record in found.items() if "change" in record.times]
+    assert ("cut", "plane") in varied
+    assert ("colours", "one") not in varied
 
 
 def test_figures_are_finite(measured):
@@ -125,7 +139,8 @@ def test_time_that_is_used_up_is_told(gl, small):
     left = []
     assert list(features.STUDY.run(little(budget=Budget(0.0)), left)) == []
     assert [item.what for item in left] == [
-        f"{name}: everything" for name in ("streamlines", "spline tubes", "lines with halos", "volume")
+        f"{name}: everything"
+        for name in ("streamlines", "spline tubes", "lines with halos", "volume", "streamlines in a window, 96 x 64")
     ]
 
 

@@ -46,7 +46,7 @@ def test_rays_are_aimed_at_their_halves(tubes):
 def test_a_lens_is_the_orbits_camera(tubes):
     camera = orbit(tubes, "close", 4, (160, 90))[1]
     lens = Lens.of(camera)
-    np.testing.assert_allclose(lens.matrix, camera.model_view_projection, rtol=1e-12)
+    np.testing.assert_allclose(lens.model_view_projection, camera.model_view_projection, rtol=1e-12)
     pixels = np.array([0, 159, 7250, 160 * 90 - 1])
     directions, forwards = lens.rays(pixels)
     w = np.array([lens.near, 0.5 * (lens.near + lens.far), lens.far, lens.near])

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets.report import tubes
+from pvfiblets.report import tubes, tubes_solvers
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Unavailable
@@ -22,8 +22,8 @@ from .little import little
 @pytest.fixture
 def small(monkeypatch):
     """Have the study measure hardly anything."""
-    monkeypatch.setattr(tubes, "QUICK_CLASSES", ("usual",))
-    monkeypatch.setattr(tubes, "QUICK_RAYS", 400)
+    monkeypatch.setattr(tubes_solvers, "QUICK_CLASSES", ("usual",))
+    monkeypatch.setattr(tubes_solvers, "QUICK_RAYS", 400)
     monkeypatch.setattr(tubes, "QUICK_SIZE", (64, 36))
     monkeypatch.setattr(tubes, "TUBES", 2)
 
