@@ -42,7 +42,7 @@ class FeatureStudy:
         "Nothing: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A feature "
         "that is off is not there: no code, no buffer, no pass."
     )
-    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", rivals=False),)
+    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", alternatives=False),)
     notes = (
         "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
         "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
@@ -55,7 +55,7 @@ class FeatureStudy:
         "Effects on a whole *picture* are given the scene's depths and synthetic colours of one sample a pixel, where "
         "VTK's picture would be; that is not counted, what they keep is.",
         "*in a window*: the same streamlines in a PyVista window, all of VTK's work included, with colours, depth "
-        "cueing and illuminated lines, which VTK's shader writes. Frames with a feature take turns with frames without. "
+        "cueing and illuminated lines, which VTK's shader writes. Frames with and without a feature take turns. "
         "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
     )
 
@@ -97,7 +97,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
                 data=f"{subject.name}, {size[0]} x {size[1]}",
                 group=subject.name.replace(" ", "-"),
                 approximation="nothing",
-                way=feature.group,
+                method=feature.group,
                 setting=feature.name,
                 errors={},
                 costs=_costs(nbytes, sizes[0], timing, timings[0]),

@@ -22,7 +22,7 @@ PLAIN = "plain"
 TURNS = 315  # pictures of a whole turn: 1.14 degrees a frame, as in Schertzer et al. 2022, section 4.5
 LAYERS = 4
 WIDTH, RADIUS = 3.0, 0.5  # pixels of wide lines, mm of tubes
-GRID = 32  # voxels along a side of a made-up volume
+GRID = 32  # voxels along a side of a synthetic volume
 
 Effect = Callable[["Drawn", Any, Camera, View], None]
 
@@ -34,7 +34,7 @@ class Feature:
     Attributes
     ----------
     group, name : str
-        What it belongs to, and what it is called; the way and the setting of its record.
+        What it belongs to, and what it is called; the method and the setting of its record.
     options : dict
         Keywords of the engine's renderer that differ from the defaults.
     style : dict

@@ -199,7 +199,7 @@ def _record(
         data=data,
         group=GROUP,
         approximation="nothing",
-        way=group,
+        method=group,
         setting=name,
         errors={},
         costs={

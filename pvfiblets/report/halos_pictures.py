@@ -40,7 +40,7 @@ WRONG = 0.25  # of black and white: pixels that are off by more are told as a sh
 Singles = npt.NDArray[np.float32]
 
 
-class Seen(Protocol):
+class Viewpoint(Protocol):
     """What a picture is taken by: a camera, or a matrix alone."""
 
     @property
@@ -139,7 +139,7 @@ def darkness_of(gbuffer: Any) -> Singles:
     return np.where(keys != EMPTY, ink, np.float16(0.0)).astype(np.float32)
 
 
-def picture(renderer: Any, camera: Seen, look: Look, times: int, most: int = MOST_PIXELS) -> Singles:
+def picture(renderer: Any, camera: Viewpoint, look: Look, times: int, most: int = MOST_PIXELS) -> Singles:
     """Return a picture of so many samples along a pixel's side, averaged.
 
     Parameters

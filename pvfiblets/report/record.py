@@ -23,6 +23,7 @@ FORMAT = "pvfiblets report 1"
 NAME = "report.json"
 LISTED = ("records", "cases")  # one to a line; a file without cases is read as one whose studies have none
 FRAME = "frame"  # the item of pictures
+AS_WRITTEN = {"method": "way", "alternatives": "rivals"}  # fields whose names in files are older than those here
 DIGITS = 6
 
 
@@ -78,7 +79,7 @@ class Timing:
 
 @dataclass
 class Record:
-    """One way of doing something with one setting, on one data set.
+    """One method with one setting, on one data set.
 
     Attributes
     ----------
@@ -86,14 +87,14 @@ class Record:
         Data set, and the group of sets that are drawn in one picture; an empty group is not drawn.
     approximation : str
         What is approximated.
-    way, setting : str
+    method, setting : str
         Method, which gives the colour, and its setting.
     errors, costs : dict of str to Figure
         Such as ``{"max": Figure(0.01, "mm")}`` and ``{"size": Figure(1.4, "bytes/point")}``; less is better.
     times : dict of str to Timing
         By what is done.
     ours, default : bool
-        Whether this is the program's own way, and its default.
+        Whether this is the program's own method, and its default.
     machine : str
         The ``name`` of the machine in the report's ``about``: times of two machines are never compared.
     front : list of str
@@ -103,7 +104,7 @@ class Record:
     data: str
     group: str
     approximation: str
-    way: str
+    method: str
     setting: str
     errors: dict[str, Figure]
     costs: dict[str, Figure] = field(default_factory=dict)
@@ -115,11 +116,11 @@ class Record:
 
     @property
     def label(self) -> str:
-        """Way and setting."""
-        return f"{self.way} ({self.setting})" if self.setting else self.way
+        """Variant and setting."""
+        return f"{self.method} ({self.setting})" if self.setting else self.method
 
-    def shown(self, path: str) -> float:
-        """Return one number in the unit that it is told in: times as :attr:`Timing.scale` has them."""
+    def in_unit(self, path: str) -> float:
+        """Return one number in the unit of tables and plots: times as :attr:`Timing.scale` has them."""
         kind, _, name = path.partition("/")
         return self.value(path) * (self.times[name].scale if kind == "times" and name in self.times else 1.0)
 
@@ -158,11 +159,11 @@ class Axes:
     x_label, y_label : str
         With units. Times are drawn in ns per item, those of pictures in ms per frame.
     series : bool
-        A line for each way instead: ``y`` is how the names of several errors begin, which end in the numbers that they
-        are drawn at; ``x`` is empty, and there is no front.
-    rivals : bool
-        Whether one takes this way or that, so that one may be better. Where each adds something else there is no
-        front, nothing beats the default, and all are drawn in rows beside it.
+        A line for each method instead: ``y`` is how the names of several errors begin, which end in the numbers that
+        they are drawn at; ``x`` is empty, and there is no front.
+    alternatives : bool
+        Whether one method is taken in place of another, so that one may be better. Where each adds something else there
+        is no front, nothing beats the default, and all are drawn in rows beside it.
     """
 
     key: str
@@ -171,12 +172,12 @@ class Axes:
     x_label: str
     y_label: str
     series: bool = False
-    rivals: bool = True
+    alternatives: bool = True
 
     @property
     def has_front(self) -> bool:
         """Whether some records beat others."""
-        return self.rivals and not self.series
+        return self.alternatives and not self.series
 
 
 @dataclass(frozen=True)
@@ -268,7 +269,7 @@ class Report:
     def to_json(self) -> dict[str, Any]:
         """Return the report as what JSON can hold."""
         result: dict[str, Any] = _plain(
-            {"format": FORMAT, "about": self.about, "studies": [asdict(study) for study in self.studies]}
+            {"format": FORMAT, "about": self.about, "studies": [_as_written(study) for study in self.studies]}
         )
         return result
 
@@ -345,6 +346,20 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def _as_written(study: StudyResult) -> dict[str, Any]:
+    """Return a study under the names that files have."""
+    plain = asdict(study)
+    for key in ("axes", "records"):
+        plain[key] = [{AS_WRITTEN.get(name, name): value for name, value in row.items()} for row in plain[key]]
+    return plain
+
+
+def _as_named(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Undo the names of a file."""
+    here = {written: name for name, written in AS_WRITTEN.items()}
+    return {here.get(name, name): value for name, value in data.items()}
+
+
 def _number(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
@@ -364,7 +379,7 @@ def _record(data: Mapping[str, Any]) -> Record:
         "costs": _figures(data["costs"]),
         "times": {name: _timing(timing) for name, timing in data["times"].items()},
     }
-    return Record(**{**data, **inner})
+    return Record(**{**_as_named(data), **inner})
 
 
 def _case(data: Mapping[str, Any]) -> CaseResult:
@@ -374,7 +389,7 @@ def _case(data: Mapping[str, Any]) -> CaseResult:
 
 def _study(data: Mapping[str, Any]) -> StudyResult:
     lists: dict[str, Any] = {
-        "axes": [Axes(**axes) for axes in data["axes"]],
+        "axes": [Axes(**_as_named(axes)) for axes in data["axes"]],
         "records": [_record(record) for record in data["records"]],
         "left_out": [LeftOut(**item) for item in data["left_out"]],
         "cases": [_case(item) for item in data.get("cases", [])],

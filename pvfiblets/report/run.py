@@ -53,7 +53,7 @@ def make_report(
     minutes : float, optional
         For measuring, shared among the studies. By default as long as it takes, or those of a quick report.
     seed : int
-        Of made-up data.
+        Of synthetic data.
     log : callable
         Takes lines of progress.
     clock : callable

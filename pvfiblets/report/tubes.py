@@ -50,7 +50,7 @@ def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Itera
                 drawn = CastTubes(ctx, tubes, solver)
                 try:
                     drawn.draw(lens)
-                    by[drawn.setting] = truth.errors(*drawn.shown(lens))["depth p99"]
+                    by[drawn.setting] = truth.errors(*drawn.visible(lens))["depth p99"]
                 finally:
                     drawn.release()
             by["right, stored as float32"] = truth.stored(FORMATS["float32"])
@@ -87,13 +87,13 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 drawn = make()
                 made.append(drawn)
                 drawn.draw(camera)
-                found = truth.errors(*drawn.shown(lens))
+                found = truth.errors(*drawn.visible(lens))
                 units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
                 record = Record(
                     data=name,
                     group="pictures",
                     approximation="a picture of tubes",
-                    way=drawn.way,
+                    method=drawn.method,
                     setting=drawn.setting,
                     errors={key: Figure(value, units[key]) for key, value in found.items()},
                     costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
@@ -110,7 +110,7 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             for drawn in made:
                 drawn.release()
         if late:
-            left_out.append(LeftOut(f"{name}: {late} further ways of drawing", LATE))
+            left_out.append(LeftOut(f"{name}: {late} further methods of drawing", LATE))
 
 
 def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -134,7 +134,7 @@ def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record
                     drawn = CastTubes(ctx, tubes, solver)
                     made.append(drawn)
                     drawn.draw(camera)
-                    shown, there = drawn.shown(lens)
+                    shown, there = drawn.visible(lens)
                     if truth is None:
                         rng = np.random.default_rng([options.seed, 1])
                         truth = Truth.of(tubes, lens, sampled(there.reshape(size[::-1]), count, rng))
@@ -167,7 +167,7 @@ def _set_record(data: str, drawn: CastTubes, truth: Truth, shown: Any, there: An
         data=data,
         group="sets",
         approximation="a picture of tubes",
-        way="ray cast",
+        method="ray cast",
         setting=drawn.setting,
         errors=errors,
         costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
@@ -194,7 +194,7 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             camera = replace(far, near=far.far / ratio)
             seen = replace(truth, lens=Lens.of(camera))
             drawn.draw(camera)
-            shown = seen.errors(*drawn.shown(seen.lens))["depth p99"]
+            shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
             errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")
             for kind, rounded in FORMATS.items():
                 errors[kind][name] = Figure(seen.stored(rounded), "radii")

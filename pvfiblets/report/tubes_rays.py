@@ -140,7 +140,7 @@ def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array
 
 
 def of_class(name: str, count: int, seed: int = 0) -> Rays:
-    """Return rays at made-up halves of one class, from all around."""
+    """Return rays at synthetic halves of one class, from all around."""
     radius, bend, change = CLASSES[name]
     rng = np.random.default_rng([seed, list(CLASSES).index(name)])
     return aimed(halves(count, rng, 1.0, radius, bend, change), rng)

@@ -27,7 +27,7 @@ SET_SIZE = (960, 540)  # of their pictures
 
 
 @dataclass(frozen=True)
-class Way:
+class Variant:
     """A solver, whether by the chain of derivatives, and how many iterations of one search it is given."""
 
     solver: str
@@ -46,7 +46,7 @@ class Way:
         return f"{self.iterations} iteration{'s' if self.iterations > 1 else ''}"
 
 
-def ways(quick: bool) -> list[Way]:
+def variants(quick: bool) -> list[Variant]:
     """Return all solvers, by loop and the paper's by chain, in a whole report all by both, by numbers of iterations."""
     from pvfiblets.engine.tubes import SOLVERS
 
@@ -57,7 +57,7 @@ def ways(quick: bool) -> list[Way]:
         for chain in (True,) if paper else (False,) if quick else (False, True):
             for n in sorted({*(QUICK_ITERATIONS if quick else ITERATIONS), about.iterations}):
                 own = n == about.iterations
-                found.append(Way(solver, chain, n, default=own and solver == default and not chain))
+                found.append(Variant(solver, chain, n, default=own and solver == default and not chain))
     return found
 
 
@@ -70,40 +70,40 @@ def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Rec
         data |= {f"rays at the set {name}": partial(_rays_of, name, count, options.seed) for name in SETS}
     clock, clock_name = clock_of(ctx)
     with _Probes(ctx, clock) as probes:
-        for way in ways(options.quick):
-            probes.made(way)
+        for variant in variants(options.quick):
+            probes.made(variant)
         options = replace(options, budget=options.budget.share())  # no measurement takes as long as compiling did
         for name, make in data.items():
             rays = make()
-            done: list[tuple[Way, Record, list[float]]] = []
+            done: list[tuple[Variant, Record, list[float]]] = []
             late: list[str] = []
-            for way in ways(options.quick):
+            for variant in variants(options.quick):
                 if not options.budget.allows():
-                    late.append(f"{way.name} {way.setting}")
+                    late.append(f"{variant.name} {variant.setting}")
                     continue
-                answer, _ = probes.hits(way, rays)
+                answer, _ = probes.hits(variant, rays)
                 record = Record(
                     data=name,
                     group="rays",
                     approximation="where a ray meets a tube",
-                    way=way.name,
-                    setting=way.setting,
+                    method=variant.name,
+                    setting=variant.setting,
                     errors=hit_errors(rays.errors(*answer)),
-                    ours=way.solver != "bisection",
-                    default=way.default,
+                    ours=variant.solver != "bisection",
+                    default=variant.default,
                     machine=options.machine,
                 )
-                done.append((way, record, []))
+                done.append((variant, record, []))
             for turn in range(options.repeats):
-                for way, _, seconds in done:
+                for variant, _, seconds in done:
                     if turn == 0 or options.budget.allows():  # each has a time at least
-                        seconds.append(probes.hits(way, rays)[1])
+                        seconds.append(probes.hits(variant, rays)[1])
             for _, record, seconds in done:
                 record.times["hit"] = timing(seconds, len(rays.controls), "ray", clock_name)
                 yield record
             if late:
                 left_out.append(LeftOut(f"{name}: {', '.join(late)}", LATE))
-            options.log(f"tubes: {name}: {len(done)} ways")
+            options.log(f"tubes: {name}: {len(done)} variants")
 
 
 def _rays_of(name: str, count: int, seed: int) -> Rays:
@@ -120,24 +120,24 @@ def hit_errors(found: dict[str, float]) -> dict[str, Figure]:
 
 
 def ray_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Yield records of errors by ratios that end where float32 does: our way and the paper's."""
-    chosen = [way for way in ways(True) if way.default or (way.solver == "bisection" and way.iterations == 20)]
+    """Yield records of errors by ratios that end where float32 does: ours and the paper's."""
+    chosen = [v for v in variants(True) if v.default or (v.solver == "bisection" and v.iterations == 20)]
     with _Probes(ctx, clock_of(ctx)[0]) as probes:
         for name, (about, ratios, make) in SWEEPS.items():
             shown = [ratio for ratio in ratios if ratio > 0.0]  # the axis is logarithmic
             if not options.budget.allows():
                 left_out.append(LeftOut(f"sweep of {about}", LATE))
                 continue
-            errors: dict[Way, dict[str, Figure]] = {way: {} for way in chosen}
+            errors: dict[Variant, dict[str, Figure]] = {variant: {} for variant in chosen}
             for ratio in shown[:: 3 if options.quick else 1]:
                 rays = make(ratio, QUICK_RAYS // 2, np.random.default_rng([options.seed, 3]))
-                for way in chosen:
-                    found = rays.errors(*probes.hits(way, rays)[0])
-                    errors[way][f"p99 at ratio {ratio:g}"] = Figure(found["p99"], "radii")
-            for way in chosen:
+                for variant in chosen:
+                    found = rays.errors(*probes.hits(variant, rays)[0])
+                    errors[variant][f"p99 at ratio {ratio:g}"] = Figure(found["p99"], "radii")
+            for variant in chosen:
                 yield Record(
-                    about, "stiff", f"rays by {name}", way.name, way.setting, errors[way], ours=way.default,
-                    machine=options.machine,
+                    about, "stiff", f"rays by {name}", variant.name, variant.setting, errors[variant],
+                    ours=variant.default, machine=options.machine,
                 )  # fmt: skip
 
 
@@ -152,18 +152,18 @@ class _Probes(AbstractContextManager["_Probes"]):
         for probe in self._made.values():
             probe.release()
 
-    def made(self, way: Way) -> Any:
-        """Return a way's solver, which is compiled when first asked for."""
+    def made(self, variant: Variant) -> Any:
+        """Return a variant's solver, which is compiled when first asked for."""
         from pvfiblets.engine.tubes.solver_probe import SolverProbe
 
-        key = way.solver, way.chain
+        key = variant.solver, variant.chain
         if key not in self._made:
-            self._made[key] = SolverProbe(self._ctx, way.solver, chain=way.chain, clock=self._clock)
-        self._made[key].limit(way.iterations)
+            self._made[key] = SolverProbe(self._ctx, variant.solver, chain=variant.chain, clock=self._clock)
+        self._made[key].limit(variant.iterations)
         return self._made[key]
 
-    def hits(self, way: Way, rays: Rays) -> tuple[Any, float]:
-        """Return a way's answer, and the seconds that it took."""
-        probe = self.made(way)
+    def hits(self, variant: Variant, rays: Rays) -> tuple[Any, float]:
+        """Return a variant's answer, and the seconds that it took."""
+        probe = self.made(variant)
         answer = probe.hits(rays.controls, rays.origins, rays.directions)
         return answer, probe.seconds

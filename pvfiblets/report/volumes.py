@@ -18,7 +18,7 @@ from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 from .volumes_integrators import LIGHT_SIZE, SIDE, formulae, integrators
 from .volumes_occlusion import RADIUS, openness
-from .volumes_pictures import Right, colours_of, places, right_of
+from .volumes_pictures import GroundTruth, colours_of, ground_truth_of, places
 from .volumes_scene import Look, circle, look_of
 from .volumes_timed import Timed, drawing, drawn
 
@@ -104,20 +104,20 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 left_out.append(LeftOut(name, LATE))
                 continue
             look = look_of(volume, mode)
-            right = right_of(volume, look, cameras, QUICK_PIXELS if options.quick else PIXELS, kind)
-            yield from _varied(ctx, renderer, look, right, name, kind, float(np.ptp(volume.value_range)),
+            exact = ground_truth_of(volume, look, cameras, QUICK_PIXELS if options.quick else PIXELS, kind)
+            yield from _varied(ctx, renderer, look, exact, name, kind, float(np.ptp(volume.value_range)),
                                float(volume.spacing.mean()), part, left_out)  # fmt: skip
     finally:
         renderer.release()
 
 
 def _varied(
-    ctx: Any, renderer: Any, look: Look, right: Right, name: str, kind: str, spread: float, spacing: float,
+    ctx: Any, renderer: Any, look: Look, exact: GroundTruth, name: str, kind: str, spread: float, spacing: float,
     options: Options, left_out: list[LeftOut],
 ) -> Iterator[Record]:  # fmt: skip
     from pvfiblets.engine.volumes import VolumeStyle
 
-    cameras = right.colours.cameras
+    cameras = exact.colours.cameras
     timed = Timed(ctx, options, name, "draw")
     plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
@@ -132,18 +132,18 @@ def _varied(
             shown.append(colours_of(buffer, look, camera))
             depths.append(np.frombuffer(buffer.depth.read(), np.uint32).reshape(camera.size[::-1]))
         plain = plain or shown
-        errors = {"colour rms": Figure(right.colours.error(shown), "of 1")}
+        errors = {"colour rms": Figure(exact.colours.error(shown), "of 1")}
         levels = np.rint(255.0 * np.abs(np.stack(shown) - np.stack(plain)).max(axis=-1))
         errors["unlike the default"] = Figure(100.0 * float((levels > DIFFERS).mean()), "%")
         if look.mode == "isosurface":
-            found = places(right, depths, spacing)
+            found = places(exact, depths, spacing)
             errors["place"] = Figure(found["position"], "voxels")
             errors |= {key: Figure(100.0 * found[key], "%") for key in ("missed", "false")}
         record = Record(
             data=name,
             group="pictures" if kind == "trilinear" else "filters",
             approximation="a picture of a volume",
-            way=varied,
+            method=varied,
             setting=how,
             errors=errors,
             ours=True,
@@ -167,7 +167,7 @@ class VolumeStudy:
     name = "volumes"
     title = "Ray-cast volumes"
     approximates = (
-        "Light along rays through a volume, added up step by step: ways of integration, steps, early ends, skipped "
+        "Light along rays through a volume, added up step by step: integrators, steps, early ends, skipped "
         "nodes, sparse rays; where surfaces lie; ambient occlusion by few rays."
     )
     axes = (

@@ -21,7 +21,7 @@ from .study import Options
 from .volumes_fields import DENSE, field, tables
 from .volumes_pictures import light_of
 from .volumes_scene import TOLERANCE, circle
-from .volumes_timed import Timed, drawing, drawn, some
+from .volumes_timed import Timed, drawing, drawn, sample
 
 __all__ = ["LIGHT_SIZE", "SIDE", "formulae", "integrators"]
 
@@ -70,7 +70,7 @@ def _integrated(
     from pvfiblets.engine.volumes import VolumeStyle
 
     through = reference.rays(camera.model_view_projection, camera.size, volume)
-    at = some(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
+    at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
     right = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
     timed = Timed(ctx, options, name, "draw")
     for step in QUICK_STEPS if options.quick else STEPS:
@@ -84,7 +84,7 @@ def _integrated(
                 data=name,
                 group=name.partition(",")[0].replace(" ", "-"),
                 approximation="light along a ray",
-                way=integrator,
+                method=integrator,
                 setting=f"step {step:g}",
                 errors={
                     "light rms": Figure(float(np.sqrt((off**2).mean())), "of 1"),
@@ -105,7 +105,7 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
         errors = {
             f"max at κΔ {density:g}": record.errors["light max"]
             for density, record in found
-            if (record.way, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
+            if (record.method, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
         }
         if errors:
             machine = found[0][1].machine
@@ -136,7 +136,7 @@ def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             data="bare formulae",
             group="stiff",
             approximation="light along a ray",
-            way=method,
+            method=method,
             setting="never unstable" if limit is None else f"unstable beyond κΔ {limit:.3g}",
             errors=errors,
             machine=options.machine,

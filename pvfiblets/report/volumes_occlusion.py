@@ -16,7 +16,7 @@ from .drawing import LATE
 from .record import Figure, LeftOut, Record
 from .study import Options
 from .volumes_openness import SETS, exact_openness, seen_from
-from .volumes_timed import Timed, some
+from .volumes_timed import Timed, sample
 
 __all__ = ["RADIUS", "openness"]
 
@@ -42,8 +42,8 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             timed = Timed(ctx, part, data, "occlusion")
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 for smooth in (False, True):
-                    way, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"
-                    if not timed.allows(f"{way}, {setting}"):
+                    method, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"
+                    if not timed.allows(f"{method}, {setting}"):
                         continue
                     bias = picture.openness(samples, smooth)[at[:, 0], at[:, 1]] - right
                     off = np.abs(bias)
@@ -51,7 +51,7 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                         data=data,
                         group="occlusion",
                         approximation="ambient occlusion",
-                        way=way,
+                        method=method,
                         setting=setting,
                         errors={
                             "openness rms": Figure(float(np.sqrt((off**2).mean())), "of 1"),
@@ -98,7 +98,7 @@ class _Picture:
         width, height = self._view.size
         shown = np.frombuffer(self._buffer.depth.read(), np.uint32).reshape(height, width) != EMPTY
         through = reference.rays(self._view.model_view_projection, self._view.size, self._volume)
-        at = some(shown, count)
+        at = sample(shown, count)
         at = at[np.isfinite(reference.isosurface(self._volume, self._value, through[at[:, 0], at[:, 1]]).t)]
         rays = through[at[:, 0], at[:, 1]]
         hits = reference.isosurface(self._volume, self._value, rays)

@@ -84,12 +84,12 @@ def exact_openness(
     right /= np.linalg.norm(right, axis=-1, keepdims=True)
     u, v = (side.ravel()[:, None] for side in np.meshgrid(*[(np.arange(n) + 0.5) / n] * 2))
     x, y = np.sqrt(u) * np.cos(2.0 * np.pi * v), np.sqrt(u) * np.sin(2.0 * np.pi * v)
-    ways = right[:, None] * x + np.cross(normals, right)[:, None] * y + normals[:, None] * np.sqrt(1.0 - u)
-    origins = np.broadcast_to(starts[:, None], ways.shape)
-    voxels, steps = origins @ turn.T + volume.inverse[:3, 3], ways @ turn.T
+    directions = right[:, None] * x + np.cross(normals, right)[:, None] * y + normals[:, None] * np.sqrt(1.0 - u)
+    origins = np.broadcast_to(starts[:, None], directions.shape)
+    voxels, steps = origins @ turn.T + volume.inverse[:3, 3], directions @ turn.T
     with np.errstate(divide="ignore"):
         ends = np.where(steps > 0.0, (np.array(volume.shape) - 1.0 - voxels) / steps, -voxels / steps)
     far = np.minimum(np.where(steps == 0.0, np.inf, ends).min(axis=-1), radius)
     gone = far <= 0.0
-    rays = reference.Rays(origins, ways, np.where(gone, np.nan, 0.0), np.where(gone, np.nan, far), through.matrix)
+    rays = reference.Rays(origins, directions, np.where(gone, np.nan, 0.0), np.where(gone, np.nan, far), through.matrix)
     return (reference.isosurface(volume, value, rays).value < 0).mean(axis=1)

@@ -13,7 +13,7 @@ from pvfiblets.volumes import RaycastVolume, reference
 from .cameras import Camera
 from .volumes_scene import Look, Truth, grey_of, lit, truth
 
-__all__ = ["Right", "along_of", "colours_of", "directions_of", "light_of", "places", "right_of"]
+__all__ = ["GroundTruth", "along_of", "colours_of", "directions_of", "ground_truth_of", "light_of", "places"]
 
 Array = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint32]
@@ -63,7 +63,7 @@ def light_of(gbuffer: Any) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Right:
+class GroundTruth:
     """What is right by one filter: colours, and of surfaces how far along their rays they are."""
 
     colours: Truth
@@ -71,7 +71,7 @@ class Right:
     along: list[Array] | None  # (n,) mm for each camera, NaN where there is no surface
 
 
-def right_of(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, filter: str) -> Right:  # noqa: A002
+def ground_truth_of(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, filter: str) -> GroundTruth:  # noqa: A002
     """Return what is right in so many pixels of each camera's picture."""
     colours = truth(volume, look, cameras, count, filter)
     rays = [
@@ -81,7 +81,7 @@ def right_of(volume: RaycastVolume, look: Look, cameras: list[Camera], count: in
     along = None
     if look.mode == "isosurface":
         along = [reference.isosurface(volume, look.value, through, filter=filter).t for through in rays]
-    return Right(colours, rays, along)
+    return GroundTruth(colours, rays, along)
 
 
 def along_of(keys: Words, rays: Any) -> Array:
@@ -93,7 +93,7 @@ def along_of(keys: Words, rays: Any) -> Array:
         return np.where(keys == EMPTY, np.nan, (depth * w - z) / (dz - depth * dw))
 
 
-def places(of: Right, depths: list[Words], spacing: float) -> dict[str, Any]:
+def places(of: GroundTruth, depths: list[Words], spacing: float) -> dict[str, Any]:
     """Return how far surfaces are off along their rays, in voxels.
 
     Returns

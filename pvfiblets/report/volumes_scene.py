@@ -19,7 +19,7 @@ from pvfiblets.volumes.options import RaycastOptions
 
 from .cameras import ELEVATION, VERTICAL_ANGLE, Camera
 
-__all__ = ["Look", "Truth", "circle", "grey_of", "lit", "look_of", "right", "truth"]
+__all__ = ["Look", "Truth", "circle", "grey_of", "ground_truth", "lit", "look_of", "truth"]
 
 GOLDEN = 360.0 * (1.0 - 2.0 / (1.0 + math.sqrt(5.0)))  # degrees: however few frames are drawn, they lie all around
 NEARER = 0.65  # of the distance from which all of the box is seen however it is turned
@@ -126,11 +126,11 @@ def truth(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, 
         chosen = rng.permutation(len(rows))[:count]
         at = np.stack([rows[chosen], columns[chosen]], axis=1)
         pixels.append(at)
-        colours.append(right(volume, look, through[at[:, 0], at[:, 1]], camera, filter))
+        colours.append(ground_truth(volume, look, through[at[:, 0], at[:, 1]], camera, filter))
     return Truth(cameras, pixels, colours)
 
 
-def right(volume: RaycastVolume, look: Look, through: Any, camera: Camera, filter: str = "trilinear") -> Array:  # noqa: A002
+def ground_truth(volume: RaycastVolume, look: Look, through: Any, camera: Camera, filter: str = "trilinear") -> Array:  # noqa: A002
     """Return ``(2, n, 3)`` colours of rays, by either lamp."""
     if look.mode == "composite":
         rgb = np.nan_to_num(reference.composite(volume, look.transfer, through, TOLERANCE, filter=filter)[..., :3])
@@ -139,7 +139,7 @@ def right(volume: RaycastVolume, look: Look, through: Any, camera: Camera, filte
         grey = grey_of(np.nan_to_num(reference.mip(volume, through, filter=filter).value, nan=look.clim[0]), look)
         return np.stack([grey, grey])
     met = reference.isosurface(volume, look.value, through, filter=filter)
-    return np.stack([lit(met.gradient, through.directions, way) for way in (camera.backwards, -through.directions)])
+    return np.stack([lit(met.gradient, through.directions, lamp) for lamp in (camera.backwards, -through.directions)])
 
 
 def grey_of(values: Array, look: Look) -> Array:

@@ -1,4 +1,4 @@
-"""How the study of volumes draws and times: ways of one data set take turns, for as long as there is time."""
+"""How the study of volumes draws and times: variants of one data set take turns, for as long as there is time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .drawing import LATE, turns_of
 from .record import FRAME, LeftOut, Record
 from .study import Options
 
-__all__ = ["Timed", "drawing", "drawn", "some"]
+__all__ = ["Timed", "drawing", "drawn", "sample"]
 
 
 class Timed:
@@ -34,7 +34,7 @@ class Timed:
         return False
 
     def add(self, record: Record, draw: Callable[[], object], frames: int) -> None:
-        """Take in a record, and what draws so many pictures of its way."""
+        """Take in a record, and what draws so many pictures of it."""
         self._done.append((record, self._turns.add(draw), frames))
 
     def finish(self, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -45,7 +45,7 @@ class Timed:
             yield record
         if self._late:
             left_out.append(LeftOut(f"{self._name}: {', '.join(self._late)}", LATE))
-        self._options.log(f"volumes: {self._name}: {len(self._done)} ways")
+        self._options.log(f"volumes: {self._name}: {len(self._done)} variants")
 
 
 def drawn(ctx: Any, renderer: Any, camera: Camera, style: Any) -> Any:
@@ -62,6 +62,6 @@ def drawing(ctx: Any, renderer: Any, style: Any) -> Callable[[Camera], object]:
     return lambda camera: drawn(ctx, renderer, camera, style)
 
 
-def some(mask: npt.NDArray[np.bool_], count: int) -> npt.NDArray[np.int64]:
+def sample(mask: npt.NDArray[np.bool_], count: int) -> npt.NDArray[np.int64]:
     """Return rows and columns, ``(n, 2)``, of so many pixels of a mask at most."""
     return np.random.default_rng(0).permutation(np.argwhere(mask))[:count]

@@ -44,7 +44,7 @@ def measured(_headless, request):
         left = []
         records = list(features.STUDY.run(little(), left))
     assert not left
-    return {(record.group, record.way, record.setting): record for record in records}
+    return {(record.group, record.method, record.setting): record for record in records}
 
 
 def more(found, *name):
@@ -104,7 +104,7 @@ def test_bytes_are_those_that_a_feature_asks_for(measured):
     assert more(measured, "lines-with-halos", "look", "thinner far away") == 0
 
 
-def test_features_are_no_rivals(measured):
+def test_no_feature_is_better_for_being_cheaper(measured):
     """None is better than another for being cheaper."""
     mark_fronts(measured.values(), features.STUDY.axes)
     assert not any(record.front for record in measured.values())
@@ -119,17 +119,17 @@ def test_whole_pictures_are_changed(gl, wanted):
     feature = next(item for item in subject.features if item.name == wanted.name)
     drawn = Drawn(gl, subject, feature, subject.path(2, (384, 256)))
     try:
-        shown = drawn.passes.shown()[..., :3].astype(int)
+        shown = drawn.passes.pixels()[..., :3].astype(int)
         plain = Drawn(gl, subject, replace(feature, passes=lambda ctx: WholePicture(ctx, PictureEffect("none"))),
                       subject.path(2, (384, 256)))  # fmt: skip
-        before = plain.passes.shown()[..., :3].astype(int)
+        before = plain.passes.pixels()[..., :3].astype(int)
         plain.release()
         assert (before != 255).any(axis=-1).sum() > 100
         assert (np.abs(shown - before).max(axis=-1) > 3).sum() > 50
         if wanted.focused and not wanted.tone.changes:
             assert np.abs(shown.mean(axis=(0, 1)) - before.mean(axis=(0, 1))).max() < 3.0  # light is spread, not lost
         drawn()
-        assert not np.array_equal(drawn.passes.shown()[..., :3], shown), "the camera has moved"
+        assert not np.array_equal(drawn.passes.pixels()[..., :3], shown), "the camera has moved"
     finally:
         drawn.release()
         drawn.release()

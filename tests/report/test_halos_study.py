@@ -32,7 +32,7 @@ def small(monkeypatch):
 
 
 def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
-    formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 1500, 3))
+    formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 1500, 3))
     left = []
     records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
     assert not left
@@ -44,7 +44,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
         assert record.value("times/draw") > 0.0
     for scene in ("brain, 0.5 mm", "some.tck"):
         found = {record.label: record for record in records if record.data == scene}
-        assert set(found) == {f"{way.name} ({way.setting})" for way in halos.ways(True, True)} | {
+        assert set(found) == {f"{variant.name} ({variant.setting})" for variant in halos.variants(True, True)} | {
             "black or white (64 samples)", "smooth edges (64 samples)",
         }  # fmt: skip
         assert [record.label for record in found.values() if record.default] == ["smooth edges (1 sample)"]
@@ -82,7 +82,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
 
 def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     for name in ("a", "b"):
-        formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 300, 0))
+        formats.write(tmp_path / f"{name}.tck", data.synthetic_tracking(0.5, False, 300, 0))
     left = []
     assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]

@@ -33,7 +33,7 @@ def no_context(options):
 
 @pytest.fixture
 def result(monkeypatch):
-    """The study over the made-up cases, where no context can be made."""
+    """The study over the synthetic cases, where no context can be made."""
 
     monkeypatch.setattr(study, "all_cases", some_cases)
     monkeypatch.setattr(study, "drawing_context", no_context)

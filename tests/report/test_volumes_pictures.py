@@ -52,7 +52,7 @@ def test_a_ball_is_a_disc_as_bright_as_it_faces_the_lamp():
     volume = ball(48)
     look, camera = volumes_scene.look_of(volume, "isosurface"), volumes_scene.circle(volume, 1, SIZE)[0]
     through = reference.rays(camera.model_view_projection, SIZE, volume)
-    axis, eye = volumes_scene.right(volume, look, through, camera)[..., 0]
+    axis, eye = volumes_scene.ground_truth(volume, look, through, camera)[..., 0]
     radius, distance = 1.0 - look.value, np.linalg.norm(camera.eye)
     # From the eye: cos of the angle at the sphere, by the sine rule.
     sine = np.linalg.norm(np.cross(through.directions, camera.backwards), axis=-1) * distance / radius
@@ -106,7 +106,7 @@ def test_what_is_missed_counts_as_a_voxel():
     keys = 0xFFFFFFFF - np.round((1.0 - rays.depth(shown)) * 2.0**32)
     depths[pixels[there, 0], pixels[there, 1]] = keys[there].astype(np.uint32)
     truth = SimpleNamespace(pixels=[pixels])
-    told = volumes_pictures.places(volumes_pictures.Right(truth, [rays], [wanted]), [depths], spacing)
+    told = volumes_pictures.places(volumes_pictures.GroundTruth(truth, [rays], [wanted]), [depths], spacing)
     assert told["position"] == pytest.approx((0.25 + 1.0 + 1.0) / 3.0, abs=1e-6)
     assert told["median"] == pytest.approx(0.25, abs=1e-6)
     assert (told["missed"], told["false"]) == (pytest.approx(2.0 / 3.0), 0.0)

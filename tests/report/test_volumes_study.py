@@ -40,20 +40,20 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     assert all(record.machine == "m" for record in records)
     assert all(timing.item == "frame" and timing.median > 0.0 for record in records for timing in record.times.values())
 
-    light = {(record.data, record.way): record for record in records if "light rms" in record.errors}
-    bare = {record.way: record.errors for record in records if record.data == "bare formulae"}
+    light = {(record.data, record.method): record for record in records if "light rms" in record.errors}
+    bare = {record.method: record.errors for record in records if record.data == "bare formulae"}
     assert bare["riemann"]["leaves 0 to 1"].value > 0.0 == bare["preintegrated"]["leaves 0 to 1"].value
     assert bare["preintegrated"]["max at κΔ 1000"].value < 0.1 < 1e3 < bare["riemann"]["max at κΔ 1000"].value
-    assert {way for _, way in light} == set(INTEGRATORS)
+    assert {method for _, method in light} == set(INTEGRATORS)
     for data in dict.fromkeys(data for data, _ in light):
         assert light[data, "adaptive"].default
         assert light[data, "adaptive"].errors["light max"].value < 0.01  # 8 bits of colours make up 0.003
     assert light["peaks, κΔ 1000", "riemann"].errors["light max"].value > 0.5  # an entry that a step passes over
-    stiff = {(record.data, record.way): record.errors for record in records if record.group == "stiff"}
+    stiff = {(record.data, record.method): record.errors for record in records if record.group == "stiff"}
     assert stiff["peaks", "riemann"]["max at κΔ 1000"] == light["peaks, κΔ 1000", "riemann"].errors["light max"]
 
     shown = {
-        (record.data, record.way, record.setting): record.errors for record in records if record.group == "pictures"
+        (record.data, record.method, record.setting): record.errors for record in records if record.group == "pictures"
     }
     of_step = {
         mode: [shown[f"24³ vessels, {mode}", "step", f"{step} voxels"]["colour rms"].value for step in (0.25, 1)]
@@ -67,10 +67,10 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     assert unlike["default"] == unlike["no octree"] == 0.0 < unlike["step"]
     assert shown["24³ vessels, composite", "no octree", ""]["colour rms"].value == pytest.approx(plain, rel=1e-6)
     surface = "24³ vessels, isosurface"
-    place = {way: shown[surface, way, how]["place"].value for way, how in (("default", ""), ("no refinement", ""))}
+    place = {method: shown[surface, method, ""]["place"].value for method in ("default", "no refinement")}
     assert place["default"] < place["no refinement"]
 
-    openness = {(record.data, record.way, record.setting): record.errors["openness rms"].value
+    openness = {(record.data, record.method, record.setting): record.errors["openness rms"].value
                 for record in records if record.group == "occlusion"}  # fmt: skip
     for name in ("vessels", "head"):
         few, many = (openness[f"32³ {name}, occlusion", "rays", f"{n} rays"] for n in (4, 256))
@@ -101,10 +101,10 @@ def test_settings_can_be_cast_and_are_told_apart(mode, quick):
     found = list(volumes.settings(mode, quick, 1.0))
     casts = [look.casting(**fields) for _, _, fields in found]
     assert casts[0] == look.casting()
-    assert len({(way, how) for way, how, _ in found}) == len(found)
+    assert len({(method, how) for method, how, _ in found}) == len(found)
     # The refinement's own default is among what it is compared with under another name.
     assert all(cast != casts[0] for cast in casts[1:])
-    assert {way for way, _, _ in volumes.settings(mode, True, 1.0)} <= {way for way, _, _ in found}
+    assert {method for method, _, _ in volumes.settings(mode, True, 1.0)} <= {method for method, _, _ in found}
 
 
 def test_fields_and_tables_are_what_they_are_called():

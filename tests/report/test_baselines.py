@@ -1,4 +1,4 @@
-"""What other ways of keeping streamlines decode to, against closed forms."""
+"""What other methods of keeping streamlines decode to, against closed forms."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pvfiblets.report.baselines import octahedral
 from pvfiblets.report.baselines.directions import PaperFiblets, QFib, widest_turn
 from pvfiblets.report.baselines.linearised import LinesPacked, linearised
 from pvfiblets.report.baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
-from pvfiblets.report.data import made_up
+from pvfiblets.report.data import synthetic_tracking
 from pvfiblets.report.measure import distances, median_step
 
 
@@ -73,7 +73,7 @@ def test_what_is_beyond_the_cap_goes_to_its_edge_at_its_azimuth():
 
 @pytest.mark.parametrize("noisy", [False, True])
 def test_directions_follow_constant_steps(noisy):
-    streamlines = made_up(0.2, noisy, 12_000, 3)
+    streamlines = synthetic_tracking(0.2, noisy, 12_000, 3)
     points, offsets = streamlines.points, streamlines.offsets
     found = {}
     for name, pack in {"8": QFib(8), "16": QFib(16), "paper": PaperFiblets()}.items():
