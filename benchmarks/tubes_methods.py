@@ -144,7 +144,7 @@ def _check(needed: float, options: Any) -> None:
 
 
 class _Window(Window):
-    """A PyVista window whose picture tells what it covers."""
+    """A PyVista window that knows what its picture covers."""
 
     def empty(self) -> None:
         """VTK has no way to leave out the fragments alone."""

@@ -62,7 +62,7 @@ class Method:
         return of.error(pictures, self.lamp)
 
     def facts(self) -> dict[str, Any]:
-        """Return what else there is to tell."""
+        """Return further figures."""
         return {}
 
     def bytes(self) -> int | None:
@@ -98,7 +98,7 @@ class Engine(Method):
         return colours_of(self.gbuffer, self.look, self.camera)
 
     def facts(self) -> dict[str, Any]:
-        """Return what the engine tells."""
+        """Return the engine's figures."""
         return octree_facts(self.renderer.explain(), self.volume)
 
     def bytes(self) -> int | None:
@@ -151,7 +151,7 @@ class Plotter(_Window):
         self.plotter.show(auto_close=False)
 
     def facts(self) -> dict[str, Any]:
-        """Return what the actor tells."""
+        """Return the actor's figures."""
         return octree_facts(self.actor.explain(), self.volume)
 
 
@@ -248,6 +248,6 @@ def transfer_to(prop: Any, look: Look) -> None:
 
 
 def octree_facts(report: dict[str, Any], volume: RaycastVolume) -> dict[str, Any]:
-    """Return what an engine tells of its octree and its passes."""
+    """Return an engine's figures of its octree and its passes."""
     nodes = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] in ("nodes", "means"))
     return {"skipped": report["skipped"], "octree_share": nodes / volume.nbytes, "passes": report["passes"]}

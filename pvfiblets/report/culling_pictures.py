@@ -119,16 +119,16 @@ def averaged(picture: Singles, times: int) -> Singles:
     return picture.reshape(height, times, width, times, 3).mean(axis=(1, 3))
 
 
-def difference(pictures: Sequence[Singles], right: Sequence[Singles]) -> Figure:
+def difference(pictures: Sequence[Singles], truth: Sequence[Singles]) -> Figure:
     """Return how far colours are apart, mean over the pixels in which either shows anything, in percent of white."""
     total, pixels = 0.0, 0
-    for one, other in zip(pictures, right, strict=True):
+    for one, other in zip(pictures, truth, strict=True):
         total += float(np.abs(one - other).mean(axis=2).sum(dtype=np.float64))
         pixels += int((one.any(axis=2) | other.any(axis=2)).sum())
     return Figure(100.0 * total / max(pixels, 1), "%")
 
 
-def errors(pictures: Sequence[Visible], right: Sequence[Visible]) -> dict[str, Figure]:
+def errors(pictures: Sequence[Visible], truth: Sequence[Visible]) -> dict[str, Figure]:
     """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline.
 
     Returns
@@ -138,7 +138,7 @@ def errors(pictures: Sequence[Visible], right: Sequence[Visible]) -> dict[str, F
         ``coverage`` counts only the latter two.
     """
     wrong = coverage = covered = 0
-    for one, other in zip(pictures, right, strict=True):
+    for one, other in zip(pictures, truth, strict=True):
         a, b = one.streamline, other.streamline
         wrong += int((a != b).sum())
         coverage += int(((a >= 0) != (b >= 0)).sum())

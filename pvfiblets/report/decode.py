@@ -28,7 +28,7 @@ FIBLETS = 2000
 QUICK_FIBLETS = 300
 REPEATS = 3  # times as many as other studies make: a call takes a millisecond
 BOX = 100.0  # mm: anchors are as far as this from the middle, as in a brain
-DRIFT_AT = (1, 2, 4, 8, 16, 32, 45, 59)  # points whose errors are told apart
+DRIFT_AT = (1, 2, 4, 8, 16, 32, 45, 59)  # points whose errors are given one by one
 
 ORDERS = {"sequential": decoders.SEQUENTIAL, "prefix": decoders.PREFIX}
 ALGEBRAS = {"quaternions": decoders.QUATERNION, "matrices": decoders.MATRIX}
@@ -124,13 +124,13 @@ class DecodeStudy:
         for group, step, cap in sets:
             name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
             fiblets = made(n, cap, step, options.seed)
-            right = exact(fiblets)
+            truth = exact(fiblets)
             turns, records = Turns(), []
             for combination in combinations():
                 if not options.budget.allows():
                     left_out.append(LeftOut(f"{name}: {', '.join(combination)}", "the time given was used up"))
                     continue
-                records.append(measured(fiblets, right, combination, turns))
+                records.append(measured(fiblets, truth, combination, turns))
             turns.run(REPEATS * options.repeats, options.budget.allows)
             for number, record in enumerate(records):
                 record.data, record.group, record.machine = name, group, options.machine
@@ -145,7 +145,7 @@ def combinations() -> list[tuple[str, str, str, str]]:
     return sorted(every, key=lambda variant: variant[2:] != ("quaternions", "table"))
 
 
-def measured(fiblets: Made, right: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
+def measured(fiblets: Made, truth: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
     """Decode by one variant; return a record of errors, and add the call to those that are timed."""
     order, number, algebra, source = combination
     dtype = NUMBERS[number]
@@ -153,14 +153,14 @@ def measured(fiblets: Made, right: Any, combination: tuple[str, str, str, str], 
     step = np.array([fiblets.step], dtype)
     scratch = tuple(np.zeros((decoders.ELEMENTS, width), dtype) for width in (4, 9, 3))
     tables = decoders.inputs(dtype)
-    out = np.empty(right.shape, dtype)
+    out = np.empty(truth.shape, dtype)
     how = (ORDERS[order], ALGEBRAS[algebra], SOURCES[source])
 
     def run() -> None:
         decoders.decode(*arrays, fiblets.codes, fiblets.cap, step, how, tables, scratch, out)
 
     run()
-    apart = np.sqrt(((out - right) ** 2).sum(axis=2)).astype(np.float64)
+    apart = np.sqrt(((out - truth) ** 2).sum(axis=2)).astype(np.float64)
     errors = error_figures(apart.ravel(), fiblets.step)
     for i in DRIFT_AT:
         errors[f"mean at point {i}"] = Figure(float(apart[:, i].mean()) / fiblets.step, "steps")

@@ -201,22 +201,22 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
 def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Hold pictures against finely sampled ones."""
     turns, done, late = turns_of(ctx), [], []
-    right: list[Singles] | None = None
+    truth: list[Singles] | None = None
     with ExitStack() as stack:
         others = variants(options.quick, scene.tractogram is not None)
         for variant in [Variant(HARD, REFERENCE), *others, Variant(SMOOTH, REFERENCE)]:
-            if not options.budget.allows() or (right is None and variant.times != REFERENCE):
+            if not options.budget.allows() or (truth is None and variant.times != REFERENCE):
                 late.append(f"{variant.name} ({variant.setting})")
                 continue
             try:
                 if variant.times == REFERENCE:
                     found, seconds, clock = _finely(ctx, scene, variant)
-                    right = right or found
+                    truth = truth or found
                     times = {"draw": timing([seconds], len(found), FRAME, clock)}
                     record = _record((scene.name, scene.group), variant, options, errors={}, times=times)
                 else:
                     found, record = _measured(ctx, scene, variant, turns, stack, options)
-                record.errors = _percent(differences(found, right or found))
+                record.errors = _percent(differences(found, truth or found))
                 done.append(record)
             except (EngineError, ValueError) as error:
                 left_out.append(LeftOut(f"{scene.name}: {variant.name} ({variant.setting})", str(error)))
@@ -273,14 +273,14 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
     for variant in (Variant(SMOOTH, 1), Variant(HARD, 1)):  # the reference of one stands for both
         chosen = variant.look(look)
         begun = time.process_time()
-        right = reference(drawn, chosen, camera.model_view_projection, size)
+        truth = reference(drawn, chosen, camera.model_view_projection, size)
         seconds = time.process_time() - begun
         strips, turns = Strips(ctx, drawn), turns_of(ctx)
         try:
             flight = Flight(ctx, strips, path, chosen)
             flight.pictures(strips.read)
             buffer = strips.render(camera, chosen)
-            errors = pixel_errors(buffer, strips.read(buffer), right, camera)
+            errors = pixel_errors(buffer, strips.read(buffer), truth, camera)
             turns.add(flight)
             turns.run(options.repeats, options.budget.allows)
         finally:

@@ -100,7 +100,7 @@ class Turns:
                 if not go_on():
                     return
                 if turn == 1 and inner > 1:
-                    seconds.clear()  # the first was too short to be told
+                    seconds.clear()  # the first was too short to be measured
                 seconds.append(self._once(function, inner))
 
     def timing(self, number: int, items: float, item: str = "point") -> Timing:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .record import FRAME, CaseResult, LeftOut, Record, Report, StudyResult, Timing
+from .record import FRAME, CaseResult, LeftOut, Record, StudyResult, Timing
+from .report_file import Report
 
 __all__ = ["page"]
 
@@ -106,7 +107,7 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
 
 
 def _left_out(items: Sequence[LeftOut]) -> list[str]:
-    """A table of what was left out and why; what many things have in common is told once, with them folded below."""
+    """A table of what was left out and why; what many things have in common is said once, with them folded below."""
     by_reason: dict[str, list[str]] = {}
     for item in items:
         by_reason.setdefault(item.reason, []).append(item.what)
@@ -224,7 +225,7 @@ def _unit(records: Sequence[Record], kind: str, name: str) -> str:
 
 
 def _ratio(timing: Timing, base: Timing) -> float:
-    """The figure of the column before, over the default's: of speeds, but of times where pictures are told by them."""
+    """The figure of the column before, over the default's: of speeds, but of times for pictures."""
     return base.rate / timing.rate if timing.item == FRAME else timing.rate / base.rate
 
 

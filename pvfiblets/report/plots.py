@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .dot_plot import in_rows
-from .record import Axes, Record, Report, StudyResult
+from .record import Axes, Record, StudyResult
+from .report_file import Report
 
 __all__ = ["draw"]
 
@@ -86,9 +87,9 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes, colours: dic
         colours = _assigned([m for m in methods if any(record.method == m for record in records)], COLOURS)
     markers = _assigned([s for s in settings if any(record.setting == s for record in records)], MARKERS)
     rows = -(-len(sets) // COLUMNS)
-    named = [[name for name in names if any(name == getattr(record, key) for record in records)]
-             for names, key in ((methods, "method"), (settings, "setting"))]  # fmt: skip
-    handles = _legend(*named, colours, markers, pair)
+    of_methods = [name for name in methods if any(record.method == name for record in records)]
+    of_settings = [name for name in settings if any(record.setting == name for record in records)]
+    handles = _legend(of_methods, of_settings, colours, markers, pair)
     columns = min(4, max(2, 2 * min(COLUMNS, len(sets))))
     below = 0.3 + 0.2 * -(-len(handles) // columns)  # inches for the legend
     height, width = 3.1 * rows + below + 1.0, 4.3 * min(COLUMNS, len(sets)) + 0.4

@@ -86,7 +86,7 @@ class Rays:
 
 
 def summary(error: Array, missed: Mask, false: Mask) -> dict[str, float]:
-    """Return what is told of errors over the radius, of rays some of which miss or meet what they should not."""
+    """Return the figures of errors over the radius, of rays some of which miss or meet what they should not."""
     flipped = missed | false
     middle, high, higher = np.quantile(error, (0.5, 0.99, 0.999)) if len(error) else (0.0, 0.0, 0.0)
     return {

@@ -37,12 +37,12 @@ class Variant:
 
     @property
     def name(self) -> str:
-        """As it is told."""
+        """As records name it."""
         return f"{self.solver}, {'chain' if self.chain else 'loop'}"
 
     @property
     def setting(self) -> str:
-        """As it is told."""
+        """As records name it."""
         return f"{self.iterations} iteration{'s' if self.iterations > 1 else ''}"
 
 

@@ -71,7 +71,7 @@ def _integrated(
 
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
-    right = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
+    truth = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
     timed = Timed(ctx, options, name, "draw")
     for step in QUICK_STEPS if options.quick else STEPS:
         for integrator in INTEGRATORS:
@@ -79,7 +79,7 @@ def _integrated(
                 continue
             casting = RaycastOptions("composite", transfer=transfer, integrator=integrator, step=step, stop=0.9999)
             style = VolumeStyle(casting=casting)
-            off = light_of(drawn(ctx, renderer, camera, style))[at[:, 0], at[:, 1]] - right
+            off = light_of(drawn(ctx, renderer, camera, style))[at[:, 0], at[:, 1]] - truth
             record = Record(
                 data=name,
                 group=name.partition(",")[0].replace(" ", "-"),

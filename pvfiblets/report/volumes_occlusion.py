@@ -38,14 +38,14 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             continue
         picture = _Picture(ctx, make(voxels), value, away, QUICK_SIZE if options.quick else SIZE)
         try:
-            at, right = picture.exact(QUICK_PIXELS if options.quick else PIXELS)
+            at, truth = picture.exact(QUICK_PIXELS if options.quick else PIXELS)
             timed = Timed(ctx, part, data, "occlusion")
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 for smooth in (False, True):
                     method, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"
                     if not timed.allows(f"{method}, {setting}"):
                         continue
-                    bias = picture.openness(samples, smooth)[at[:, 0], at[:, 1]] - right
+                    bias = picture.openness(samples, smooth)[at[:, 0], at[:, 1]] - truth
                     off = np.abs(bias)
                     record = Record(
                         data=data,
@@ -66,7 +66,7 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                     timed.add(record, picture.drawing(samples, smooth), 1)
             yield from timed.finish(left_out)
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
-                chance = Figure(float(np.sqrt(np.mean(right * (1.0 - right)) / samples)), "of 1")
+                chance = Figure(float(np.sqrt(np.mean(truth * (1.0 - truth)) / samples)), "of 1")
                 yield Record(
                     data, "occlusion", "ambient occlusion", "independent rays, by chance", f"{samples} rays",
                     {"openness rms": chance}, machine=options.machine,

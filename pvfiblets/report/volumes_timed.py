@@ -27,7 +27,7 @@ class Timed:
         self._budget = options.budget.share()  # the reference is no measurement
 
     def allows(self, label: str) -> bool:
-        """Say whether there is time for one more; if not, it will be told."""
+        """Say whether there is time for one more; if not, it is left out and named."""
         if self._budget.allows():
             return True
         self._late.append(label)

@@ -70,23 +70,23 @@ def test_resident_memory_stays_after_the_first_rounds(walked):
 
 
 def test_the_same_seed_does_the_same(bench):
-    told = []
+    log = []
     for _ in range(2):
         soak = bench.soak.Soak(5, 64)
         soak.round(4)
-        told.append(soak.told)
-    assert told[0] == told[1]
-    assert len(told[0]) > 4
+        log.append(soak.log)
+    assert log[0] == log[1]
+    assert len(log[0]) > 4
 
 
-def test_a_failing_act_is_told_with_those_before_it(bench, monkeypatch):
+def test_a_failing_act_is_reported_with_those_before_it(bench, monkeypatch):
     soak = bench.soak.Soak(5, 64)
     soak.open()
 
     def broken(*_):
         raise RuntimeError("no such thing")
 
-    soak.told.append("1: something before")
+    soak.log.append("1: something before")
     monkeypatch.setattr(soak, "_kinds", [broken] * len(soak._kinds))
     with pytest.raises(bench.soak.SoakError, match=r"(?s)frame 1 of seed 5: RuntimeError: no such thing.*something be"):
         soak.frame()

@@ -107,7 +107,7 @@ def test_gaps_of_a_perfect_picture_are_the_formula():
     half_line = 4.0
     fine = (np.arange(width * 50) + 0.5) / 50
     shown = np.zeros((height, width), np.float32)
-    for row, right in zip(made.rows, made.right, strict=True):
+    for row, right in zip(made.rows, made.truth, strict=True):
         away = np.abs(fine[:, None] - made.columns).min(axis=1)
         black = (away < half_line) | (away > half_line + right)
         shown[int(row) - 4 : int(row) + 4] = black.reshape(width, 50).mean(axis=1)
@@ -117,14 +117,14 @@ def test_gaps_of_a_perfect_picture_are_the_formula():
     assert {figure.unit for figure in found.values()} == {"px"}
     # All black has no gaps: it is off by the mean of all widths.
     nothing = gaps(np.ones((height, width), np.float32), made)
-    assert nothing["gap"].value == pytest.approx(made.right.mean())
-    assert nothing["gap max"].value == pytest.approx(made.right.max())
+    assert nothing["gap"].value == pytest.approx(made.truth.mean())
+    assert nothing["gap max"].value == pytest.approx(made.truth.max())
 
 
 def test_gaps_near_the_formula_with_the_number_of_samples(gl):
     made = crossings()
-    assert made.right[0] == 0.0
-    assert made.right[-1] == 12.0  # half of the strip's 32 pixels less the line's 8
+    assert made.truth[0] == 0.0
+    assert made.truth[-1] == 12.0  # half of the strip's 32 pixels less the line's 8
     found = []
     for times in (1, 2, 4):
         strips = Strips(gl, made.lines, times)

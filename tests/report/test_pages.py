@@ -14,7 +14,8 @@ from pvfiblets.report import plots, studies
 from pvfiblets.report.dot_plot import in_rows
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
-from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
+from pvfiblets.report.report_file import Report
 
 ABOUT = {
     "name": "m", "processor": "Some CPU", "cores": 2, "system": "Linux", "python": "3.11", "driver": "none",

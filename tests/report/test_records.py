@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from pvfiblets.errors import FormatError
 from pvfiblets.report.front import mark_fronts, pareto
 from pvfiblets.report.measure import Turns, distances, error_figures, median_step
-from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
+from pvfiblets.report.report_file import Report
 
 
 def a_record(method="a", data="d", size=1.0, error=0.5, **rest):

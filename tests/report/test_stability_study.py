@@ -8,7 +8,8 @@ import math
 import pytest
 
 from pvfiblets.report.page import page
-from pvfiblets.report.record import FORMAT, Report, StudyResult
+from pvfiblets.report.record import StudyResult
+from pvfiblets.report.report_file import FORMAT, Report
 from pvfiblets.report.run import one_study
 from pvfiblets.report.stability import study
 from pvfiblets.report.stability.case import Case, Cases, Outcome, Setting, refused, worst

@@ -1,4 +1,4 @@
-"""Decoding and what is told of fiblets without it: the same numbers by every way, and every point in its capsule."""
+"""Decoding, and what is known without it: the same numbers by every method, and every point in its capsule."""
 
 from __future__ import annotations
 
