@@ -12,7 +12,8 @@ import numpy as np
 from pvfiblets.engine.errors import EngineError
 
 from .drawing import LATE, drawing_context, turns_of
-from .features_scenes import PLAIN, Drawn, Subject, brain_subject, halo_subject, tube_subject, volume_subject
+from .features_scenes import PLAIN, Drawn, Subject
+from .features_subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .features_window import in_window
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from .drawing import LATE, clock_of, timing
-from .features_scenes import PLAIN, torus
+from .features_scenes import PLAIN
+from .features_subjects import torus
 from .record import FRAME, Figure, LeftOut, Record
 from .study import Options
 
