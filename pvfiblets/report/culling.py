@@ -95,7 +95,7 @@ class Scene:
 
 
 class _Basis:
-    """What pictures are held against; each is drawn once.
+    """What pictures are compared with; each is drawn once.
 
     Parameters
     ----------

@@ -199,7 +199,7 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
 
 
 def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold pictures against finely sampled ones."""
+    """Compare pictures with finely sampled ones."""
     turns, done, late = turns_of(ctx), [], []
     truth: list[Singles] | None = None
     with ExitStack() as stack:
@@ -260,7 +260,7 @@ def _measured(
 
 
 def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold pictures of one sample a pixel against the float64 reference."""
+    """Compare pictures of one sample a pixel with the float64 reference."""
     from pvfiblets.halos.reference import picture as reference
 
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
@@ -300,7 +300,7 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
 
 
 def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold the gaps at crossings against the paper's formula."""
+    """Compare the gaps at crossings with the paper's formula."""
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.
     aside = replace(made, model_view_projection=_moved(made, 1e-3))

@@ -39,7 +39,7 @@ def kinds(gbuffer: Any) -> tuple[npt.NDArray[np.int64], Floats]:
 
 
 def pixel_errors(gbuffer: Any, darkness: Singles, truth: Picture, camera: Camera) -> dict[str, Figure]:
-    """Hold a picture of one sample a pixel against the reference's.
+    """Compare a picture of one sample a pixel with the reference's.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def crossings() -> Crossings:
 
 
 def gaps(darkness: Singles, made: Crossings) -> dict[str, Figure]:
-    """Measure gaps on either side of lines in front, and hold them against appendix A.
+    """Measure gaps on either side of lines in front, and compare them with appendix A.
 
     What is white along a line behind, from half way to the next crossing, is the gap on both sides.
 

@@ -31,7 +31,6 @@ SAMPLE, QUICK_SAMPLE = 1000, 200  # pixels of these that are compared with float
 SEGMENTS = 20_000  # of a set that are compared with their cubics
 
 
-
 # ----------------------------------------------------------------------------------------------------------- the parts
 
 

@@ -28,7 +28,7 @@ def small(monkeypatch):
     monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
-def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
+def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 2000, 0))
     left = []
     records = list(culling.STUDY.run(little(files=(tmp_path,)), left))

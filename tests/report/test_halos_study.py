@@ -31,7 +31,7 @@ def small(monkeypatch):
     monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
-def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
+def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 1500, 3))
     left = []
     records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
@@ -49,7 +49,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
         }  # fmt: skip
         assert [record.label for record in found.values() if record.default] == ["smooth edges (1 sample)"]
         mean = {label: record.errors["mean"].value for label, record in found.items()}
-        # The picture that all are held against is off by nothing, and more samples are nearer to it.
+        # The picture that all are compared with is off by nothing, and more samples are nearer to it.
         assert {figure.value for figure in found["black or white (64 samples)"].errors.values()} == {0.0}
         assert mean["black or white (1 sample)"] > 2.0 * mean["black or white (4 samples)"] > 0.0
         assert mean["smooth edges (1 sample)"] < mean["black or white (1 sample)"]

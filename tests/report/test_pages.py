@@ -195,7 +195,7 @@ def test_rows_show_each_figure_from_the_plain_one_on():
     assert (times.get_xlabel(), memory.get_xlabel()) == ("ms per frame", "memory, MB")
 
 
-def test_no_two_ways_of_a_picture_have_one_colour_and_its_titles_fit():
+def test_no_two_methods_of_a_picture_have_one_colour_and_its_titles_fit():
     """However many methods other pictures of the study show, and however long the name of a file is."""
     name = "a_name_of_a_file_that_somebody_thought_about_for_long.trk.gz, 3,379 of 20,505 streamlines"
     records = [

@@ -156,7 +156,7 @@ EVERY = [(order, algebra, source) for order in (0, 1) for algebra in (0, 1) for 
 
 
 @pytest.mark.parametrize("cap", [0, 7, 15])
-def test_all_ways_of_decoding_mean_the_same(cap):
+def test_all_variants_of_decoding_mean_the_same(cap):
     made = decode.made(20, cap, 0.2, 0)
     right = decode.exact(made)
     for how in EVERY:
@@ -193,7 +193,7 @@ def test_straight_codes_give_a_straight_line():
     np.testing.assert_allclose(apart[:, 59], 59 * apart[:, 1], rtol=1e-9, atol=1e-12)
 
 
-def test_the_study_of_decoding_measures_all_ways(monkeypatch):
+def test_the_study_of_decoding_measures_all_variants(monkeypatch):
     monkeypatch.setattr(decode, "QUICK_FIBLETS", 10)
     left = []
     records = list(decode.STUDY.run(little(), left))

@@ -28,7 +28,7 @@ def small(monkeypatch):
     monkeypatch.setattr(tubes, "TUBES", 2)
 
 
-def test_all_parts_are_measured_and_the_exact_ways_are_exact(gl, small):
+def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     left = []
     options = little()
     records = list(tubes.STUDY.run(options, left))
