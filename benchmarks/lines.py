@@ -1,7 +1,7 @@
 """Frames per second, memory and load time of lines: VTK's poly-lines, VTK's tubes, and fiblets.
 
 The camera orbits by 1.14 degrees a frame around a whole-brain-like tractogram at 1920x1080. Every
-way of drawing runs in a process of its own, so that memory is its own too and none warms another
+method of drawing runs in a process of its own, so that memory is its own too and none warms another
 one up. Reported is the median of the frames after the warm-up. Lines are one pixel wide, lit and
 coloured by orientation. A plotter's default is to multi-sample: that smooths VTK's lines, and costs
 them time, but not fiblets. So poly-lines are also drawn without it (``polylines-aliased``), which
@@ -9,7 +9,7 @@ gives the same picture as fiblets::
 
     python benchmarks/lines.py --segments 1e5 1e6 6e6 --output lines.json
 
-writes ``lines.json`` and ``lines.png``. A way is left out above the size given for it by
+writes ``lines.json`` and ``lines.png``. A method is left out above the size given for it by
 ``--limit``, where a frame would take minutes.
 """
 
@@ -17,31 +17,29 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
+from common import DEGREES_PER_FRAME, data_bytes, finish, machine, passed_on, percentiles, pyplot, run_child
 
-WAYS = ("polylines", "polylines-aliased", "tubes", "fiblets")
-DEGREES_PER_FRAME = 1.14
+METHODS = ("polylines", "polylines-aliased", "tubes", "fiblets")
 SIZE = (1920, 1080)
 STEP = 0.5
 
 
 def main() -> None:
-    """Run every way at every size, one process each."""
+    """Run every method at every size, one process each."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--segments", type=float, nargs="+", default=[1e5, 3e5, 1e6, 3e6, 6e6, 1e7])
-    parser.add_argument("--ways", nargs="+", choices=WAYS, default=list(WAYS))
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     parser.add_argument("--frames", type=int, default=15, help="frames that count")
     parser.add_argument("--seconds", type=float, default=60.0, help="of drawing per run at most, once 3 frames count")
     parser.add_argument("--limit", type=float, default=1e6, help="most segments for tubes")
     parser.add_argument("--output", type=Path, default=Path("lines.json"))
-    parser.add_argument("--run", nargs=2, metavar=("WAY", "FILE"), help=argparse.SUPPRESS)
+    parser.add_argument("--run", nargs=2, metavar=("METHOD", "FILE"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.run:
         print(json.dumps(measure(*options.run, options.frames, options.seconds)))
@@ -51,15 +49,14 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for segments in options.segments:
             path, exact = make_file(Path(folder), int(segments))
-            for way in options.ways:
-                if way == "tubes" and segments > options.limit:
+            for method in options.methods:
+                if method == "tubes" and segments > options.limit:
                     continue
-                command = [sys.executable, __file__, "--run", way, str(path)]
-                command += ["--frames", str(options.frames), "--seconds", str(options.seconds)]
-                done = subprocess.run(command, capture_output=True, text=True, check=False)
-                if done.returncode != 0:
-                    sys.exit(f"{way} at {exact} segments failed:\n{done.stderr}")
-                results.append({"way": way, "segments": exact, **json.loads(done.stdout.splitlines()[-1])})
+                more = passed_on(options, ("frames", "seconds"))
+                found, reason = run_child(__file__, ["--run", method, path, *more], float("inf"))
+                if not found:
+                    sys.exit(f"{method} at {exact} segments {reason}")
+                results.append({"method": method, "segments": exact, **found[-1]})
                 print(row(results[-1]), flush=True)
             path.unlink()
     about = {"machine": machine(), "size": SIZE, "degrees_per_frame": DEGREES_PER_FRAME, "step_mm": STEP}
@@ -83,21 +80,19 @@ def make_file(folder: Path, segments: int) -> tuple[Path, int]:
     return path, brain.n_points - len(brain)
 
 
-def measure(way: str, path: str, frames: int, seconds: float) -> dict:
-    """Load one file in one way, orbit, and return the numbers."""
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+def measure(method: str, path: str, frames: int, seconds: float) -> dict:
+    """Load one file in one method, orbit, and return the numbers."""
     import pyvista as pv
 
     from pvfiblets import formats
 
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     plotter.set_background("black")
-    if way == "polylines-aliased":
+    if method == "polylines-aliased":
         plotter.disable_anti_aliasing()
     begin = time.perf_counter()
     compress_seconds = None
-    if way == "fiblets":
+    if method == "fiblets":
         from pvfiblets.codec.compress import compress
         from pvfiblets.synthetic import brain_streamlines
 
@@ -114,7 +109,7 @@ def measure(way: str, path: str, frames: int, seconds: float) -> dict:
         lines = pv.wrap(formats.read(path).to_polydata())
         n_points = lines.n_points
         lines["orientation"] = orientation(lines)
-        if way == "tubes":
+        if method == "tubes":
             lines = lines.tube(radius=0.25 * STEP, n_sides=6)
         actor = plotter.add_mesh(lines, scalars="orientation", rgb=True, render=False)
         gpu = vertex_bytes(lines)
@@ -124,17 +119,14 @@ def measure(way: str, path: str, frames: int, seconds: float) -> dict:
     load = time.perf_counter() - begin
     times = orbit(plotter, frames, seconds)
     if gpu is None:
-        report = actor.explain()
-        fixed = ("gbuffer", "occlusion", "framebuffer")  # the picture's own, whatever is drawn
-        gpu = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in fixed)
+        gpu = data_bytes(actor.explain())
     picture = plotter.screenshot(None)
     plotter.close()
     median = float(np.median(times))
     segments = n_points - int(count_lines(path))
     return {
         "points": n_points,
-        "ms_per_frame": 1e3 * median,
-        "ms_spread": [1e3 * float(np.percentile(times, q)) for q in (10, 90)],
+        **percentiles(times, "ms_per_frame"),
         "frames": len(times),
         "segments_per_second": segments / median,
         "gpu_bytes": gpu,
@@ -171,12 +163,6 @@ def orbit(plotter, frames: int, seconds: float) -> list[float]:
     return times
 
 
-def finish(plotter) -> None:
-    """Wait until the picture is really there: reading one pixel needs all of it."""
-    plotter.render_window.WaitForCompletion()
-    plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)
-
-
 def orientation(lines) -> np.ndarray:
     """Return |tangent| as RGB per point, what fiblets are coloured by."""
     tangent = np.abs(np.gradient(lines.points, axis=0))
@@ -209,32 +195,10 @@ def count_lines(path: str) -> int:
     return sum(len(chunk) for chunk in formats.iter_chunks(path))
 
 
-def machine() -> dict:
-    """Return what the numbers hold for."""
-    import platform
-
-    import moderngl
-    import vtk
-
-    try:
-        context = moderngl.create_standalone_context(backend="egl")
-    except Exception:  # noqa: BLE001 - no EGL on this system: its own default way
-        context = moderngl.create_standalone_context()
-    with context:
-        gl = {key: context.info[key] for key in ("GL_RENDERER", "GL_VERSION")}
-    context.release()
-    return {
-        **gl,
-        "cpus": os.cpu_count(),
-        "system": f"{platform.system()} {platform.machine()}",
-        "vtk": vtk.vtkVersion().GetVTKVersion(),
-    }
-
-
 def row(result: dict) -> str:
     """Return one line of the table."""
     return (
-        f"{result['way']:<18} {result['segments']:>12,} segments {result['ms_per_frame']:>10.1f} ms/frame "
+        f"{result['method']:<18} {result['segments']:>12,} segments {result['ms_per_frame']:>10.1f} ms/frame "
         f"{result['segments_per_second'] / 1e6:>8.2f} M/s {result['gpu_bytes_per_point']:>7.2f} B/point on the GPU "
         f"{result['peak_memory_bytes'] / 1e6:>7.0f} MB peak {result['load_seconds']:>6.1f} s to load"
     )
@@ -244,7 +208,7 @@ def compare(results: list[dict]) -> list[str]:
     """Say how fiblets fare against VTK's poly-lines at each size."""
     lines = []
     for segments in sorted({result["segments"] for result in results}):
-        at = {result["way"]: result["segments_per_second"] for result in results if result["segments"] == segments}
+        at = {result["method"]: result["segments_per_second"] for result in results if result["segments"] == segments}
         lines += [
             f"{segments:>12,} segments: fiblets are {at['fiblets'] / at[other]:.1f} times as fast as {other}"
             for other in ("polylines", "polylines-aliased")
@@ -255,11 +219,7 @@ def compare(results: list[dict]) -> list[str]:
 
 def plot(results: list[dict], path: Path) -> None:
     """Draw speed, GPU memory, peak memory and load time over the number of segments."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
+    plt = pyplot()
     panels = (
         ("ms_per_frame", "ms per frame", 1.0),
         ("segments_per_second", "million segments per second", 1e6),
@@ -269,11 +229,11 @@ def plot(results: list[dict], path: Path) -> None:
     )
     figure, axes = plt.subplots(1, len(panels), figsize=(4 * len(panels), 3.6), layout="constrained")
     for axis, (key, label, unit) in zip(axes, panels, strict=True):
-        for way in WAYS:
-            chosen = [result for result in results if result["way"] == way]
+        for method in METHODS:
+            chosen = [result for result in results if result["method"] == method]
             if chosen:
                 x, y = [r["segments"] for r in chosen], [r[key] / unit for r in chosen]
-                axis.loglog(x, y, "o-", label=way)
+                axis.loglog(x, y, "o-", label=method)
         axis.set_xlabel("segments")
         axis.set_ylabel(label)
         axis.grid(True, which="both", alpha=0.2)

@@ -54,7 +54,7 @@ def nibabel_load(path: Path) -> Any:
         return nibabel.streamlines.load(path).streamlines
 
 
-def taken(read: Callable[[Path], Any], path: Path) -> float:
+def seconds_of(read: Callable[[Path], Any], path: Path) -> float:
     """Return the seconds that one reading takes, its result freed outside of the clock."""
     start = time.perf_counter()
     result = read(path)
@@ -85,7 +85,7 @@ def measure(tck: Path, folder: Path, repeat: int) -> list[dict[str, Any]]:
         times: dict[str, list[float]] = {name: [] for name in readers}
         for _ in range(repeat):
             for name, read in readers.items():
-                times[name].append(taken(read, path))
+                times[name].append(seconds_of(read, path))
         medians = {name: statistics.median(t) for name, t in times.items()}
         for name, t in times.items():
             row = {

@@ -18,9 +18,21 @@ import time
 from pathlib import Path
 
 import numpy as np
-from orbit import DEGREES_PER_FRAME, add_places, card_slug, context, machine, make_brain, segments_of, view, write
+from common import (
+    DEGREES_PER_FRAME,
+    add_places,
+    data_bytes,
+    machine,
+    make_brain,
+    on_machine,
+    pyplot,
+    segments_of,
+    write,
+)
 
-PICTURE = ("gbuffer", "occlusion", "framebuffer")  # grow with the picture, not with the data
+from pvfiblets.engine.standalone import bare_context
+from pvfiblets.report.culling_pictures import views
+
 CULLINGS = ("none", "coverage", "two-phase")
 
 
@@ -37,7 +49,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=30.0, help="of drawing per cell at most, once 3 frames count")
     add_places(parser)
     options = parser.parse_args()
-    ctx = context()
+    ctx = bare_context()
     with tempfile.TemporaryDirectory() as temporary:
         results = measure_all(ctx, options, options.folder or Path(temporary))
     about = {
@@ -47,7 +59,7 @@ def main() -> None:
         "order": options.order,
         "degrees_per_frame": DEGREES_PER_FRAME,
     }
-    write(options.output / f"pipelines-{card_slug(ctx)}", about, results, table(about, results), plot)
+    write("pipelines", about, results, table(about, results), plot, options.output)
 
 
 def measure_all(ctx, options, folder: Path) -> list[dict]:
@@ -89,9 +101,10 @@ def measure(ctx, fiblets, pipeline: str, culling: str, options) -> dict:
     wall, passes = [], []
     try:
         began = time.perf_counter()
-        for frame in range(options.frames + 2):
+        path = views(fiblets.bounds, "far", DEGREES_PER_FRAME, options.frames + 2, tuple(options.size))
+        for frame, view in enumerate(path):
             start = time.perf_counter()
-            renderer.render(view(fiblets, frame * DEGREES_PER_FRAME, tuple(options.size)))
+            renderer.render(view)
             ctx.finish()
             if frame >= 2:  # the first compiles and sees nothing drawn before; the second still looks at the first
                 wall.append(time.perf_counter() - start)
@@ -102,7 +115,6 @@ def measure(ctx, fiblets, pipeline: str, culling: str, options) -> dict:
     finally:
         renderer.release()
     names = list(passes[-1])
-    gpu_bytes = sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE)
     return {
         "ms": 1e3 * float(np.mean(wall)),
         "ms_median": 1e3 * float(np.median(wall)),
@@ -111,7 +123,7 @@ def measure(ctx, fiblets, pipeline: str, culling: str, options) -> dict:
         "frames": len(wall),
         "segments_per_second": segments_of(fiblets) / float(np.mean(wall)),
         "fiblets": report.get("fiblets", report["fiblets_total"]),
-        "gpu_bytes_per_point": gpu_bytes / fiblets.n_points,
+        "gpu_bytes_per_point": data_bytes(report) / fiblets.n_points,
         "upload_seconds": upload,
     }
 
@@ -124,8 +136,8 @@ def table(about: dict, results: list[dict]) -> str:
     lines = [
         f"# Pipelines on {about['card']}",
         "",
-        f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}. Milliseconds per frame, "
-        f"mean of an orbit by {about['degrees_per_frame']}° a frame around made-up brains of "
+        f"{on_machine(about)}. Milliseconds per frame, "
+        f"mean of an orbit by {about['degrees_per_frame']}° a frame around synthetic brains of "
         f"{about['step_mm']:g} mm steps, "
         f"{width}×{height}; in brackets the GPU's own time where it differs. *unmeasured*: this card does not have "
         "what the pipeline needs.",
@@ -154,11 +166,7 @@ def cell(row: dict | None) -> str:
 
 def plot(about: dict, results: list[dict], path: Path) -> None:
     """Draw time per frame over size, a line for each pipeline and culling."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
+    plt = pyplot()
     figure, axis = plt.subplots(figsize=(8, 5), layout="constrained")
     styles = {"none": ":", "coverage": "--", "two-phase": "-"}
     measured = [row for row in results if "ms" in row]

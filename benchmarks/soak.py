@@ -6,7 +6,7 @@ Every round opens a plotter, does one to three random acts before each frame (``
 styles, cuts, filters, selections, picking, widgets, VTK's passes, picture effects, resizing, second windows), and ends
 by removing everything. Then OpenGL is asked what is still there, by the names of its objects and their bytes, and once
 the windows are closed the process is asked for its memory. What is left must be what was there before, and the memory
-after the first rounds must not rise. An error is told with the acts that led to it; the same seed repeats them.
+after the first rounds must not rise. An error is reported with the acts that led to it; the same seed repeats them.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import gpu_memory
 import moderngl
 import numpy as np
 import pyvista as pv
-import volume_memory
 from soak_acts import WEIGHTS, Data
 
 from pvfiblets.engine.gl_loader import loader
@@ -36,8 +36,8 @@ OURS = (moderngl.Buffer, moderngl.ComputeShader, moderngl.Framebuffer, moderngl.
         moderngl.Renderbuffer, moderngl.Sampler, moderngl.Texture, moderngl.Texture3D, moderngl.TextureArray,
         moderngl.VertexArray)  # fmt: skip
 
-TOLD = 40
-"""Acts told of those that led to an error."""
+REPORTED = 40
+"""Acts reported of those that led to an error."""
 
 KINDS = ("Texture", "Buffer", "Framebuffer", "Renderbuffer", "VertexArray", "Query", "Sampler", "Program")
 
@@ -93,7 +93,7 @@ class Soak:
     ----------
     windows : list of Window
         One or two.
-    told : list of str
+    log : list of str
         What was done, frame by frame.
     acts : collections.Counter
         How often each act was.
@@ -108,7 +108,7 @@ class Soak:
         gc.collect()
         self._others = alive(), sum(unreleased().values())  # of whatever else this process has drawn
         self.windows: list[Window] = []
-        self.told: list[str] = []
+        self.log: list[str] = []
         self.acts: Counter[str] = Counter()
         self.refused: Counter[str] = Counter()
         self.frames = 0
@@ -144,7 +144,7 @@ class Soak:
         Raises
         ------
         SoakError
-            If anything but a refusal is raised, or OpenGL tells of an error.
+            If anything but a refusal is raised, or OpenGL reports an error.
         """
         self.frames += 1
         for _ in range(int(self._rng.integers(1, 4))):
@@ -167,15 +167,15 @@ class Soak:
             self.refused[f"{name}: {error}"] += 1
             done = f"{name}, refused: {error}"
         except Exception as error:
-            self.told.append(f"{self.frames}: {name} failed")
+            self.log.append(f"{self.frames}: {name} failed")
             raise self._failed(f"{type(error).__name__}: {error}") from error
         if not name.startswith("draw") and done is not None:
-            self.told.append(f"{self.frames}: {done}")
+            self.log.append(f"{self.frames}: {done}")
             self.acts[name] += 1
         return done
 
     def _failed(self, what: str) -> SoakError:
-        acts = "\n  ".join(self.told[-TOLD:])
+        acts = "\n  ".join(self.log[-REPORTED:])
         return SoakError(f"frame {self.frames} of seed {self.seed}: {what}; after\n  {acts}")
 
     def round(self, frames: int) -> dict[str, Any]:
@@ -190,11 +190,11 @@ class Soak:
         """
         first = self.open()
         self._draw()
-        before = held()
-        start = len(self.told)
+        before = opengl_objects()
+        start = len(self.log)
         for _ in range(frames):
             self.frame()
-        self.told.append(f"{self.frames}: the end of a round")
+        self.log.append(f"{self.frames}: the end of a round")
         while len(self.windows) > 1:
             self.windows.pop().close()
         first.clear()
@@ -202,14 +202,14 @@ class Soak:
         self._draw()
         gc.collect()
         self._draw()
-        after, ours = held(), unreleased()
+        after, ours = opengl_objects(), unreleased()
         contexts = sum(len(context.slots) for context in windows._contexts.values())  # noqa: SLF001
         self.windows.pop().close()
         del first
         gc.collect()
         actors, objects = self._others
         return {
-            "frames": self.frames, "size": self.size, "acts": len(self.told) - start,
+            "frames": self.frames, "size": self.size, "acts": len(self.log) - start,
             "before": before, "after": after, "ours": sum(ours.values()) - objects,
             "contexts": contexts, "actors": alive() - actors, "resident_mb": resident(),
             "objects": len(gc.get_objects()),
@@ -233,14 +233,14 @@ def error_of_current() -> str:
     return names.get(code, hex(code)) if code else "GL_NO_ERROR"
 
 
-def held() -> dict[str, int]:
+def opengl_objects() -> dict[str, int]:
     """Return how many objects of each kind the current context has, and the bytes of them."""
     address_of = loader()
     found = {}
     for kind in KINDS:
         is_one = ctypes.CFUNCTYPE(ctypes.c_ubyte, ctypes.c_uint)(address_of(f"glIs{kind}"))
-        found[kind] = sum(bool(is_one(name)) for name in range(1, volume_memory.MOST_NAMES))
-    found["bytes"] = volume_memory.held() or 0
+        found[kind] = sum(bool(is_one(name)) for name in range(1, gpu_memory.MOST_NAMES))
+    found["bytes"] = gpu_memory.allocated() or 0
     error_of_current()  # it asks textures for levels that they lack
     return found
 
@@ -296,7 +296,7 @@ def walk(frames: int, per_round: int, seed: int, size: int, show: Any = None) ->
     return soak, rounds
 
 
-def told(soak: Soak, rounds: list[dict[str, Any]]) -> str:
+def to_page(soak: Soak, rounds: list[dict[str, Any]]) -> str:
     """Return the table of a page."""
     keys = [kind for kind in KINDS if kind != "Program"]
     lines = [
@@ -332,7 +332,7 @@ def main() -> None:
         print(json.dumps(row), flush=True)
 
     soak, rounds = walk(options.frames, options.round, options.seed, options.size, show)
-    page = told(soak, rounds)
+    page = to_page(soak, rounds)
     print(page)
     if options.output is not None:
         options.output.mkdir(parents=True, exist_ok=True)

@@ -119,7 +119,7 @@ def measure(sizes: list[int], sources: list[str], targets: list[str], folder: Pa
     return rows
 
 
-def told(rows: list[dict[str, Any]]) -> str:
+def to_page(rows: list[dict[str, Any]]) -> str:
     """Return the table of a page."""
     lines = [
         "| from | to | points | GB read | peak MB | M points/s | M points per CPU second | bytes per point |",
@@ -149,7 +149,7 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(dir=options.scratch) as name:
         rows = measure([int(size) for size in options.points], options.source, options.target, Path(name))
-    page = told(rows)
+    page = to_page(rows)
     print(page)
     if options.output is not None:
         options.output.mkdir(parents=True, exist_ok=True)

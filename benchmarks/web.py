@@ -1,6 +1,6 @@
 """What a browser sees of ``pvfiblets serve``: frames a second and latency while it drags, bytes, memory, many at once.
 
-A server and Chromium on this machine, over loopback: they share its processors. Each size is a made-up brain that is
+A server and Chromium on this machine, over loopback: they share its processors. Each size is a synthetic brain that is
 compressed beforehand::
 
     python benchmarks/web.py --output docs/benchmarks
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from orbit import card_slug, context, machine, make_brain, write
+from common import machine, make_brain, on_machine, pyplot, verdict, write
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # the tests' server and pages
@@ -45,16 +45,15 @@ def main() -> None:
     parser.add_argument("--sessions", type=int, default=8, help="at once; 0 for none")
     parser.add_argument("--together", type=float, default=120.0, help="seconds that they last")
     parser.add_argument("--size", type=int, nargs=2, default=(1280, 720), help="of the browser's window")
-    parser.add_argument("--folder", type=Path, help="where made-up brains are kept; a temporary one if left out")
+    parser.add_argument("--folder", type=Path, help="where synthetic brains are kept; a temporary one if left out")
     parser.add_argument("--output", type=Path, default=Path())
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as spare:
         folder = options.folder or Path(spare)
         folder.mkdir(parents=True, exist_ok=True)
         results, many = measure(options, folder)
-    ctx = context()
-    about = {**machine(ctx), "size": list(options.size), "seconds": options.seconds, "together": many}
-    write(options.output / f"web-{card_slug(ctx)}", about, results, table(about, results, many), plot)
+    about = {**machine(), "size": list(options.size), "seconds": options.seconds, "together": many}
+    write("web", about, results, table(about, results, many), plot, options.output)
 
 
 def measure(options: Any, folder: Path) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
@@ -80,7 +79,7 @@ def measure(options: Any, folder: Path) -> tuple[list[dict[str, Any]], dict[str,
 
 
 def made(folder: Path, millions: float, step: float) -> Path:
-    """Return a compressed made-up brain of so many segments of so many mm."""
+    """Return a compressed synthetic brain of so many segments of so many mm."""
     home = folder / f"{millions:g}M-{step:g}mm"
     home.mkdir(exist_ok=True)
     make_brain(1e6 * millions, step, home, "hilbert")
@@ -211,12 +210,7 @@ def together(browser: Any, path: Path, options: Any) -> dict[str, Any]:
     }
 
 
-def kept(yes: bool) -> str:
-    """Return what is said of a goal."""
-    return "kept" if yes else "missed"
-
-
-def told(row: dict[str, Any]) -> str:
+def line(row: dict[str, Any]) -> str:
     """Return a line of the table."""
     low, high = row["latency_ms_spread"]
     cells = (
@@ -240,7 +234,7 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
     said = [
         f"# pvfiblets serve in a browser on {about['card']}",
         "",
-        f"{about['driver']}, {about['system']}, {about['cpus']} CPU cores, {about['date']}. Server and Chromium share "
+        f"{on_machine(about)}. Server and Chromium share "
         f"them, over loopback; a window of {width}×{height}, of which the panels leave the view. Streamlines drawn as "
         f"lines, dragged for {about['seconds']:g} s.",
         "",
@@ -251,14 +245,14 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
         "| segments | mm each | file, MB | view | first, s | frames a second | latency, ms | kB a frame | rest | "
         "memory, MB |",
         "|---|---|---|---|---|---|---|---|---|---|",
-        *map(told, results),
+        *map(line, results),
         "",
     ]
     said += [
         f"The goals, of {row['step_mm']:g} mm: {GOALS['frames_per_second']:g} frames a second while 6 M segments are "
         f"dragged, "
-        f"{kept(row['frames_per_second'] >= GOALS['frames_per_second'])}; the first picture within "
-        f"{GOALS['first_picture_s']:g} s, {kept(row['first_picture_s'] <= GOALS['first_picture_s'])}."
+        f"{verdict(row['frames_per_second'] >= GOALS['frames_per_second'])}; the first picture within "
+        f"{GOALS['first_picture_s']:g} s, {verdict(row['first_picture_s'] <= GOALS['first_picture_s'])}."
         for row in results
         if row["millions"] == 6.0
     ]
@@ -276,11 +270,7 @@ def table(about: dict[str, Any], results: list[dict[str, Any]], many: dict[str, 
 
 def plot(about: dict[str, Any], results: list[dict[str, Any]], path: Path) -> None:
     """Draw frames a second and latency against segments."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
+    plt = pyplot()
     figure, left = plt.subplots(figsize=(6, 4))
     right = left.twinx()
     for step, style in zip(sorted({row["step_mm"] for row in results}), ("-", "--", ":", "-."), strict=False):

@@ -169,7 +169,7 @@ def make_parser() -> argparse.ArgumentParser:
         description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
     )
     report.add_argument(
-        "--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volume, halos, features, stability"
+        "--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volumes, halos, features, stability"
     )
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

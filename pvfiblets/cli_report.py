@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pvfiblets.report.record import Report
+from pvfiblets.report.report_file import Report
 from pvfiblets.report.run import make_report, to_stderr, write_pages
 
 

@@ -49,7 +49,7 @@ class Camera:
     @property
     def model_view_projection(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
-        return Lens.of(self).matrix
+        return Lens.of(self).model_view_projection
 
     def aim(self, plotter: Any) -> None:
         """Make a plotter look through this camera."""
@@ -143,7 +143,7 @@ class Lens:
         return matrix
 
     @property
-    def matrix(self) -> Array:
+    def model_view_projection(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
         projection = np.zeros((4, 4))
         projection[0, 0], projection[1, 1] = self.size[1] / self.size[0] / self.slant, 1.0 / self.slant
@@ -152,7 +152,7 @@ class Lens:
         projection[3, 2] = -1.0
         return projection @ self.world_to_camera
 
-    def seen(self, points: Array) -> Array:
+    def project(self, points: Array) -> Array:
         """Return (n, 3): tangents to the right and up, and distance in front of the eye."""
         local = (points - self.eye) @ self.axes.T
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""The study of the codec: bytes, errors and speed of fiblets and of other ways of keeping streamlines."""
+"""The study of the codec: bytes, errors and speed of fiblets and of other variants of keeping streamlines."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .measure import Turns, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 
-__all__ = ["STUDY", "CodecStudy", "Way", "ways"]
+__all__ = ["STUDY", "CodecStudy", "Variant", "variants"]
 
-PROMISES = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
-QUICK_PROMISES = (0.05, 0.1, 0.2)
-LOOK_AHEAD_PROMISES = (0.05, 0.1, 0.2)  # it takes ten times as long
-DEFAULT_PROMISE = 0.1
+BOUNDS = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
+QUICK_BOUNDS = (0.05, 0.1, 0.2)
+LOOK_AHEAD_BOUNDS = (0.05, 0.1, 0.2)  # it takes ten times as long
+DEFAULT_BOUND = 0.1
 RECORD_POINTS = (15, 30)  # besides 60
 QUICK_POINTS = 20_000
 
@@ -34,8 +34,8 @@ Offsets = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Way:
-    """One way of packing. ``make(step)`` gives the function that packs points and offsets, for data of that step."""
+class Variant:
+    """One method of packing. ``make(step)`` gives the function that packs points and offsets of that step."""
 
     name: str
     setting: str
@@ -46,7 +46,7 @@ class Way:
 
 @dataclass
 class _Fiblets:
-    """A set of fiblets as the rivals are."""
+    """A set of fiblets as the baselines are."""
 
     fiblets: Any
     nbytes: int
@@ -56,13 +56,13 @@ class _Fiblets:
         return points
 
 
-def _fiblets(promise: float, effort: Any, record: int | None = None) -> Callable[[float], Any]:
+def _fiblets(error_bound: float, effort: Any, record: int | None = None) -> Callable[[float], Any]:
     def make(step: float) -> Callable[[Points, Offsets], _Fiblets]:
         from pvfiblets.codec.compress import compress
 
         def pack(points: Points, offsets: Offsets) -> _Fiblets:
             cut = offsets if record is None else recut(offsets, record)
-            max_error = promise * step if step > 0.0 else None
+            max_error = error_bound * step if step > 0.0 else None
             made = compress(Streamlines(points, cut), max_error=max_error, effort=effort)
             # Only the last fiblet of a streamline has an end vector. Cut streamlines have too many.
             return _Fiblets(made, made.nbytes - made.ends.itemsize * (len(cut) - len(offsets)))
@@ -81,37 +81,37 @@ def recut(offsets: Offsets, record: int) -> Offsets:
     return cut
 
 
-def ways(quick: bool) -> list[Way]:
-    """Return all ways, the most important first: where time runs out, the last are left out."""
+def variants(quick: bool) -> list[Variant]:
+    """Return all variants, the most important first: where time runs out, the last are left out."""
     found = [
-        Way("fiblets", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "fast"), ours=True, default=True),
-        Way("fiblets, look-ahead", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "high"), ours=True),
-        Way("QFib", "8 bits", lambda _: QFib(8)),
-        Way("QFib", "16 bits", lambda _: QFib(16)),
-        Way("paper's fiblets", "", lambda _: PaperFiblets()),
-        Way("float16", "", lambda _: float16),
-        Way("int16 over bounds", "", lambda _: int16),
-        Way("zlib of float32", "", lambda _: squeezed_by_zlib(6)),
-        Way("zstd of float32", "", lambda _: squeezed_by_zstd(3)),
+        Variant("fiblets", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "fast"), ours=True, default=True),
+        Variant("fiblets, look-ahead", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "high"), ours=True),
+        Variant("QFib", "8 bits", lambda _: QFib(8)),
+        Variant("QFib", "16 bits", lambda _: QFib(16)),
+        Variant("paper's fiblets", "", lambda _: PaperFiblets()),
+        Variant("float16", "", lambda _: float16),
+        Variant("int16 over bounds", "", lambda _: int16),
+        Variant("zlib of float32", "", lambda _: squeezed_by_zlib(6)),
+        Variant("zstd of float32", "", lambda _: squeezed_by_zstd(3)),
     ]
     found += [
-        Way("fiblets", f"{promise} steps", _fiblets(promise, "fast"), ours=True)
-        for promise in (QUICK_PROMISES if quick else PROMISES)
-        if promise != DEFAULT_PROMISE
+        Variant("fiblets", f"{error_bound} steps", _fiblets(error_bound, "fast"), ours=True)
+        for error_bound in (QUICK_BOUNDS if quick else BOUNDS)
+        if error_bound != DEFAULT_BOUND
     ]
     found += [
-        Way("dipy linearised", f"{tolerance} steps", _dipy(tolerance))
+        Variant("dipy linearised", f"{tolerance} steps", _dipy(tolerance))
         for tolerance in ((0.1,) if quick else (0.02, 0.1, 0.5))
     ]
     found += [
-        Way(f"fiblets of {record} points", f"{DEFAULT_PROMISE} steps", _fiblets(DEFAULT_PROMISE, "fast", record), True)
+        Variant(f"fiblets of {record} points", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "fast", record), True)
         for record in ((30,) if quick else RECORD_POINTS)
     ]
     if not quick:
         found += [
-            Way("fiblets, look-ahead", f"{promise} steps", _fiblets(promise, "high"), ours=True)
-            for promise in LOOK_AHEAD_PROMISES
-            if promise != DEFAULT_PROMISE
+            Variant("fiblets, look-ahead", f"{error_bound} steps", _fiblets(error_bound, "high"), ours=True)
+            for error_bound in LOOK_AHEAD_BOUNDS
+            if error_bound != DEFAULT_BOUND
         ]
     return found
 
@@ -121,11 +121,11 @@ def _dipy(tolerance: float) -> Callable[[float], Any]:
 
 
 class CodecStudy:
-    """Fiblets beside other ways of keeping streamlines."""
+    """Fiblets beside other variants of keeping streamlines."""
 
     name = "codec"
     title = "Compressed streamlines"
-    approximates = "Points of streamlines kept in fewer bytes: fiblets, beside other ways of keeping them."
+    approximates = "Points of streamlines kept in fewer bytes: fiblets, beside other variants of keeping them."
     axes = (
         Axes("size-max", "costs/size", "errors/max in steps", "bytes per point", "largest error, steps"),
         Axes("size-mean", "costs/size", "errors/mean in steps", "bytes per point", "mean error, steps"),
@@ -136,12 +136,12 @@ class CodecStudy:
     )
     notes = (
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
-        "distance between consecutive points. Raw points are float32: 12 bytes each. All ways count 4 bytes a "
+        "distance between consecutive points. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
         "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
         "read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
-        "*fiblets*: greedy encoder, with the promise as the setting; *look-ahead*: effort high; *fiblets of 30 "
+        "*fiblets*: greedy encoder, with the error bound as the setting; *look-ahead*: effort high; *fiblets of 30 "
         "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/baselines/directions.py says what it leaves open), with the file's "
         "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
@@ -153,34 +153,34 @@ class CodecStudy:
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        """Yield a record for every data set and way."""
+        """Yield a record for every data set and variant."""
         if options.quick:
             options.points = min(options.points, QUICK_POINTS)
-        chosen = ways(options.quick)
+        chosen = variants(options.quick)
         missing: set[str] = set()
         with one_thread():
             for data in data_sets(options, left_out):
                 yield from self._measured(data, chosen, missing, options, left_out)
 
     def _measured(
-        self, data: DataSet, chosen: list[Way], missing: set[str], options: Options, left_out: list[LeftOut]
+        self, data: DataSet, chosen: list[Variant], missing: set[str], options: Options, left_out: list[LeftOut]
     ) -> Iterator[Record]:
         points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
         step = median_step(points, offsets)
         turns, done, late = Turns(), [], []
-        for way in chosen:
-            if way.name in missing:
+        for variant in chosen:
+            if variant.name in missing:
                 continue
             if not options.budget.allows():
-                late.append(f"{way.name} {way.setting}".strip())
+                late.append(f"{variant.name} {variant.setting}".strip())
                 continue
             try:
-                done.append(measured(data, way, points, offsets, step, turns, options.machine))
+                done.append(measured(data, variant, points, offsets, step, turns, options.machine))
             except ImportError as error:
-                missing.add(way.name)
-                left_out.append(LeftOut(way.name, f"{error.name or error} is not installed"))
+                missing.add(variant.name)
+                left_out.append(LeftOut(variant.name, f"{error.name or error} is not installed"))
             except ValueError as error:
-                left_out.append(LeftOut(f"{data.name}: {way.name} {way.setting}".strip(), str(error)))
+                left_out.append(LeftOut(f"{data.name}: {variant.name} {variant.setting}".strip(), str(error)))
         turns.run(options.repeats, options.budget.allows)
         for record, numbers in done:
             record.times = {name: turns.timing(number, len(points)) for name, number in numbers.items()}
@@ -188,14 +188,14 @@ class CodecStudy:
         if late:
             what = "everything" if not done else ", ".join(late)
             left_out.append(LeftOut(f"{data.name}: {what}", "the time given was used up"))
-        options.log(f"codec: {data.name}: {len(done)} ways")
+        options.log(f"codec: {data.name}: {len(done)} variants")
 
 
 def measured(
-    data: DataSet, way: Way, points: Points, offsets: Offsets, step: float, turns: Turns, machine: str
+    data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float, turns: Turns, machine: str
 ) -> tuple[Record, dict[str, int]]:
-    """Pack and unpack in one way; return a record of errors and bytes, and the numbers of what is to be timed."""
-    pack = way.make(step)
+    """Pack and unpack in one variant; return a record of errors and bytes, and the numbers of what is to be timed."""
+    pack = variant.make(step)
     packed = pack(points, offsets)
     numbers = {"compress": turns.add(lambda: pack(points, offsets))}
     if hasattr(packed, "points"):
@@ -207,12 +207,12 @@ def measured(
         data=data.name,
         group=data.group,
         approximation="points of streamlines",
-        way=way.name,
-        setting=way.setting,
+        method=variant.name,
+        setting=variant.setting,
         errors=error_figures(apart, step),
         costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
-        ours=way.ours,
-        default=way.default,
+        ours=variant.ours,
+        default=variant.default,
         machine=machine,
     )
     return record, numbers
@@ -220,7 +220,7 @@ def measured(
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Run compiled loops on one thread: speeds are then of one core, as those of ways that know of no threads are."""
+    """Run compiled loops on one thread: speeds are then of one core, as those of other methods are."""
     import numba
 
     before = numba.get_num_threads()

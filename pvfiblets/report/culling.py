@@ -13,9 +13,9 @@ from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import FibletRenderer, Style, View
 from pvfiblets.engine.errors import EngineError
 
-from .culling_pictures import Shown, Singles, apart, averaged, colours, errors, shown, views
+from .culling_pictures import Singles, Visible, averaged, colours, difference, errors, views, visible
 from .data import file_sets
-from .drawing import drawing_context, turns_of
+from .drawing import LATE, drawing_context, turns_of
 from .flights import Flight
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
     from .measure import Turns
 
-__all__ = ["STUDY", "CullingStudy", "Scene", "Way", "ways"]
+__all__ = ["STUDY", "CullingStudy", "Scene", "Variant", "variants"]
 
-SEGMENTS = 12_000_000  # of the made-up brain
+SEGMENTS = 12_000_000  # of the synthetic brain
 QUICK_SEGMENTS = 500_000
 STEP = 0.1  # mm
-LENGTH = 94.0  # mm of a made-up streamline on average
+LENGTH = 94.0  # mm of a synthetic streamline on average
 FILE_POINTS = 4_000_000  # to which files are cut
 QUICK_FILE_POINTS = 500_000
 FILES = 3  # the largest
@@ -48,8 +48,8 @@ FINE = 3  # samples along a pixel's side of the finely sampled picture
 
 
 @dataclass(frozen=True)
-class Way:
-    """One way of drawing less: a kind of culling, pixels of tolerance, and how many streamlines one is drawn of."""
+class Variant:
+    """One variant of drawing less: a kind of culling, pixels of tolerance, and how many streamlines one is drawn of."""
 
     culling: str | None
     tolerance: float
@@ -76,12 +76,12 @@ def detail(tolerance: float) -> str:
     return f"{tolerance:g} px" if tolerance else "every point"
 
 
-def ways(quick: bool) -> list[Way]:
-    """Return all ways, the most important first: where time runs out, the last are left out."""
-    found = [Way(culling, DEFAULT_TOLERANCE) for culling in (None, "two-phase", "coverage")]
-    found += [Way(culling, 0.0) for culling in (None, "two-phase", "coverage")]
-    found += [Way("two-phase", DEFAULT_TOLERANCE, of) for of in (SHARES[:1] if quick else SHARES)]
-    return found + [Way("two-phase", tolerance) for tolerance in (QUICK_TOLERANCES if quick else TOLERANCES)]
+def variants(quick: bool) -> list[Variant]:
+    """Return all variants, the most important first: where time runs out, the last are left out."""
+    found = [Variant(culling, DEFAULT_TOLERANCE) for culling in (None, "two-phase", "coverage")]
+    found += [Variant(culling, 0.0) for culling in (None, "two-phase", "coverage")]
+    found += [Variant("two-phase", DEFAULT_TOLERANCE, of) for of in (SHARES[:1] if quick else SHARES)]
+    return found + [Variant("two-phase", tolerance) for tolerance in (QUICK_TOLERANCES if quick else TOLERANCES)]
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Scene:
 
 
 class _Basis:
-    """What pictures are held against; each is drawn once.
+    """What pictures are compared with; each is drawn once.
 
     Parameters
     ----------
@@ -110,17 +110,17 @@ class _Basis:
 
     def __init__(self, ctx: Any, scene: Scene) -> None:
         self._ctx, self._scene = ctx, scene
-        self._plain: dict[float, list[Shown]] = {}
+        self._plain: dict[float, list[Visible]] = {}
         self.coloured = [colours(picture) for picture in self.plain(0.0)]
         self.fine = [self._fine(view) for view in scene.path[1:]]
 
-    def plain(self, tolerance: float) -> list[Shown]:
+    def plain(self, tolerance: float) -> list[Visible]:
         """Return the pictures without culling, at some level of detail."""
         if tolerance not in self._plain:
             renderer = FibletRenderer(self._ctx, self._scene.fiblets, culling=None)
             try:
                 flight = Flight(self._ctx, renderer, self._scene.path, Style(tolerance=tolerance))
-                self._plain[tolerance] = flight.pictures(shown)
+                self._plain[tolerance] = flight.pictures(visible)
             finally:
                 renderer.release()
         return self._plain[tolerance]
@@ -130,7 +130,7 @@ class _Basis:
         size = (FINE * view.size[0], FINE * view.size[1])
         try:
             style = Style(tolerance=0.0, line_width=float(FINE))
-            picture = shown(renderer.render(View(size, view.model_view_projection), style))
+            picture = visible(renderer.render(View(size, view.model_view_projection), style))
         finally:
             renderer.release()
         return averaged(colours(picture), FINE)
@@ -173,7 +173,7 @@ class CullingStudy:
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        """Yield a record for every scene and way."""
+        """Yield a record for every scene and variant."""
         with drawing_context(options) as ctx:
             for scene in scenes(options, left_out):
                 yield from self._measured(ctx, scene, options, left_out)
@@ -182,14 +182,14 @@ class CullingStudy:
         turns, done, late = turns_of(ctx), [], []
         with ExitStack() as stack:
             basis: _Basis | None = None
-            for way in ways(options.quick):
-                label = f"{way.name} ({way.setting})"
+            for variant in variants(options.quick):
+                label = f"{variant.name} ({variant.setting})"
                 if not options.budget.allows():
                     late.append(label)
                     continue
                 try:
                     basis = basis or _Basis(ctx, scene)
-                    done.append(measured(ctx, scene, way, basis, turns, stack, options.machine))
+                    done.append(measured(ctx, scene, variant, basis, turns, stack, options.machine))
                 except EngineError as error:
                     left_out.append(LeftOut(f"{scene.name}: {label}", str(error)))
             turns.run(options.repeats, options.budget.allows)
@@ -198,15 +198,15 @@ class CullingStudy:
                 yield record
         if late:
             what = ", ".join(late) if done else "everything"
-            left_out.append(LeftOut(f"{scene.name}: {what}", "the time given was used up"))
-        options.log(f"culling: {scene.name}: {len(done)} ways")
+            left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
+        options.log(f"culling: {scene.name}: {len(done)} variants")
 
 
 def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
     size = QUICK_SIZE if options.quick else SIZE
     frames = QUICK_FRAMES if options.quick else FRAMES
-    brain = made_up(options)
+    brain = synthetic_brain(options)
     for kind, degrees in QUICK_FLIGHTS if options.quick else FLIGHTS:
         turn = "still" if degrees == STILL else f"{degrees:g}° a frame"
         path = views(brain.bounds, kind, degrees, frames + 1, size)
@@ -228,7 +228,7 @@ def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
         yield Scene(data.name, data.group, fiblets, path)
 
 
-def made_up(options: Options) -> FibletSet:
+def synthetic_brain(options: Options) -> FibletSet:
     """Make a brain of streamlines."""
     from pvfiblets.synthetic import brain
 
@@ -236,36 +236,38 @@ def made_up(options: Options) -> FibletSet:
     return brain(max(round(segments * STEP / LENGTH), 1), STEP, options.seed)
 
 
-def measured(ctx: Any, scene: Scene, way: Way, basis: _Basis, turns: Turns, stack: ExitStack, machine: str) -> Record:
-    """Draw in one way; return a record of errors, and add the flight to those that are timed."""
+def measured(
+    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, turns: Turns, stack: ExitStack, machine: str
+) -> Record:
+    """Draw by one variant; return a record of errors, and add the flight to those that are timed."""
     fiblets = scene.fiblets
-    if way.of > 1:
-        fiblets = restrict(fiblets, np.arange(0, fiblets.n_streamlines, way.of))
-    renderer = FibletRenderer(ctx, fiblets, culling=way.culling)
+    if variant.of > 1:
+        fiblets = restrict(fiblets, np.arange(0, fiblets.n_streamlines, variant.of))
+    renderer = FibletRenderer(ctx, fiblets, culling=variant.culling)
     stack.callback(renderer.release)
-    flight = Flight(ctx, renderer, scene.path, Style(tolerance=way.tolerance))
-    pictures = flight.pictures(shown)
-    told: dict[str, Any] = renderer.explain()
+    flight = Flight(ctx, renderer, scene.path, Style(tolerance=variant.tolerance))
+    pictures = flight.pictures(visible)
+    report: dict[str, Any] = renderer.explain()
     turns.add(flight)
     found = errors(pictures, basis.plain(0.0))
     coloured = [colours(picture) for picture in pictures]
-    found |= {"colour": apart(coloured, basis.coloured), "fine": apart(coloured, basis.fine)}
-    if way.of == 1:
-        found["wrong by culling"] = errors(pictures, basis.plain(way.tolerance))["wrong"]
-    costs = {"memory": Figure(sum(buffer["bytes"] for buffer in told["buffers"]) / 1e6, "MB")}
-    drawn = told["fiblets"]["drawn"]
+    found |= {"colour": difference(coloured, basis.coloured), "fine": difference(coloured, basis.fine)}
+    if variant.of == 1:
+        found["wrong by culling"] = errors(pictures, basis.plain(variant.tolerance))["wrong"]
+    costs = {"memory": Figure(sum(buffer["bytes"] for buffer in report["buffers"]) / 1e6, "MB")}
+    drawn = report["fiblets"]["drawn"]
     if drawn is not None:
         costs["drawn"] = Figure(100.0 * drawn / max(scene.fiblets.n_fiblets, 1), "%")
     return Record(
         data=scene.name,
         group=scene.group,
         approximation="pictures of fiblets",
-        way=way.name,
-        setting=way.setting,
+        method=variant.name,
+        setting=variant.setting,
         errors=found,
         costs=costs,
-        ours=way.of == 1,
-        default=way.default,
+        ours=variant.of == 1,
+        default=variant.default,
         machine=machine,
     )
 

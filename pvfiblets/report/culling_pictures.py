@@ -18,15 +18,15 @@ from .record import Figure
 
 __all__ = [
     "DISTANCES",
-    "Shown",
-    "apart",
+    "Visible",
     "averaged",
     "colours",
+    "difference",
     "directions",
     "errors",
-    "shown",
     "streamlines_of",
     "views",
+    "visible",
 ]
 
 DISTANCES = {"far": 1.0, "close": 1.0 / 3.0, "inside": 0.06}
@@ -40,7 +40,7 @@ Words = npt.NDArray[np.uint32]
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class Visible:
     """What the pixels of a picture show.
 
     Attributes
@@ -84,15 +84,15 @@ def views(bounds: Sequence[float], kind: str, degrees: float, frames: int, size:
 
 def streamlines_of(picture: Any) -> npt.NDArray[np.int64]:
     """Return the streamline that each pixel of a G-buffer shows, -1 where none: ``(height, width)`` int64."""
-    return shown(picture).streamline
+    return visible(picture).streamline
 
 
-def shown(picture: Any) -> Shown:
+def visible(picture: Any) -> Visible:
     """Read a G-buffer."""
     width, height = picture.size
     depth = np.frombuffer(picture.depth.read(), "<u4").reshape(height, width)
     ids = np.frombuffer(picture.ids.read(), "<u4").reshape(height, width, 2)
-    return Shown(np.where(depth == EMPTY, -1, ids[..., 0].astype(np.int64)), ids[..., 1].copy())
+    return Visible(np.where(depth == EMPTY, -1, ids[..., 0].astype(np.int64)), ids[..., 1].copy())
 
 
 def directions(words: npt.ArrayLike) -> Floats:
@@ -105,7 +105,7 @@ def directions(words: npt.ArrayLike) -> Floats:
     return np.asarray(found / np.linalg.norm(found, axis=-1, keepdims=True), np.float64)
 
 
-def colours(picture: Shown) -> Singles:
+def colours(picture: Visible) -> Singles:
     """Return a picture coloured by direction, |x|, |y|, |z| on black: ``(height, width, 3)`` float32."""
     found = np.zeros((*picture.streamline.shape, 3), np.float32)
     there = picture.streamline >= 0
@@ -119,16 +119,16 @@ def averaged(picture: Singles, times: int) -> Singles:
     return picture.reshape(height, times, width, times, 3).mean(axis=(1, 3))
 
 
-def apart(pictures: Sequence[Singles], right: Sequence[Singles]) -> Figure:
+def difference(pictures: Sequence[Singles], truth: Sequence[Singles]) -> Figure:
     """Return how far colours are apart, mean over the pixels in which either shows anything, in percent of white."""
     total, pixels = 0.0, 0
-    for one, other in zip(pictures, right, strict=True):
+    for one, other in zip(pictures, truth, strict=True):
         total += float(np.abs(one - other).mean(axis=2).sum(dtype=np.float64))
         pixels += int((one.any(axis=2) | other.any(axis=2)).sum())
     return Figure(100.0 * total / max(pixels, 1), "%")
 
 
-def errors(pictures: Sequence[Shown], right: Sequence[Shown]) -> dict[str, Figure]:
+def errors(pictures: Sequence[Visible], truth: Sequence[Visible]) -> dict[str, Figure]:
     """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline.
 
     Returns
@@ -138,7 +138,7 @@ def errors(pictures: Sequence[Shown], right: Sequence[Shown]) -> dict[str, Figur
         ``coverage`` counts only the latter two.
     """
     wrong = coverage = covered = 0
-    for one, other in zip(pictures, right, strict=True):
+    for one, other in zip(pictures, truth, strict=True):
         a, b = one.streamline, other.streamline
         wrong += int((a != b).sum())
         coverage += int(((a >= 0) != (b >= 0)).sum())

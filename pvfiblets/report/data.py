@@ -1,4 +1,4 @@
-"""Data sets of the studies of coordinates: made-up ones of constant step, and real files cut to a bounded size."""
+"""Data sets of the studies of coordinates: synthetic ones of constant step, and real files cut to a bounded size."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ QUICK_STEPS = (0.1, 0.5)
 # made freely grows with the square root of the step, so does the noise of others.
 NOISE = 4.0
 NOISE_STEP = 0.2
-LENGTH = 94.0  # mm of a made-up streamline on average
+LENGTH = 94.0  # mm of a synthetic streamline on average
 SMALL = 1000  # points; sets of fewer are measured, but not drawn: their times are those of a call
 
 
@@ -42,7 +42,7 @@ def data_sets(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
     for noisy in (False, True):
         for step in QUICK_STEPS if options.quick else STEPS:
             kind = "noisy" if noisy else "smooth"
-            yield DataSet(f"{kind}, {step:g} mm", kind, made_up(step, noisy, options.points, options.seed))
+            yield DataSet(f"{kind}, {step:g} mm", kind, synthetic_tracking(step, noisy, options.points, options.seed))
     yield from file_sets(options, options.points, left_out)
 
 
@@ -66,7 +66,7 @@ def file_sets(options: Options, points: int, left_out: list[LeftOut]) -> Iterato
             yield DataSet(name, "files" if streamlines.n_points >= SMALL else "", streamlines)
 
 
-def made_up(step: float, noisy: bool, points: int, seed: int) -> Streamlines:
+def synthetic_tracking(step: float, noisy: bool, points: int, seed: int) -> Streamlines:
     """Make about so many points, of constant step."""
     from pvfiblets.synthetic import brain_streamlines
 

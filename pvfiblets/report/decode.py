@@ -28,7 +28,7 @@ FIBLETS = 2000
 QUICK_FIBLETS = 300
 REPEATS = 3  # times as many as other studies make: a call takes a millisecond
 BOX = 100.0  # mm: anchors are as far as this from the middle, as in a brain
-DRIFT_AT = (1, 2, 4, 8, 16, 32, 45, 59)  # points whose errors are told apart
+DRIFT_AT = (1, 2, 4, 8, 16, 32, 45, 59)  # points whose errors are given one by one
 
 ORDERS = {"sequential": decoders.SEQUENTIAL, "prefix": decoders.PREFIX}
 ALGEBRAS = {"quaternions": decoders.QUATERNION, "matrices": decoders.MATRIX}
@@ -102,7 +102,7 @@ class DecodeStudy:
     notes = (
         "Fiblets of 60 points with random first directions and codes, their anchors up to 100 mm from the middle along "
         "each axis: rounding coordinates of that size alone costs float32 up to 7 nm at every addition. Errors are "
-        "distances from the same products in NumPy's longest number format. The codec's own ways: "
+        "distances from the same products in NumPy's longest number format. The codec's own variants: "
         "sequential, quaternions, table, in float32 on graphics cards and in float64 on the CPU; prefix, quaternions, "
         "table, float32 where a work group decodes a fiblet together.",
         "*closed form*: the formula that the table was made by, without the table's rounding to 16-bit integers, so "
@@ -111,56 +111,56 @@ class DecodeStudy:
         "product as the sequential decoder takes it; matrices, the prefix network and the closed form take them in "
         "another order, or as exact rotations, which is all that float64 shows of these: no digits are lost, and it is "
         "far below any promise.",
-        "Times are of one thread of the CPU, all ways compiled alike. The prefix network does "
+        "Times are of one thread of the CPU, all variants compiled alike. The prefix network does "
         "more work (six passes of up to 32 products) so that 32 threads of a graphics card can share it: its time here "
         "is that of the work alone.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        """Yield a record for every set and way."""
+        """Yield a record for every set and variant."""
         n = QUICK_FIBLETS if options.quick else FIBLETS
         steps, caps = (QUICK_STEPS, QUICK_CAPS) if options.quick else (STEPS, CAPS)
         sets = [("steps", step, USUAL_CAP) for step in steps] + [("caps", USUAL_STEP, cap) for cap in caps]
         for group, step, cap in sets:
             name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
             fiblets = made(n, cap, step, options.seed)
-            right = exact(fiblets)
+            truth = exact(fiblets)
             turns, records = Turns(), []
             for combination in combinations():
                 if not options.budget.allows():
                     left_out.append(LeftOut(f"{name}: {', '.join(combination)}", "the time given was used up"))
                     continue
-                records.append(measured(fiblets, right, combination, turns))
+                records.append(measured(fiblets, truth, combination, turns))
             turns.run(REPEATS * options.repeats, options.budget.allows)
             for number, record in enumerate(records):
                 record.data, record.group, record.machine = name, group, options.machine
                 record.times = {"decode": turns.timing(number, n * decoders.POINTS)}
                 yield record
-            options.log(f"decode: {name}: {len(records)} ways")
+            options.log(f"decode: {name}: {len(records)} variants")
 
 
 def combinations() -> list[tuple[str, str, str, str]]:
-    """Return order, number format, algebra and source of all ways, the codec's own first."""
+    """Return order, number format, algebra and source of all variants, the codec's own first."""
     every = [(o, n, a, s) for s in SOURCES for a in ALGEBRAS for o in ORDERS for n in NUMBERS]
-    return sorted(every, key=lambda way: way[2:] != ("quaternions", "table"))
+    return sorted(every, key=lambda variant: variant[2:] != ("quaternions", "table"))
 
 
-def measured(fiblets: Made, right: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
-    """Decode in one way; return a record of errors, and add the call to those that are timed."""
+def measured(fiblets: Made, truth: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
+    """Decode by one variant; return a record of errors, and add the call to those that are timed."""
     order, number, algebra, source = combination
     dtype = NUMBERS[number]
     arrays = [np.ascontiguousarray(a.astype(dtype)) for a in (fiblets.anchors, fiblets.frames)]
     step = np.array([fiblets.step], dtype)
     scratch = tuple(np.zeros((decoders.ELEMENTS, width), dtype) for width in (4, 9, 3))
     tables = decoders.inputs(dtype)
-    out = np.empty(right.shape, dtype)
+    out = np.empty(truth.shape, dtype)
     how = (ORDERS[order], ALGEBRAS[algebra], SOURCES[source])
 
     def run() -> None:
         decoders.decode(*arrays, fiblets.codes, fiblets.cap, step, how, tables, scratch, out)
 
     run()
-    apart = np.sqrt(((out - right) ** 2).sum(axis=2)).astype(np.float64)
+    apart = np.sqrt(((out - truth) ** 2).sum(axis=2)).astype(np.float64)
     errors = error_figures(apart.ravel(), fiblets.step)
     for i in DRIFT_AT:
         errors[f"mean at point {i}"] = Figure(float(apart[:, i].mean()) / fiblets.step, "steps")
@@ -170,7 +170,7 @@ def measured(fiblets: Made, right: Any, combination: tuple[str, str, str, str], 
         data="",
         group="",
         approximation="decoded points",
-        way=f"{order}, {number}",
+        method=f"{order}, {number}",
         setting=f"{algebra}, {source}",
         errors=errors,
         ours=own and (order, number) != ("prefix", "float64"),

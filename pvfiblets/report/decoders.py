@@ -1,6 +1,6 @@
-"""Decoding of one fiblet's direction codes in several ways, compiled alike, for the study of decoding.
+"""Decoding of one fiblet's direction codes by several variants, compiled alike, for the study of decoding.
 
-All ways fill the same scratch with one rigid motion a point and then put these together:
+All variants fill the same scratch with one rigid motion a point and then put these together:
 
 - *sequential* (Schertzer et al. 2022, section 3.3.1): frame and point move on from one to the next;
 - *prefix* (section 3.3.2): Sklansky's network of products of motions, as ``shaders/fiblets/decode/parallel.glsl``.
@@ -38,7 +38,7 @@ GOLDEN_TURN = (3.0 - math.sqrt(5.0)) / 2.0  # the golden angle in turns
 
 
 def inputs(dtype: npt.DTypeLike) -> tuple[Any, ...]:
-    """Return what all ways read, in one kind of number.
+    """Return what all variants read, in one kind of number.
 
     Returns
     -------

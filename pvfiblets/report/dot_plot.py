@@ -1,4 +1,4 @@
-"""Plots of ways that are no rivals: a row for each, and how far its figures are from those of the plain way."""
+"""Plots of what methods add to a plain one: a row for each, and how far its figures are from the plain method's."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: 
         In the order of rows.
     pair : Axes
     colours : mapping of str to str
-        Of each way.
+        Of each method.
 
     Returns
     -------
@@ -53,18 +53,18 @@ def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: 
 
 
 def _label(record: Record) -> str:
-    return ": ".join(part for part in (record.way, record.setting) if part)
+    return ": ".join(part for part in (record.method, record.setting) if part)
 
 
 def _panel(panel: Any, records: Sequence[Record], path: str, colours: Mapping[str, str]) -> None:
-    values = [record.shown(path) for record in records]
+    values = [record.in_unit(path) for record in records]
     plain = next((value for record, value in zip(records, values, strict=True) if record.default), None)
     known = [value for value in values if value > 0.0]
     start = plain if plain else min(known, default=1.0)
     for row, (record, value) in enumerate(zip(records, values, strict=True)):
         if value > 0.0:  # no number is not
-            panel.plot([start, value], [row, row], color=colours[record.way], lw=2.0, solid_capstyle="butt")
-            panel.plot([value], [row], color=colours[record.way], marker="o", markersize=6.0)
+            panel.plot([start, value], [row, row], color=colours[record.method], lw=2.0, solid_capstyle="butt")
+            panel.plot([value], [row], color=colours[record.method], marker="o", markersize=6.0)
     if plain:
         panel.axvline(plain, color="black", lw=0.8, ls="--", zorder=1)
     panel.set_xscale("log")

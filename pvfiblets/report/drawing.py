@@ -19,10 +19,13 @@ from .measure import Turns
 from .record import LeftOut, Record, Timing
 from .study import Options, Unavailable
 
-__all__ = ["Part", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
+__all__ = ["LATE", "Part", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
 
 Part: TypeAlias = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
 """Of a study: from a context and options to records."""
+
+LATE = "the time given was used up"
+"""Why something was left out."""
 
 SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
 

@@ -4,27 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.engine.errors import EngineError
 
-from .drawing import drawing_context, turns_of
-from .features_scenes import PLAIN, Drawn, Subject, brain_subject, halo_subject, tube_subject, volume_subject
+from .drawing import LATE, drawing_context, turns_of
+from .features_scenes import PLAIN, Drawn, Subject
+from .features_subjects import brain_subject, halo_subject, tube_subject, volume_subject
+from .features_window import in_window
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
     from .record import Timing
 
 __all__ = ["STUDY", "FeatureStudy", "subjects"]
 
-SEGMENTS, QUICK_SEGMENTS = 2_000_000, 150_000  # of a made-up brain
+SEGMENTS, QUICK_SEGMENTS = 2_000_000, 150_000  # of a synthetic brain
 STEP = 0.5  # mm
-LENGTH = 94.0  # mm of a made-up streamline on average
+LENGTH = 94.0  # mm of a synthetic streamline on average
 TUBES, QUICK_TUBES = 400, 60  # streamlines that are drawn as spline tubes, and with halos
-VOXELS, QUICK_VOXELS = 96, 40  # along a side of a made-up volume
+VOXELS, QUICK_VOXELS = 96, 40  # along a side of a synthetic volume
 SIZE, QUICK_SIZE = (1024, 768), (480, 360)
 FRAMES, QUICK_FRAMES = 3, 2
 
@@ -38,7 +43,7 @@ class FeatureStudy:
         "Nothing: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A feature "
         "that is off is not there: no code, no buffer, no pass."
     )
-    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", rivals=False),)
+    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", alternatives=False),)
     notes = (
         "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
         "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
@@ -48,9 +53,11 @@ class FeatureStudy:
         "Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the processor "
         "time of all its threads; on a graphics card they are elapsed. What is measured or compiled once, when a "
         "feature is set, is not in them.",
-        "Effects on a whole *picture* are given the scene's depths and made-up colours of one sample a pixel, where "
-        "VTK's picture would be; that is not counted, what they keep is. Colours, depth cueing and illuminated lines "
-        "are written by VTK's own shader: they are not here, but in `benchmarks/features.py`, which draws in a window.",
+        "Effects on a whole *picture* are given the scene's depths and synthetic colours of one sample a pixel, where "
+        "VTK's picture would be; that is not counted, what they keep is.",
+        "*in a window*: the same streamlines in a PyVista window, all of VTK's work included, with colours, depth "
+        "cueing and illuminated lines, which VTK's shader writes. Frames with and without a feature take turns. "
+        "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -59,6 +66,10 @@ class FeatureStudy:
             for make in subjects(options):
                 subject = make()
                 yield from _measured(ctx, subject, options, left_out)
+        try:
+            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options, left_out)
+        except ImportError as error:
+            left_out.append(LeftOut("streamlines in a window", f"{error.name} is not installed"))
 
 
 def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -87,7 +98,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
                 data=f"{subject.name}, {size[0]} x {size[1]}",
                 group=subject.name.replace(" ", "-"),
                 approximation="nothing",
-                way=feature.group,
+                method=feature.group,
                 setting=feature.name,
                 errors={},
                 costs=_costs(nbytes, sizes[0], timing, timings[0]),
@@ -98,7 +109,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
             )
     if late:
         what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{subject.name}: {what}", "the time given was used up"))
+        left_out.append(LeftOut(f"{subject.name}: {what}", LATE))
     options.log(f"features: {subject.name}: {len(done)} features")
 
 
@@ -110,17 +121,19 @@ def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dic
     }
 
 
+def brain(options: Options) -> FibletSet:
+    """Make fiblets of a synthetic brain, with a per-point array ``'height'``."""
+    from pvfiblets.codec.compress import compress
+    from pvfiblets.synthetic import brain_streamlines
+
+    segments = QUICK_SEGMENTS if options.quick else SEGMENTS
+    made = brain_streamlines(max(round(segments * STEP / LENGTH), 1), step=STEP, seed=options.seed)
+    made.per_point = {"height": made.points[:, 2].copy()}
+    return compress(made, per_point=("height",))
+
+
 def subjects(options: Options) -> list[Callable[[], Subject]]:
     """Return what makes each subject, so that one at a time is in memory."""
-
-    def brain() -> Subject:
-        from pvfiblets.codec.compress import compress
-        from pvfiblets.synthetic import brain_streamlines
-
-        segments = QUICK_SEGMENTS if options.quick else SEGMENTS
-        made = brain_streamlines(max(round(segments * STEP / LENGTH), 1), step=STEP, seed=options.seed)
-        made.per_point = {"height": made.points[:, 2].copy()}
-        return brain_subject(compress(made, per_point=("height",)))
 
     def streamlines() -> Any:
         from pvfiblets.synthetic import brain_streamlines
@@ -150,7 +163,7 @@ def subjects(options: Options) -> list[Callable[[], Subject]]:
         values = np.clip(1.2 - np.sqrt(x * x + y * y + z * z) + 0.2 * waves, 0.0, None).astype(np.float32)
         return volume_subject(RaycastVolume(values))
 
-    return [brain, tubes, halos, volume]
+    return [lambda: brain_subject(brain(options)), tubes, halos, volume]
 
 
 STUDY = FeatureStudy()

@@ -50,7 +50,7 @@ PICTURE_EFFECTS = (
 class WholePicture:
     """Pictures with colours and depths, one for each camera, and what changes them.
 
-    Depths are the scene's; colours are made up of the streamlines' numbers, on white. Both lie in textures of one
+    Depths are the scene's; colours are synthetic of the streamlines' numbers, on white. Both lie in textures of one
     sample a pixel. They are made when a camera is seen first, from the G-buffer: what is drawn from it later is the
     effect alone.
 
@@ -92,7 +92,7 @@ class WholePicture:
             self._ctx.texture(buffer.size, 1, depths.tobytes(), dtype="f4"),
         ]
 
-    def shown(self) -> Any:
+    def pixels(self) -> Any:
         """Return what was drawn last, (height, width, 4) uint8, row 0 at the bottom."""
         return np.frombuffer(self._shown.read(), np.uint8).reshape(*self._shown.size[::-1], 4)
 

@@ -1,4 +1,4 @@
-"""Which ways no other way beats."""
+"""Which methods no other method beats."""
 
 from __future__ import annotations
 

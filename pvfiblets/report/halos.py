@@ -14,8 +14,8 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.halos.style import TABLE_SIZE
 
-from .data import DataSet, file_sets, made_up
-from .drawing import clock_of, drawing_context, timing, turns_of
+from .data import DataSet, file_sets, synthetic_tracking
+from .drawing import LATE, clock_of, drawing_context, timing, turns_of
 from .flights import Flight
 from .halos_drawing import Drawing, FibletHalos, Strips
 from .halos_exact import Crossings, crossings, gaps, pixel_errors
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from .cameras import Camera
     from .measure import Turns
 
-__all__ = ["STUDY", "HaloStudy", "Scene", "Way", "ways"]
+__all__ = ["STUDY", "HaloStudy", "Scene", "Variant", "variants"]
 
 SETS = ("fibres-subset", "office", "shape-small")  # of the paper's sizes; not in quick runs
-STEP = 0.5  # mm, of the made-up brain
+STEP = 0.5  # mm, of the synthetic brain
 SMALLEST = 1000  # points of a file
 QUICK_POINTS = 20_000
 FILES = 3  # the largest
@@ -44,8 +44,8 @@ SMOOTH, HARD, UNCULLED, FIBLETS = "smooth edges", "black or white", "smooth, not
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way of drawing halos, with so many samples along a pixel's side."""
+class Variant:
+    """A variant of drawing halos, with so many samples along a pixel's side."""
 
     name: str
     times: int
@@ -61,7 +61,7 @@ class Way:
         return self.name == SMOOTH and self.times == 1
 
     def look(self, look: Look) -> Look:
-        """Return a look as this way has it."""
+        """Return a look as this variant has it."""
         return replace(look, smooth=self.name != HARD)
 
     def drawing(self, ctx: Any, scene: Scene) -> Drawing:
@@ -79,12 +79,12 @@ def samples(times: int) -> str:
     return "1 sample" if times == 1 else f"{times**2} samples"
 
 
-def ways(quick: bool, tractogram: bool) -> list[Way]:
-    """Return all ways, the most important first: where time runs out, the last are left out."""
+def variants(quick: bool, tractogram: bool) -> list[Variant]:
+    """Return all variants, the most important first: where time runs out, the last are left out."""
     grids = QUICK_GRIDS if quick else GRIDS
-    found = [Way(SMOOTH, 1), Way(HARD, 1)]
-    found += [Way(FIBLETS, times) for times in ((1,) if quick else (1, 2)) if tractogram]
-    return found + [Way(UNCULLED, 1)] + [Way(name, times) for times in grids for name in (SMOOTH, HARD)]
+    found = [Variant(SMOOTH, 1), Variant(HARD, 1)]
+    found += [Variant(FIBLETS, times) for times in ((1,) if quick else (1, 2)) if tractogram]
+    return found + [Variant(UNCULLED, 1)] + [Variant(name, times) for times in grids for name in (SMOOTH, HARD)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,27 +118,27 @@ class HaloStudy:
     notes = (
         "Black lines and points in white halos. *mean*, *rms*, *p99*, *max*: differences of pixels from a picture of "
         "64 samples a pixel, all black or white, in percent of the difference between both; *off by 1/4*: share of "
-        "pixels that are farther off. That picture is among the ways, with errors of 0 and the time of one drawing, "
+        "pixels that are farther off. It is among the variants, with errors of 0 and the time of one drawing, "
         "averages included; what *smooth edges* of 64 samples are off by is how far it may be off itself.",
         "*smooth edges*: a line turns into its own halo over a pixel, the default; *black or white*: without. A line "
         "that ends at another's halo ends at a pixel in both. *not culled*: as Everts et al. 2009 have it; culling "
         "begins at 16,000 segments and changes no pixel. *halos of fiblets*: compressed streamlines, each a tube a "
         "pixel wide at least, whose finished picture is given halos at each pixel; ends are round, and of what cannot "
-        "be seen there are none. On tractograms lines have the look that both ways have: no tapered ends, one width, "
+        "be seen there are none. On tractograms lines have the look that both have: no tapered ends, one width, "
         "and halos that begin to go back at the line's edge.",
-        "*helices*: held against the float64 reference of what each pixel shows, one sample a pixel, which is among "
-        "the ways with its time on the CPU. *kind*: pixels that show line, halo or nothing where it is another of "
+        "*helices*: compared with the float64 reference of what each pixel shows, one sample a pixel, which is among "
+        "the variants with its time on the CPU. *kind*: pixels that show line, halo or nothing where it is another of "
         "these, percent of all; *depth*: the 99th percentile, mm along the view axis, where both show the same kind. "
         "*crossings*: lines in front of others that lie 1 to 9 mm behind; *gap*: how far the white on either side of "
         "a crossing is from appendix A's width, pixels, mean and greatest.",
         "The camera turns by 1.14° between frames. Pictures are of the engine without VTK, each waited for. Where "
         "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
-        "*memory*: what grows with the data. *fibres-subset*, *office* and *shape-small* (points) are made up, of "
+        "*memory*: what grows with the data. *fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
         "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        """Yield a record for every scene and way."""
+        """Yield a record for every scene and variant."""
         with drawing_context(options) as ctx:
             for measure in (_exact, _gaps):
                 yield from measure(ctx, options, left_out)
@@ -149,7 +149,7 @@ class HaloStudy:
 def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
     points = min(options.points, QUICK_POINTS) if options.quick else options.points
-    streamlines = made_up(STEP, False, points, options.seed)
+    streamlines = synthetic_tracking(STEP, False, points, options.seed)
     yield _tractogram(DataSet(f"brain, {STEP:g} mm", "tractograms", streamlines), options)
     if not options.quick:
         from pvfiblets.synthetic.halos import halo_set
@@ -178,15 +178,15 @@ def _tractogram(data: DataSet, options: Options) -> Scene:
     return Scene(data.name, data.group, lines, look, _path(lines, options), data)
 
 
-def _record(scene: tuple[str, str], way: Way, options: Options, **more: Any) -> Record:
+def _record(scene: tuple[str, str], variant: Variant, options: Options, **more: Any) -> Record:
     return Record(
         data=scene[0],
         group=scene[1],
         approximation="pictures with halos",
-        way=way.name,
-        setting=way.setting,
+        method=variant.name,
+        setting=variant.setting,
         machine=options.machine,
-        **{"ours": True, "default": way.default, **more},
+        **{"ours": True, "default": variant.default, **more},
     )
 
 
@@ -199,26 +199,27 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
 
 
 def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold pictures against finely sampled ones."""
+    """Compare pictures with finely sampled ones."""
     turns, done, late = turns_of(ctx), [], []
-    right: list[Singles] | None = None
+    truth: list[Singles] | None = None
     with ExitStack() as stack:
-        for way in [Way(HARD, REFERENCE), *ways(options.quick, scene.tractogram is not None), Way(SMOOTH, REFERENCE)]:
-            if not options.budget.allows() or (right is None and way.times != REFERENCE):
-                late.append(f"{way.name} ({way.setting})")
+        others = variants(options.quick, scene.tractogram is not None)
+        for variant in [Variant(HARD, REFERENCE), *others, Variant(SMOOTH, REFERENCE)]:
+            if not options.budget.allows() or (truth is None and variant.times != REFERENCE):
+                late.append(f"{variant.name} ({variant.setting})")
                 continue
             try:
-                if way.times == REFERENCE:
-                    found, seconds, clock = _finely(ctx, scene, way)
-                    right = right or found
+                if variant.times == REFERENCE:
+                    found, seconds, clock = _finely(ctx, scene, variant)
+                    truth = truth or found
                     times = {"draw": timing([seconds], len(found), FRAME, clock)}
-                    record = _record((scene.name, scene.group), way, options, errors={}, times=times)
+                    record = _record((scene.name, scene.group), variant, options, errors={}, times=times)
                 else:
-                    found, record = _measured(ctx, scene, way, turns, stack, options)
-                record.errors = _percent(differences(found, right or found))
+                    found, record = _measured(ctx, scene, variant, turns, stack, options)
+                record.errors = _percent(differences(found, truth or found))
                 done.append(record)
             except (EngineError, ValueError) as error:
-                left_out.append(LeftOut(f"{scene.name}: {way.name} ({way.setting})", str(error)))
+                left_out.append(LeftOut(f"{scene.name}: {variant.name} ({variant.setting})", str(error)))
         turns.run(options.repeats, options.budget.allows)
         timed = (record for record in done if not record.times)
         for number, record in enumerate(timed):
@@ -226,102 +227,102 @@ def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut])
         yield from done
     if late:
         what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{scene.name}: {what}", "the time given was used up"))
-    options.log(f"halos: {scene.name}: {len(done)} ways")
+        left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
+    options.log(f"halos: {scene.name}: {len(done)} variants")
 
 
-def _finely(ctx: Any, scene: Scene, way: Way) -> tuple[list[Singles], float, str]:
+def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], float, str]:
     """Draw with many samples; return pictures, and how many seconds they took together."""
     clock, name = clock_of(ctx)
     strips = Strips(ctx, scene.drawn)
     try:
         begun = clock()
-        found = [picture(strips.renderer, camera, way.look(scene.look), way.times) for camera in scene.path[1:]]
+        found = [picture(strips.renderer, camera, variant.look(scene.look), variant.times) for camera in scene.path[1:]]
         return found, clock() - begun, name
     finally:
         strips.release()
 
 
 def _measured(
-    ctx: Any, scene: Scene, way: Way, turns: Turns, stack: ExitStack, options: Options
+    ctx: Any, scene: Scene, variant: Variant, turns: Turns, stack: ExitStack, options: Options
 ) -> tuple[list[Singles], Record]:
-    """Draw in one way; return pictures and a record without errors, and add the flight to those that are timed."""
-    drawing = way.drawing(ctx, scene)
+    """Draw in one variant; return pictures and a record without errors, and add the flight to those that are timed."""
+    drawing = variant.drawing(ctx, scene)
     stack.callback(drawing.release)
-    flight = Flight(ctx, drawing, scene.path, way.look(scene.look))
+    flight = Flight(ctx, drawing, scene.path, variant.look(scene.look))
     found = flight.pictures(drawing.read)
     turns.add(flight)
     costs = {"memory": Figure(drawing.nbytes / max(scene.drawn.n_points, 1), "bytes/point")}
-    return found, _record((scene.name, scene.group), way, options, errors={}, costs=costs)
+    return found, _record((scene.name, scene.group), variant, options, errors={}, costs=costs)
 
 
 # ------------------------------------------------------------------------------------------- what pictures should show
 
 
 def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold pictures of one sample a pixel against the float64 reference."""
+    """Compare pictures of one sample a pixel with the float64 reference."""
     from pvfiblets.halos.reference import picture as reference
 
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
     name, drawn = f"{count} helices", helices(count)
     if not options.budget.allows():
-        left_out.append(LeftOut(f"{name}: everything", "the time given was used up"))
+        left_out.append(LeftOut(f"{name}: everything", LATE))
         return
     look, path = look_of(drawn), orbit(drawn, 1, 1, size)[0]
     camera = path[1]
-    for way in (Way(SMOOTH, 1), Way(HARD, 1)):  # the reference of one stands for both
-        chosen = way.look(look)
+    for variant in (Variant(SMOOTH, 1), Variant(HARD, 1)):  # the reference of one stands for both
+        chosen = variant.look(look)
         begun = time.process_time()
-        right = reference(drawn, chosen, camera.model_view_projection, size)
+        truth = reference(drawn, chosen, camera.model_view_projection, size)
         seconds = time.process_time() - begun
         strips, turns = Strips(ctx, drawn), turns_of(ctx)
         try:
             flight = Flight(ctx, strips, path, chosen)
             flight.pictures(strips.read)
             buffer = strips.render(camera, chosen)
-            errors = pixel_errors(buffer, strips.read(buffer), right, camera)
+            errors = pixel_errors(buffer, strips.read(buffer), truth, camera)
             turns.add(flight)
             turns.run(options.repeats, options.budget.allows)
         finally:
             strips.release()
-        yield _record((name, "helices"), way, options, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
-        if way.name == HARD:
+        yield _record((name, "helices"), variant, options, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
+        if variant.name == HARD:
             continue
         yield _record(
             (name, "helices"),
-            Way("float64 reference", 1),
+            Variant("float64 reference", 1),
             options,
             errors={key: Figure(0.0, figure.unit) for key, figure in errors.items()},
             times={"draw": timing([seconds], 1, FRAME, "cpu")},
             ours=False,
         )
-    options.log(f"halos: {name}: 2 ways")
+    options.log(f"halos: {name}: 2 variants")
 
 
 def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Hold the gaps at crossings against the paper's formula."""
+    """Compare the gaps at crossings with the paper's formula."""
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.
     aside = replace(made, model_view_projection=_moved(made, 1e-3))
     turns, done, late = turns_of(ctx), [], []
     with ExitStack() as stack:
-        for way in (way for way in ways(options.quick, False) if way.name != UNCULLED):
+        for variant in (variant for variant in variants(options.quick, False) if variant.name != UNCULLED):
             if not options.budget.allows():
-                late.append(f"{way.name} ({way.setting})")
+                late.append(f"{variant.name} ({variant.setting})")
                 continue
-            strips = Strips(ctx, made.lines, way.times)
+            strips = Strips(ctx, made.lines, variant.times)
             stack.callback(strips.release)
-            flight = Flight(ctx, strips, [aside, made], way.look(made.look))
+            flight = Flight(ctx, strips, [aside, made], variant.look(made.look))
             (found,) = flight.pictures(strips.read)
             turns.add(flight)
-            done.append(_record(("crossings", "crossings"), way, options, errors=gaps(found, made)))
+            done.append(_record(("crossings", "crossings"), variant, options, errors=gaps(found, made)))
         turns.run(options.repeats, options.budget.allows)
     for number, record in enumerate(done):
         record.times = {"draw": turns.timing(number, 1, FRAME)}
         yield record
     if late:
-        left_out.append(LeftOut(f"crossings: {', '.join(late)}", "the time given was used up"))
-    options.log(f"halos: crossings: {len(done)} ways")
+        left_out.append(LeftOut(f"crossings: {', '.join(late)}", LATE))
+    options.log(f"halos: crossings: {len(done)} variants")
 
 
 def _moved(made: Crossings, pixels: float) -> Any:

@@ -1,4 +1,4 @@
-"""Two ways of drawing halos on a bare context: strips around lines or points, and halos of finished pictures."""
+"""Two methods of drawing halos on a bare context: strips around lines or points, and halos of finished pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, Look
 
 from .cameras import Camera
-from .halos_pictures import Seen, Singles, averaged, darkness_of, finer
+from .halos_pictures import Singles, Viewpoint, averaged, darkness_of, finer
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -67,7 +67,7 @@ class Strips:
         self.renderer = HaloRenderer(ctx, drawn, culling=culling)
         self._times = times
 
-    def render(self, camera: Seen, look: Look) -> Any:
+    def render(self, camera: Viewpoint, look: Look) -> Any:
         """Draw."""
         return self.renderer.render(_view(camera, self._times), finer(look, self._times))
 
@@ -127,9 +127,9 @@ class FibletHalos:
         self._renderer.release()
 
 
-def _view(camera: Seen, times: int) -> View:
+def _view(camera: Viewpoint, times: int) -> View:
     return View((times * camera.size[0], times * camera.size[1]), camera.model_view_projection)
 
 
-def _bytes(told: dict[str, Any]) -> int:
-    return sum(buffer["bytes"] for buffer in told["buffers"] if buffer["name"] not in PICTURE)
+def _bytes(report: dict[str, Any]) -> int:
+    return sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE)

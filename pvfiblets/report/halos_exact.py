@@ -38,8 +38,8 @@ def kinds(gbuffer: Any) -> tuple[npt.NDArray[np.int64], Floats]:
     return np.where(keys == EMPTY, NOTHING, shown), keys / float(EMPTY)
 
 
-def pixel_errors(gbuffer: Any, darkness: Singles, right: Picture, camera: Camera) -> dict[str, Figure]:
-    """Hold a picture of one sample a pixel against the reference's.
+def pixel_errors(gbuffer: Any, darkness: Singles, truth: Picture, camera: Camera) -> dict[str, Figure]:
+    """Compare a picture of one sample a pixel with the reference's.
 
     Returns
     -------
@@ -48,15 +48,15 @@ def pixel_errors(gbuffer: Any, darkness: Singles, right: Picture, camera: Camera
         of these, percent of all; ``depth``: the 99th percentile over pixels of the same kind, mm along the view axis.
     """
     kind, depth = kinds(gbuffer)
-    same = (kind == right.kind) & (kind != NOTHING)
+    same = (kind == truth.kind) & (kind != NOTHING)
 
     def distance(window: Floats) -> Floats:
         return camera.far * camera.near / (camera.far - window * (camera.far - camera.near))
 
-    off = np.abs(distance(depth[same]) - distance(right.depth[same]))
+    off = np.abs(distance(depth[same]) - distance(truth.depth[same]))
     return {
-        "mean": Figure(100.0 * float(np.abs(darkness - right.ink).mean()), "%"),
-        "kind": Figure(100.0 * float((kind != right.kind).mean()), "%"),
+        "mean": Figure(100.0 * float(np.abs(darkness - truth.ink).mean()), "%"),
+        "kind": Figure(100.0 * float((kind != truth.kind).mean()), "%"),
         "depth": Figure(float(np.percentile(off, 99)) if off.size else 0.0, "mm"),
     }
 
@@ -74,7 +74,7 @@ class Crossings:
         What is drawn, and how it is seen.
     columns, rows : numpy.ndarray
         Pixels: where the axes of lines in front, not at whole ones, and behind are.
-    right : numpy.ndarray
+    truth : numpy.ndarray
         Of each line behind, how wide a gap shows on either side of a line in front, pixels (appendix A).
     """
 
@@ -84,7 +84,7 @@ class Crossings:
     model_view_projection: Floats
     columns: Floats
     rows: Floats
-    right: Floats
+    truth: Floats
 
 
 def crossings() -> Crossings:
@@ -100,12 +100,12 @@ def crossings() -> Crossings:
     look = Look(LINE_WIDTH, STRIP_WIDTH, DEEPEST, n_tapered=0, min_width=0.0)
     matrix = np.diag([2.0 / width, 2.0 / height, -1.0 / 20.0, 1.0])
     matrix[:2, 3] = -1.0
-    right = halo_width(DEPTHS, LINE_WIDTH, STRIP_WIDTH, DEEPEST) / PIXEL
-    return Crossings(HaloLines(points, 2 * np.arange(len(points) // 2 + 1)), look, size, matrix, columns, rows, right)
+    truth = halo_width(DEPTHS, LINE_WIDTH, STRIP_WIDTH, DEEPEST) / PIXEL
+    return Crossings(HaloLines(points, 2 * np.arange(len(points) // 2 + 1)), look, size, matrix, columns, rows, truth)
 
 
 def gaps(darkness: Singles, made: Crossings) -> dict[str, Figure]:
-    """Measure gaps on either side of lines in front, and hold them against appendix A.
+    """Measure gaps on either side of lines in front, and compare them with appendix A.
 
     What is white along a line behind, from half way to the next crossing, is the gap on both sides.
 
@@ -116,9 +116,9 @@ def gaps(darkness: Singles, made: Crossings) -> dict[str, Figure]:
     """
     half = int(APART / PIXEL / 2)
     off = []
-    for row, right in zip(made.rows, made.right, strict=True):
+    for row, truth in zip(made.rows, made.truth, strict=True):
         for column in made.columns:
             middle = int(np.floor(column))
             white = 1.0 - darkness[int(row) - 1 : int(row) + 1, middle - half + 1 : middle + half]
-            off.append(abs(float(white.sum(axis=1).mean()) / 2.0 - right))
+            off.append(abs(float(white.sum(axis=1).mean()) / 2.0 - truth))
     return {"gap": Figure(float(np.mean(off)), "px"), "gap max": Figure(float(max(off)), "px")}

@@ -35,12 +35,12 @@ __all__ = [
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
 MOST_PIXELS = 1 << 24  # of one rendering; larger ones are drawn in tiles
 WIDTH_CUE = 0.5  # the plotter's own
-WRONG = 0.25  # of black and white: pixels that are off by more are told as a share
+WRONG = 0.25  # of black and white: pixels that are off by more are counted
 
 Singles = npt.NDArray[np.float32]
 
 
-class Seen(Protocol):
+class Viewpoint(Protocol):
     """What a picture is taken by: a camera, or a matrix alone."""
 
     @property
@@ -139,7 +139,7 @@ def darkness_of(gbuffer: Any) -> Singles:
     return np.where(keys != EMPTY, ink, np.float16(0.0)).astype(np.float32)
 
 
-def picture(renderer: Any, camera: Seen, look: Look, times: int, most: int = MOST_PIXELS) -> Singles:
+def picture(renderer: Any, camera: Viewpoint, look: Look, times: int, most: int = MOST_PIXELS) -> Singles:
     """Return a picture of so many samples along a pixel's side, averaged.
 
     Parameters
@@ -187,9 +187,9 @@ def picture(renderer: Any, camera: Seen, look: Look, times: int, most: int = MOS
     return np.block(rows)
 
 
-def differences(pictures: Sequence[Singles], right: Sequence[Singles]) -> dict[str, float]:
+def differences(pictures: Sequence[Singles], truth: Sequence[Singles]) -> dict[str, float]:
     """Return by how much pixels differ, as shares of the difference between black and white."""
-    off = np.abs(np.stack(pictures) - np.stack(right))
+    off = np.abs(np.stack(pictures) - np.stack(truth))
     return {
         "mean": float(off.mean()),
         "rms": float(np.sqrt((off**2).mean())),

@@ -21,7 +21,7 @@ def about(seed: int, quick: bool, driver: str = "") -> dict[str, Any]:
     Parameters
     ----------
     seed : int
-        Of all made-up data.
+        Of all synthetic data.
     quick : bool
         Whether only a little of each was measured.
     driver : str

@@ -1,4 +1,4 @@
-"""Errors and times, measured alike for every way; independent of what is measured."""
+"""Errors and times, measured alike for every method; independent of what is measured."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def distances(original: Floats, decoded: Floats) -> npt.NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If there are not as many decoded points as originals, or one is not finite: a way that loses points has no
+        If there are not as many decoded points as originals, or one is not finite: a method that loses points has no
         error that could be averaged.
     """
     if original.shape != decoded.shape:
@@ -100,7 +100,7 @@ class Turns:
                 if not go_on():
                     return
                 if turn == 1 and inner > 1:
-                    seconds.clear()  # the first was too short to be told
+                    seconds.clear()  # the first was too short to be measured
                 seconds.append(self._once(function, inner))
 
     def timing(self, number: int, items: float, item: str = "point") -> Timing:

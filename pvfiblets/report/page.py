@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .record import FRAME, CaseResult, LeftOut, Record, Report, StudyResult, Timing
+from .record import FRAME, CaseResult, LeftOut, Record, StudyResult, Timing
+from .report_file import Report
 
 __all__ = ["page"]
 
@@ -15,8 +16,8 @@ MANY = 6
 
 _WHAT = (
     "What pvfiblets approximates, how far each approximation is from the exact answer, and what it costs, beside other "
-    "ways to do the same. A study compares ways on several data sets; the program's own default is **bold**. Plots "
-    "show cost to the right and error upwards, so that good ways are at the lower left."
+    "methods. A study compares methods on several data sets; the program's own default is **bold**. Plots "
+    "show cost to the right and error upwards, so that good methods are at the lower left."
 )
 
 Pictures = Mapping[str, Sequence[tuple[str, str]]]
@@ -51,8 +52,8 @@ def _about(about: Mapping[str, Any]) -> list[str]:
         f"{versions}.",
         "",
         "Times are medians of repeats in one run, least and greatest in brackets, read from the processor time of one "
-        "process unless said otherwise; compare ratios rather than seconds between machines. *front*: no other way of "
-        "the table is at least as good in both figures and better in one.",
+        "process unless said otherwise; compare ratios rather than seconds between machines. *front*: no other method "
+        "of the table is at least as good in both figures and better in one.",
     ]
     if about.get("load", 0.0) > 0.5 * (about["cores"] or 1):
         lines += [
@@ -106,7 +107,7 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
 
 
 def _left_out(items: Sequence[LeftOut]) -> list[str]:
-    """A table of what was left out and why; what many things have in common is told once, with them folded below."""
+    """A table of what was left out and why; what many things have in common is said once, with them folded below."""
     by_reason: dict[str, list[str]] = {}
     for item in items:
         by_reason.setdefault(item.reason, []).append(item.what)
@@ -115,7 +116,7 @@ def _left_out(items: Sequence[LeftOut]) -> list[str]:
         if len(whats) <= MANY:
             lines += [f"| {_cell(what)} | {_cell(reason)} |" for what in whats]
             continue
-        lines.append(f"| {len(whats)} ways, listed below | {_cell(reason)} |")
+        lines.append(f"| {len(whats)} methods, listed below | {_cell(reason)} |")
         folded += ["", "<details>", f"<summary>{len(whats)} left out: {reason}</summary>", ""]
         folded += [*(f"- {' '.join(what.split())}" for what in whats), "", "</details>"]
     return lines + folded
@@ -129,7 +130,7 @@ def _defaults(study: StudyResult) -> list[str]:
     labels = dict.fromkeys(record.label for record in study.records if record.default)
     lines = [
         f"By default: {', '.join(f'**{label}**' for label in labels)}. At each pair of figures: its own two, and after "
-        "a colon the ways that beat it in both, in time by more than repeats differ.",
+        "a colon the methods that beat it in both, in time by more than repeats differ.",
         "",
         "| data | " + " | ".join(heads) + " |",
         "|---|" + "---|" * len(heads),
@@ -137,7 +138,7 @@ def _defaults(study: StudyResult) -> list[str]:
     for record in (record for record in shown if record.default):
         cells = []
         for pair in pairs:
-            x, y = record.shown(pair.x), record.shown(pair.y)
+            x, y = record.in_unit(pair.x), record.in_unit(pair.y)
             if not math.isfinite(y):  # a pair that is for other data sets
                 cells.append("")
                 continue
@@ -189,7 +190,7 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
     units = {name: _unit(records, "costs", name) for name in costs} | {
         name: _unit(records, "errors", name) for name in errors
     }
-    heads = ["way", "setting", *(f"{name}, {units[name]}" for name in costs)]
+    heads = ["method", "setting", *(f"{name}, {units[name]}" for name in costs)]
     heads += [name if name.endswith(units[name]) else f"{name}, {units[name]}" for name in errors]
     for name in times:
         item = next(record.times[name].item for record in records if name in record.times)
@@ -200,7 +201,7 @@ def _table(study: StudyResult, records: Sequence[Record]) -> list[str]:
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     for record in records:
         bold = "**" if record.default else ""
-        cells = [f"{bold}{record.way}{bold}", record.setting]
+        cells = [f"{bold}{record.method}{bold}", record.setting]
         cells += [_number(record.value(f"costs/{name}")) for name in costs]
         cells += [_number(record.value(f"errors/{name}")) for name in errors]
         for name in times:
@@ -224,7 +225,7 @@ def _unit(records: Sequence[Record], kind: str, name: str) -> str:
 
 
 def _ratio(timing: Timing, base: Timing) -> float:
-    """The figure of the column before, over the default's: of speeds, but of times where pictures are told by them."""
+    """The figure of the column before, over the default's: of speeds, but of times for pictures."""
     return base.rate / timing.rate if timing.item == FRAME else timing.rate / base.rate
 
 

@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .dot_plot import in_rows
-from .record import Axes, Record, Report, StudyResult
+from .record import Axes, Record, StudyResult
+from .report_file import Report
 
 __all__ = ["draw"]
 
@@ -44,19 +45,19 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
     made: dict[str, list[tuple[str, str]]] = {}
     for study in report.studies:
         shown = [record for record in study.records if record.group]
-        colours = _told_apart([record.way for record in study.records], COLOURS)
+        colours = _assigned([record.method for record in study.records], COLOURS)
         for pair in study.axes:
             for group in dict.fromkeys(record.group for record in shown):
                 records = [record for record in shown if record.group == group and _points(record, pair)]
                 name = f"{study.name}-{pair.key}-{group}.png"
                 if not records:
                     continue
-                if pair.rivals:
+                if pair.alternatives:
                     shows = f"{pair.y_label} against {pair.x_label}: {group}"
                     picture = _picture(study, records, pair, colours)
                 else:
                     shows = f"{pair.x_label} and {pair.y_label} of each: {group}"
-                    picture = in_rows(study, records, pair, _told_apart([record.way for record in records], COLOURS))
+                    picture = in_rows(study, records, pair, _assigned([record.method for record in records], COLOURS))
                 picture.savefig(folder / name, dpi=90)
                 made.setdefault(study.name, []).append((name, shows))
     return made
@@ -68,26 +69,27 @@ def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
         prefix = pair.y.partition("/")[2]
         numbers = [(name, figure.value) for name, figure in record.errors.items() if name.startswith(prefix)]
         return sorted((float(name[len(prefix) :]), value) for name, value in numbers if math.isfinite(value))
-    x, y = record.shown(pair.x), record.shown(pair.y)
+    x, y = record.in_unit(pair.x), record.in_unit(pair.y)
     return [(x, y)] if math.isfinite(x) and math.isfinite(y) and x > 0.0 else []
 
 
-def _told_apart(names: Iterable[str], looks: Sequence[str]) -> dict[str, str]:
+def _assigned(names: Iterable[str], looks: Sequence[str]) -> dict[str, str]:
     """Give every name a look; some share one where there are more names than looks."""
     return {name: looks[i % len(looks)] for i, name in enumerate(dict.fromkeys(names))}
 
 
 def _picture(study: StudyResult, records: list[Record], pair: Axes, colours: dict[str, str]) -> Any:
     sets = list(dict.fromkeys(record.data for record in records))
-    ways = list(dict.fromkeys(record.way for record in study.records))
+    methods = list(dict.fromkeys(record.method for record in study.records))
     settings = list(dict.fromkeys(record.setting for record in study.records))
-    # A way has one colour in all pictures of a study, if there are enough of them; else one that is its own in each.
-    if len(ways) > len(COLOURS):
-        colours = _told_apart([way for way in ways if any(record.way == way for record in records)], COLOURS)
-    markers = _told_apart([s for s in settings if any(record.setting == s for record in records)], MARKERS)
+    # A method has one colour in all pictures of a study, if there are enough of them; else one that is its own in each.
+    if len(methods) > len(COLOURS):
+        colours = _assigned([m for m in methods if any(record.method == m for record in records)], COLOURS)
+    markers = _assigned([s for s in settings if any(record.setting == s for record in records)], MARKERS)
     rows = -(-len(sets) // COLUMNS)
-    here = {record.way for record in records}, {record.setting for record in records}
-    handles = _legend([w for w in ways if w in here[0]], [s for s in settings if s in here[1]], colours, markers, pair)
+    of_methods = [name for name in methods if any(record.method == name for record in records)]
+    of_settings = [name for name in settings if any(record.setting == name for record in records)]
+    handles = _legend(of_methods, of_settings, colours, markers, pair)
     columns = min(4, max(2, 2 * min(COLUMNS, len(sets))))
     below = 0.3 + 0.2 * -(-len(handles) // columns)  # inches for the legend
     height, width = 3.1 * rows + below + 1.0, 4.3 * min(COLUMNS, len(sets)) + 0.4
@@ -102,7 +104,7 @@ def _picture(study: StudyResult, records: list[Record], pair: Axes, colours: dic
     for panel, name in zip(panels.flat, sets, strict=False):
         members = [record for record in records if record.data == name]
         for record in members:
-            _mark(panel, record, pair, colours[record.way], markers[record.setting], floor)
+            _mark(panel, record, pair, colours[record.method], markers[record.setting], floor)
         if not pair.series:
             front = sorted(
                 (x, max(y, floor)) for record in members if pair.key in record.front for x, y in _points(record, pair)
@@ -173,9 +175,9 @@ def _short(x: float) -> str:
 
 
 def _legend(
-    ways: Sequence[str], settings: Sequence[str], colours: dict[str, str], markers: dict[str, str], pair: Axes
+    methods: Sequence[str], settings: Sequence[str], colours: dict[str, str], markers: dict[str, str], pair: Axes
 ) -> list[Line2D]:
-    handles = [Line2D([], [], color=colours[way], lw=4, label=way) for way in ways]
+    handles = [Line2D([], [], color=colours[method], lw=4, label=method) for method in methods]
     handles += [
         Line2D([], [], color="#606060", marker=markers[s], ls="none", label=s or "no setting") for s in settings
     ]

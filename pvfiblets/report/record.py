@@ -1,29 +1,13 @@
-"""The one form of all measurements, and the file that keeps them.
-
-``report.json`` is what :meth:`Report.to_json` writes: ``format`` (a name and a version), ``about`` (machine, versions,
-seed, date), and ``studies``. Each study has its ``records``, the pairs of figures to be plotted against each other
-(``axes``), and what was ``left_out`` and why. Numbers are written with six digits, those that are not finite as null.
-"""
+"""The one form of all measurements; :mod:`.report_file` keeps them."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from os import PathLike
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, field
 
-from pvfiblets.errors import FormatError
+__all__ = ["FRAME", "Axes", "CaseResult", "Figure", "LeftOut", "Record", "StudyResult", "Timing"]
 
-__all__ = ["FORMAT", "FRAME", "Axes", "CaseResult", "Figure", "LeftOut", "Record", "Report", "StudyResult", "Timing"]
-
-FORMAT = "pvfiblets report 1"
-NAME = "report.json"
-LISTED = ("records", "cases")  # one to a line; a file without cases is read as one whose studies have none
 FRAME = "frame"  # the item of pictures
-DIGITS = 6
 
 
 @dataclass(frozen=True)
@@ -47,7 +31,7 @@ class Timing:
     items : float
         How many of ``item`` one call handles.
     item : str
-        Such as ``"point"``. Times of a ``"frame"`` are told in ms, of all else in ns.
+        Such as ``"point"``. Times of a ``"frame"`` are given in ms, of all else in ns.
     clock : str
         What was read: ``"cpu"`` is the processor time of this process, which other programs disturb little.
     """
@@ -67,18 +51,18 @@ class Timing:
 
     @property
     def scale(self) -> float:
-        """What seconds for one item are multiplied by to be told."""
+        """What seconds for one item are multiplied by in tables and plots."""
         return 1e3 if self.item == FRAME else 1e9
 
     @property
     def rate(self) -> float:
-        """Items per second; NaN where none can be told."""
+        """Items per second; NaN where there is none."""
         return self.items / self.median if self.median > 0.0 and self.items else math.nan
 
 
 @dataclass
 class Record:
-    """One way of doing something with one setting, on one data set.
+    """One method with one setting, on one data set.
 
     Attributes
     ----------
@@ -86,14 +70,14 @@ class Record:
         Data set, and the group of sets that are drawn in one picture; an empty group is not drawn.
     approximation : str
         What is approximated.
-    way, setting : str
+    method, setting : str
         Method, which gives the colour, and its setting.
     errors, costs : dict of str to Figure
         Such as ``{"max": Figure(0.01, "mm")}`` and ``{"size": Figure(1.4, "bytes/point")}``; less is better.
     times : dict of str to Timing
         By what is done.
     ours, default : bool
-        Whether this is the program's own way, and its default.
+        Whether this is the program's own method, and its default.
     machine : str
         The ``name`` of the machine in the report's ``about``: times of two machines are never compared.
     front : list of str
@@ -103,7 +87,7 @@ class Record:
     data: str
     group: str
     approximation: str
-    way: str
+    method: str
     setting: str
     errors: dict[str, Figure]
     costs: dict[str, Figure] = field(default_factory=dict)
@@ -115,11 +99,11 @@ class Record:
 
     @property
     def label(self) -> str:
-        """Way and setting."""
-        return f"{self.way} ({self.setting})" if self.setting else self.way
+        """Variant and setting."""
+        return f"{self.method} ({self.setting})" if self.setting else self.method
 
-    def shown(self, path: str) -> float:
-        """Return one number in the unit that it is told in: times as :attr:`Timing.scale` has them."""
+    def in_unit(self, path: str) -> float:
+        """Return one number in the unit of tables and plots: times as :attr:`Timing.scale` has them."""
         kind, _, name = path.partition("/")
         return self.value(path) * (self.times[name].scale if kind == "times" and name in self.times else 1.0)
 
@@ -158,11 +142,11 @@ class Axes:
     x_label, y_label : str
         With units. Times are drawn in ns per item, those of pictures in ms per frame.
     series : bool
-        A line for each way instead: ``y`` is how the names of several errors begin, which end in the numbers that they
-        are drawn at; ``x`` is empty, and there is no front.
-    rivals : bool
-        Whether one takes this way or that, so that one may be better. Where each adds something else there is no
-        front, nothing beats the default, and all are drawn in rows beside it.
+        A line for each method instead: ``y`` is how the names of several errors begin, which end in the numbers that
+        they are drawn at; ``x`` is empty, and there is no front.
+    alternatives : bool
+        Whether one method is taken in place of another, so that one may be better. Where each adds something else there
+        is no front, nothing beats the default, and all are drawn in rows beside it.
     """
 
     key: str
@@ -171,12 +155,12 @@ class Axes:
     x_label: str
     y_label: str
     series: bool = False
-    rivals: bool = True
+    alternatives: bool = True
 
     @property
     def has_front(self) -> bool:
         """Whether some records beat others."""
-        return self.rivals and not self.series
+        return self.alternatives and not self.series
 
 
 @dataclass(frozen=True)
@@ -249,134 +233,3 @@ class StudyResult:
     unavailable: str = ""
     seconds: float = 0.0
     cases: list[CaseResult] = field(default_factory=list)
-
-
-@dataclass
-class Report:
-    """Measurements of one run.
-
-    Attributes
-    ----------
-    about : dict
-        Machine, versions, seed, date: what the numbers hold for (:mod:`.machine`).
-    studies : list of StudyResult
-    """
-
-    about: dict[str, Any]
-    studies: list[StudyResult] = field(default_factory=list)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the report as what JSON can hold."""
-        result: dict[str, Any] = _plain(
-            {"format": FORMAT, "about": self.about, "studies": [asdict(study) for study in self.studies]}
-        )
-        return result
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any], path: str | PathLike[str] = "report") -> Report:
-        """Undo :meth:`to_json`.
-
-        Raises
-        ------
-        FormatError
-            If this is no report, or one of another version; the error names ``path``.
-        """
-        if not isinstance(data, Mapping) or data.get("format") != FORMAT:
-            found = data.get("format") if isinstance(data, Mapping) else type(data).__name__
-            raise FormatError(path, None, f"the format {found!r}", f"{FORMAT!r}, as `pvfiblets report` writes it")
-        try:
-            return cls(dict(data["about"]), [_study(study) for study in data["studies"]])
-        except (KeyError, TypeError, AttributeError) as error:
-            raise FormatError(
-                path, None, f"a report that lacks or adds something ({error})", "one as written"
-            ) from error
-
-    def save(self, folder: str | PathLike[str]) -> Path:
-        """Write ``report.json`` into a folder, which is made if there is none, and return its path."""
-        path = Path(folder) / NAME
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(_text(self.to_json()), encoding="utf-8")
-        return path
-
-    @classmethod
-    def load(cls, path: str | PathLike[str]) -> Report:
-        """Read a ``report.json``, or the one in a folder.
-
-        Raises
-        ------
-        FormatError
-            If it is not one.
-        """
-        file = Path(path)
-        if file.is_dir():
-            file = file / NAME
-        try:
-            data = json.loads(file.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise FormatError(file, None, f"text that is not JSON ({error})", "a report.json") from error
-        return cls.from_json(data, file)
-
-
-def _text(plain: dict[str, Any]) -> str:
-    """JSON with a line for each record: small, and what a new run changed can be seen."""
-
-    def one(value: Any, **rest: Any) -> str:
-        return json.dumps(value, allow_nan=False, ensure_ascii=False, **rest)
-
-    parts = []
-    for study in plain["studies"]:
-        rest = one({name: value for name, value in study.items() if name not in LISTED})
-        for name in LISTED:
-            rows = ",\n".join(one(row) for row in study[name])
-            rest = f'{rest[:-1]}, "{name}": [\n{rows}\n]}}' if rows or name == "records" else rest
-        parts.append(rest)
-    studies = ",\n".join(parts)
-    about = one(plain["about"], indent=1)
-    return f'{{"format": {one(plain["format"])},\n"about": {about},\n"studies": [\n{studies}\n]}}\n'
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, float):  # NumPy's float64 as well
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
-    return value
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
-
-
-def _figures(data: Mapping[str, Any]) -> dict[str, Figure]:
-    return {name: Figure(_number(figure["value"]), figure["unit"]) for name, figure in data.items()}
-
-
-def _timing(data: Mapping[str, Any]) -> Timing:
-    numbers = {name: _number(data[name]) for name in ("median", "low", "high", "items")}
-    return Timing(repeats=int(data["repeats"]), item=data["item"], clock=data["clock"], **numbers)
-
-
-def _record(data: Mapping[str, Any]) -> Record:
-    inner: dict[str, Any] = {
-        "errors": _figures(data["errors"]),
-        "costs": _figures(data["costs"]),
-        "times": {name: _timing(timing) for name, timing in data["times"].items()},
-    }
-    return Record(**{**data, **inner})
-
-
-def _case(data: Mapping[str, Any]) -> CaseResult:
-    measured = Figure(_number(data["measured"]["value"]), data["measured"]["unit"])
-    return CaseResult(**{**data, "measured": measured, "limit": _number(data["limit"])})
-
-
-def _study(data: Mapping[str, Any]) -> StudyResult:
-    lists: dict[str, Any] = {
-        "axes": [Axes(**axes) for axes in data["axes"]],
-        "records": [_record(record) for record in data["records"]],
-        "left_out": [LeftOut(**item) for item in data["left_out"]],
-        "cases": [_case(item) for item in data.get("cases", [])],
-    }
-    return StudyResult(**{**data, **lists})

@@ -10,7 +10,8 @@ from pathlib import Path
 from . import machine, studies
 from .data import files_of
 from .front import mark_fronts
-from .record import CaseResult, Report, StudyResult
+from .record import CaseResult, StudyResult
+from .report_file import Report
 from .study import Budget, Options, Unavailable
 
 __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
@@ -53,7 +54,7 @@ def make_report(
     minutes : float, optional
         For measuring, shared among the studies. By default as long as it takes, or those of a quick report.
     seed : int
-        Of made-up data.
+        Of synthetic data.
     log : callable
         Takes lines of progress.
     clock : callable
@@ -71,7 +72,7 @@ def make_report(
         raise ValueError(f"minutes is {minutes}; give a number above 0")
     if seed < 0:
         raise ValueError(f"seed is {seed}; give a whole number, 0 or more")
-    files_of(data)  # a wrong name is told before any measurement
+    files_of(data)  # a wrong name is an error before any measurement
     report = Report(machine.about(seed, quick))
     seconds = 60.0 * minutes if minutes is not None else QUICK_SECONDS - PLOT_SECONDS if quick else float("inf")
     whole = Budget(seconds, clock)

@@ -21,7 +21,7 @@ MODULES = {
     "decode": "pvfiblets.report.decode",
     "culling": "pvfiblets.report.culling",
     "tubes": "pvfiblets.report.tubes",
-    "volume": "pvfiblets.report.volume",
+    "volumes": "pvfiblets.report.volumes",
     "halos": "pvfiblets.report.halos",
     "features": "pvfiblets.report.features",
     "stability": "pvfiblets.report.stability.study",

@@ -79,9 +79,9 @@ class Options:
     files : tuple of Path
         Real data: files, and folders whose files are taken.
     seed : int
-        Of all made-up data.
+        Of all synthetic data.
     repeats : int
-        Timed calls of each way, after one that is not timed.
+        Timed calls of each method, after one that is not timed.
     points : int
         To which data sets are cut.
     machine : str
@@ -104,7 +104,7 @@ class Options:
 
 
 class Study(Protocol):
-    """One approximation, measured beside its rivals."""
+    """One approximation, measured beside its baselines."""
 
     name: str
     title: str

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,162 +11,55 @@ import numpy as np
 from pvfiblets.tubes import curves
 
 from .cameras import VIEWS, Lens, by_turns, orbit
-from .drawing import Part, clock_of, run_parts, timing, turns_of
+from .drawing import LATE, Part, run_parts, turns_of
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options
 from .tubes_drawings import CastTubes, Drawing, drawings
-from .tubes_pictures import FORMATS, Truth, helices
-from .tubes_rays import CLASSES, Rays, of_class
-from .tubes_sweeps import SWEEPS
+from .tubes_pictures import FORMATS, Truth, helices, sampled
+from .tubes_rays import GOAL
+from .tubes_solvers import SET_SIZE, SETS, ray_sweeps, solvers
+from .tubes_sweeps import PICTURE_SWEEPS
 
 __all__ = ["STUDY", "TubesStudy"]
 
-ITERATIONS = (1, 2, 3, 4, 6, 8, 12, 16, 24)  # besides each solver's own
-QUICK_ITERATIONS = (2, 4, 8)
-QUICK_CLASSES = ("thin", "usual", "cone")
-RAYS, QUICK_RAYS = 8192, 2048
 SIZE, QUICK_SIZE = (480, 270), (160, 90)
 TUBES = 6  # helices of 24 segments each
 RANGES = (10.0, 1e2, 1e3, 1e4, 1e5, 1e6)  # far over near
 QUICK_RANGES = (10.0, 1e3, 1e6)
-SEGMENTS = 20_000  # of a set that are held against their cubics
-LATE = "the time given was used up"
-
-
-
-@dataclass(frozen=True)
-class Way:
-    """A solver, whether by the chain of derivatives, and how many iterations of one search it is given."""
-
-    solver: str
-    chain: bool
-    iterations: int
-    default: bool
-
-    @property
-    def name(self) -> str:
-        """As it is told."""
-        return f"{self.solver}, {'chain' if self.chain else 'loop'}"
-
-    @property
-    def setting(self) -> str:
-        """As it is told."""
-        return f"{self.iterations} iteration{'s' if self.iterations > 1 else ''}"
-
-
-def ways(quick: bool) -> list[Way]:
-    """Return all solvers, by loop and the paper's by chain, in a whole report all by both, by numbers of iterations."""
-    from pvfiblets.engine.tubes import SOLVERS
-
-    default = next(iter(SOLVERS))
-    found = []
-    for solver, about in SOLVERS.items():
-        paper = about.feature is None  # always by the chain
-        for chain in (True,) if paper else (False,) if quick else (False, True):
-            for n in sorted({*(QUICK_ITERATIONS if quick else ITERATIONS), about.iterations}):
-                own = n == about.iterations
-                found.append(Way(solver, chain, n, default=own and solver == default and not chain))
-    return found
+QUICK_SETS = ("fibers",)
+SAMPLE, QUICK_SAMPLE = 1000, 200  # pixels of these that are compared with float64
+SEGMENTS = 20_000  # of a set that are compared with their cubics
 
 
 # ----------------------------------------------------------------------------------------------------------- the parts
 
 
-def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Yield records of solvers alone, on rays at halves of each class."""
-    classes = QUICK_CLASSES if options.quick else tuple(CLASSES)
-    clock, clock_name = clock_of(ctx)
-    with _Probes(ctx, clock) as probes:
-        for way in ways(options.quick):
-            probes.made(way)
-        options = replace(options, budget=options.budget.share())  # no measurement takes as long as compiling did
-        for name in classes:
-            rays = of_class(name, QUICK_RAYS if options.quick else RAYS, options.seed)
-            done: list[tuple[Way, Record, list[float]]] = []
-            late: list[str] = []
-            for way in ways(options.quick):
-                if not options.budget.allows():
-                    late.append(f"{way.name} {way.setting}")
-                    continue
-                answer, _ = probes.hits(way, rays)
-                record = Record(
-                    data=f"rays at {name} tubes",
-                    group="rays",
-                    approximation="where a ray meets a tube",
-                    way=way.name,
-                    setting=way.setting,
-                    errors=hit_errors(rays.errors(*answer)),
-                    ours=way.solver != "bisection",
-                    default=way.default,
-                    machine=options.machine,
-                )
-                done.append((way, record, []))
-            for turn in range(options.repeats):
-                for way, _, seconds in done:
-                    if turn == 0 or options.budget.allows():  # each has a time at least
-                        seconds.append(probes.hits(way, rays)[1])
-            for _, record, seconds in done:
-                record.times["hit"] = timing(seconds, len(rays.controls), "ray", clock_name)
-                yield record
-            if late:
-                left_out.append(LeftOut(f"rays at {name} tubes: {', '.join(late)}", LATE))
-            options.log(f"tubes: {name}: {len(done)} ways")
-
-
-def hit_errors(found: dict[str, float]) -> dict[str, Figure]:
-    """Return what is told of rays' errors."""
-    told = {f"hit {name}": Figure(found[name], "radii") for name in ("p50", "p99", "p99.9", "max")}
-    return told | {"missed": Figure(100.0 * found["missed"], "%"), "false": Figure(100.0 * found["false"], "%")}
-
-
-def sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Yield records of errors by ratios that end where float32 does: our way and the paper's."""
-    chosen = [way for way in ways(True) if way.default or (way.solver == "bisection" and way.iterations == 20)]
-    with _Probes(ctx, clock_of(ctx)[0]) as probes:
-        for name, (about, ratios, make) in SWEEPS.items():
-            shown = [ratio for ratio in ratios if ratio > 0.0]  # the axis is logarithmic
-            if not options.budget.allows():
-                left_out.append(LeftOut(f"sweep of {about}", LATE))
-                continue
-            errors: dict[Way, dict[str, Figure]] = {way: {} for way in chosen}
-            for ratio in shown[:: 3 if options.quick else 1]:
-                rays = make(ratio, QUICK_RAYS // 2, np.random.default_rng([options.seed, 3]))
-                for way in chosen:
-                    found = rays.errors(*probes.hits(way, rays)[0])
-                    errors[way][f"p99 at ratio {ratio:g}"] = Figure(found["p99"], "radii")
-            for way in chosen:
-                yield Record(
-                    about, "stiff", f"rays by {name}", way.name, way.setting, errors[way], ours=way.default,
-                    machine=options.machine,
-                )  # fmt: skip
-
-
-class _Probes(AbstractContextManager["_Probes"]):
-    """Solvers on one context, one program for each however many iterations."""
-
-    def __init__(self, ctx: Any, clock: Callable[[], float]) -> None:
-        self._ctx, self._clock = ctx, clock
-        self._made: dict[tuple[str, bool], Any] = {}
-
-    def __exit__(self, *_: object) -> None:
-        for probe in self._made.values():
-            probe.release()
-
-    def made(self, way: Way) -> Any:
-        """Return a way's solver, which is compiled when first asked for."""
-        from pvfiblets.engine.tubes.solver_probe import SolverProbe
-
-        key = way.solver, way.chain
-        if key not in self._made:
-            self._made[key] = SolverProbe(self._ctx, way.solver, chain=way.chain, clock=self._clock)
-        self._made[key].limit(way.iterations)
-        return self._made[key]
-
-    def hits(self, way: Way, rays: Rays) -> tuple[Any, float]:
-        """Return a way's answer, and the seconds that it took."""
-        probe = self.made(way)
-        answer = probe.hits(rays.controls, rays.origins, rays.directions)
-        return answer, probe.seconds
+def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of whole small pictures by ratio: how far the eye is, and how far the tubes are from 0."""
+    for name, (about, ratios, make) in PICTURE_SWEEPS.items():
+        if not options.budget.allows():
+            left_out.append(LeftOut(f"sweep of {about}", LATE))
+            continue
+        errors: dict[str, dict[str, Figure]] = {}
+        for ratio in ratios[:: 3 if options.quick else 1]:
+            tubes, lens = make(ratio)
+            truth = Truth.of(tubes, lens)
+            by = {}
+            for solver in ("auto", "bisection"):
+                drawn = CastTubes(ctx, tubes, solver)
+                try:
+                    drawn.draw(lens)
+                    by[drawn.setting] = truth.errors(*drawn.visible(lens))["depth p99"]
+                finally:
+                    drawn.release()
+            by["right, stored as float32"] = truth.stored(FORMATS["float32"])
+            for solver, p99 in by.items():
+                errors.setdefault(solver, {})[f"p99 at ratio {ratio:g}"] = Figure(p99, "radii")
+        for number, (solver, found) in enumerate(errors.items()):
+            yield Record(
+                about, "stiff", f"pictures by {name}", "ray cast" if number < 2 else solver,
+                solver if number < 2 else "", found, ours=number == 0, machine=options.machine,
+            )  # fmt: skip
 
 
 def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -194,13 +86,13 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 drawn = make()
                 made.append(drawn)
                 drawn.draw(camera)
-                found = truth.errors(*drawn.shown(lens))
+                found = truth.errors(*drawn.visible(lens))
                 units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
                 record = Record(
                     data=name,
                     group="pictures",
                     approximation="a picture of tubes",
-                    way=drawn.way,
+                    method=drawn.method,
                     setting=drawn.setting,
                     errors={key: Figure(value, units[key]) for key, value in found.items()},
                     costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
@@ -217,7 +109,71 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             for drawn in made:
                 drawn.release()
         if late:
-            left_out.append(LeftOut(f"{name}: {late} further ways of drawing", LATE))
+            left_out.append(LeftOut(f"{name}: {late} further methods of drawing", LATE))
+
+
+def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of pictures of the paper's sets by every solver, against float64 in a sample of the pixels."""
+    from pvfiblets.engine.tubes import SOLVERS
+    from pvfiblets.synthetic.tubes import tube_set
+
+    size, count = (QUICK_SIZE, QUICK_SAMPLE) if options.quick else (SET_SIZE, SAMPLE)
+    for name in QUICK_SETS if options.quick else SETS:
+        tubes = tube_set(name, options.seed)
+        for view in VIEWS:
+            data, camera = f"the set {name}, {view}", orbit(tubes, view, 2, size)[0]
+            lens, truth = Lens.of(camera), None
+            turns, done, late = turns_of(ctx), [], []
+            made: list[CastTubes] = []
+            try:
+                for solver in ("auto", *list(SOLVERS)[1:]):
+                    if not options.budget.allows():
+                        late.append(solver)
+                        continue
+                    drawn = CastTubes(ctx, tubes, solver)
+                    made.append(drawn)
+                    drawn.draw(camera)
+                    shown, there = drawn.visible(lens)
+                    if truth is None:
+                        rng = np.random.default_rng([options.seed, 1])
+                        truth = Truth.of(tubes, lens, sampled(there.reshape(size[::-1]), count, rng))
+                    done.append((_set_record(data, drawn, truth, shown, there, options), drawn))
+                for _, drawn in done:
+                    turns.add(by_turns(drawn.draw, [camera]))
+                turns.run(options.repeats, options.budget.allows)
+                for number, (record, _) in enumerate(done):
+                    record.times["draw"] = turns.timing(number, 1.0, FRAME)
+                    yield record
+            finally:
+                for drawn in made:
+                    drawn.release()
+            if late:
+                left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
+            options.log(f"tubes: {data}: {len(done)} solvers")
+
+
+def _set_record(data: str, drawn: CastTubes, truth: Truth, shown: Any, there: Any, options: Options) -> Record:
+    here, should = there[truth.pixels], truth.there
+    off = truth.depth_errors(shown[truth.pixels], here)
+    quantiles = np.quantile(off, (0.5, 0.99, 0.999)) if len(off) else (np.nan,) * 3
+    errors = {f"depth {q}": Figure(float(value), "radii") for q, value in zip(("p50", "p99", "p99.9"), quantiles,
+                                                                                strict=True)}  # fmt: skip
+    errors["depth p99 by storing"] = Figure(truth.stored(FORMATS["float32"]), "radii")
+    for name, wrong, of in (("holes", should & ~here, ~here), ("false", here & ~should, here)):
+        errors[name] = Figure(100.0 * float(wrong.sum()) / max(int(of.sum()), 1), "%")
+    errors[f"off by {GOAL:g}"] = Figure(100.0 * float((off > GOAL).mean()) if len(off) else 0.0, "%")
+    return Record(
+        data=data,
+        group="sets",
+        approximation="a picture of tubes",
+        method="ray cast",
+        setting=drawn.setting,
+        errors=errors,
+        costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
+        ours=drawn.ours,
+        default=drawn.default,
+        machine=options.machine,
+    )
 
 
 def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -237,7 +193,7 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             camera = replace(far, near=far.far / ratio)
             seen = replace(truth, lens=Lens.of(camera))
             drawn.draw(camera)
-            shown = seen.errors(*drawn.shown(seen.lens))["depth p99"]
+            shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
             errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")
             for kind, rounded in FORMATS.items():
                 errors[kind][name] = Figure(seen.stored(rounded), "radii")
@@ -257,7 +213,7 @@ def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
     from pvfiblets.synthetic.tubes import tube_set
 
     rng = np.random.default_rng([options.seed, 2])
-    for name in ("fibers",) if options.quick else ("fibers", "hotroom", "bundle", "brain"):
+    for name in QUICK_SETS if options.quick else SETS:
         if not options.budget.allows():
             left_out.append(LeftOut(f"quadratics for cubics: {name}", LATE))
             continue
@@ -274,7 +230,9 @@ def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             )  # fmt: skip
 
 
-PARTS: dict[Part, float] = {solvers: 3.0, pictures: 5.0, sweeps: 2.0, stored: 1.0, halves: 1.0}
+PARTS: dict[Part, float] = {
+    solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
+}  # fmt: skip
 """What is measured, and by what weight each part has its share of the time."""
 
 
@@ -310,6 +268,10 @@ class TubesStudy:
         "across the axis in place of spheres. *silhouettes off*: pixel middles between the picture's outline and the "
         "true one, over the true one's length. *depth* errors are along the ray, where a tube shows and should; "
         "their 99th percentile is that of inner outlines, where another tube shows.",
+        f"Sets: the five of Russig et al. 2020, section 4, {SET_SIZE[0]}×{SET_SIZE[1]}; each solver against float64 in "
+        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: of the empty ones, those that a "
+        "tube covers; *false*: of the covered ones, those that none does; *depth p99 by storing*: what the right depth "
+        f"would be off by if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
         "*stored depth*: what rounding the right depth to a format costs, and the depths of a picture as drawn and "
         "stored, as a key of 32 bits; the near plane moves towards the eye. Where software draws, times are of the "
         "processor, of all threads; those of cards are by the clock.",

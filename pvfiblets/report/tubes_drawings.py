@@ -1,4 +1,4 @@
-"""The ways of drawing spline tubes that their study compares: each draws a camera's picture and tells what it shows."""
+"""The methods of drawing spline tubes that their study compares: each draws a picture and tells what is visible."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ __all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
 SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
 GROWS = ("gbuffer", "occlusion", "framebuffer", "depth")  # with the picture, not with the data
 
-Shown = tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]
+VisibleDepths = tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]
 
 
 class Drawing(Protocol):
-    """One way of drawing one set of tubes."""
+    """One method of drawing one set of tubes."""
 
-    way: str
+    method: str
     setting: str
     ours: bool
     default: bool
@@ -35,7 +35,7 @@ class Drawing(Protocol):
         """Draw a picture and wait for it."""
         ...
 
-    def shown(self, lens: Lens) -> Shown:
+    def visible(self, lens: Lens) -> VisibleDepths:
         """Return mm in front of the eye, ``(n,)``, of the last picture's pixels, and which of them show a tube."""
         ...
 
@@ -47,7 +47,7 @@ class Drawing(Protocol):
 class CastTubes:
     """Ray casting, as this program has it, by one solver, of tubes that are not widened."""
 
-    way = "ray cast"
+    method = "ray cast"
 
     def __init__(self, ctx: Any, tubes: SplineTubes, solver: str = "auto") -> None:
         from pvfiblets.engine.tubes import TubeRenderer
@@ -59,14 +59,14 @@ class CastTubes:
         buffers: Any = self._renderer.explain()["buffers"]
         self.nbytes = sum(part["bytes"] for part in buffers if part["name"] not in GROWS)
 
-    def draw(self, camera: Camera) -> None:
+    def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
         from pvfiblets.engine import Style, View
 
         self._gbuffer = self._renderer.render(View(camera.size, camera.model_view_projection), Style())
         self._ctx.finish()
 
-    def shown(self, lens: Lens) -> Shown:
+    def visible(self, lens: Lens) -> VisibleDepths:
         """Return what the G-buffer's keys mean."""
         from pvfiblets.engine.gbuffer import EMPTY
 
@@ -81,7 +81,7 @@ class CastTubes:
 class MeshedTubes:
     """Hardware tessellation with so many sides at least and at most."""
 
-    way, ours, default = "tessellated", False, False
+    method, ours, default = "tessellated", False, False
 
     def __init__(self, ctx: Any, tubes: SplineTubes, size: tuple[int, int], sides: tuple[int, int]) -> None:
         self._ctx, self._tubes = ctx, TessellatedTubes(ctx, tubes, size, sides=sides)
@@ -93,7 +93,7 @@ class MeshedTubes:
         self._tubes.render(camera.model_view_projection)
         self._ctx.finish()
 
-    def shown(self, lens: Lens) -> Shown:
+    def visible(self, lens: Lens) -> VisibleDepths:
         """Return what the depth buffer means."""
         depth = self._tubes.depth().ravel()
         return lens.distance(1.0 - depth), depth < 1.0
@@ -104,7 +104,7 @@ class MeshedTubes:
 
 
 def drawings(ctx: Any, tubes: SplineTubes, size: tuple[int, int]) -> list[Callable[[], Drawing]]:
-    """Return what makes each way, the program's default first."""
+    """Return what makes each method, the program's default first."""
     from pvfiblets.engine.tubes import SOLVERS
 
     default, *others = SOLVERS

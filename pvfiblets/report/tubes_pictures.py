@@ -15,7 +15,7 @@ from pvfiblets.tubes.reference import ENTRY, nearest_hits
 from .cameras import Lens
 from .tubes_rays import radius_at
 
-__all__ = ["FORMATS", "Truth", "helices", "outline"]
+__all__ = ["FORMATS", "Truth", "helices", "outline", "sampled"]
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -49,11 +49,13 @@ def outline(mask: Mask) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a picture of tubes should show, pixel by pixel in rows from below.
+    """What a picture of tubes should show, in all pixels or in some.
 
     Attributes
     ----------
     lens : Lens
+    pixels : numpy.ndarray
+        ``(n,)`` int64, counted in rows from below.
     along : numpy.ndarray
         ``(n,)`` mm along each pixel's ray to the first tube, infinite where there is none.
     radius : numpy.ndarray
@@ -63,20 +65,22 @@ class Truth:
     """
 
     lens: Lens
+    pixels: npt.NDArray[np.int64]
     along: Array
     radius: Array
     forwards: Array
 
     @classmethod
-    def of(cls, tubes: SplineTubes, lens: Lens) -> Truth:
-        """Meet the rays of all pixels with all halves, in float64."""
+    def of(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
+        """Meet the rays of pixels, all by default, with all halves, in float64."""
         halves = curves.controls(tubes).reshape(-1, 3, 4)
-        directions, forwards = lens.rays(np.arange(lens.size[0] * lens.size[1]))
+        pixels = np.arange(lens.size[0] * lens.size[1]) if pixels is None else pixels
+        directions, forwards = lens.rays(pixels)
         met = nearest_hits(halves, lens.eye, directions, start=lens.near / forwards, end=lens.far / forwards)
         there = met.kind == ENTRY
         radius = np.ones(len(there))
         radius[there] = radius_at(halves[met.half[there]], met.t[there])
-        return cls(lens, np.where(there, met.l, np.inf), radius, forwards)
+        return cls(lens, pixels, np.where(there, met.l, np.inf), radius, forwards)
 
     @property
     def there(self) -> Mask:
@@ -84,7 +88,7 @@ class Truth:
         return np.isfinite(self.along)
 
     def errors(self, shown: Array, there: Mask) -> dict[str, float]:
-        """Return how far a picture is off.
+        """Return how far a picture is off, of which this holds all pixels.
 
         Parameters
         ----------
@@ -102,8 +106,7 @@ class Truth:
         """
         width, height = self.lens.size
         length = outline(self.there.reshape(height, width))
-        both = there & self.there
-        off = np.abs(shown[both] / self.forwards[both] - self.along[both]) / self.radius[both]
+        off = self.depth_errors(shown, there)
         middle, high = np.quantile(off, (0.5, 0.99)) if len(off) else (math.nan, math.nan)
         return {
             "silhouette": float((there != self.there).sum()) / max(length, 1.0),
@@ -111,12 +114,30 @@ class Truth:
             "depth p99": float(high),
         }
 
+    def depth_errors(self, shown: Array, there: Mask) -> Array:
+        """Return errors along the rays over the radius, of pixels that show a tube and should."""
+        both = there & self.there
+        off: Array = np.abs(shown[both] / self.forwards[both] - self.along[both]) / self.radius[both]
+        return off
+
     def stored(self, rounded: Callable[[Array], Array]) -> float:
         """Return the 99th percentile of errors, radii, that rounding the right window depth to a format makes alone."""
         there = self.there
-        right = self.along[there] * self.forwards[there]
-        kept = self.lens.distance(rounded(1.0 - self.lens.depth(right)))
-        return float(np.quantile(np.abs(kept - right) / self.forwards[there] / self.radius[there], 0.99))
+        exact = self.along[there] * self.forwards[there]
+        kept = self.lens.distance(rounded(1.0 - self.lens.depth(exact)))
+        off = np.abs(kept - exact) / self.forwards[there] / self.radius[there]
+        return float(np.quantile(off, 0.99)) if len(off) else math.nan
+
+
+def sampled(there: Mask, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
+    """Return so many pixels at most of a picture, ``(height, width)``: half show something, half are empty beside it.
+
+    Empty pixels next to others are where holes would be.
+    """
+    grid = np.pad(there, 1)
+    beside = grid[:-2, 1:-1] | grid[2:, 1:-1] | grid[1:-1, :-2] | grid[1:-1, 2:]
+    parts = [np.flatnonzero(mask.ravel()) for mask in (there, beside & ~there)]
+    return np.sort(np.concatenate([rng.permutation(part)[: count // 2] for part in parts]))
 
 
 def _float32(reversed_depth: Array) -> Array:

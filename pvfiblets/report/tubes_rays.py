@@ -86,7 +86,7 @@ class Rays:
 
 
 def summary(error: Array, missed: Mask, false: Mask) -> dict[str, float]:
-    """Return what is told of errors over the radius, of rays some of which miss or meet what they should not."""
+    """Return the figures of errors over the radius, of rays some of which miss or meet what they should not."""
     flipped = missed | false
     middle, high, higher = np.quantile(error, (0.5, 0.99, 0.999)) if len(error) else (0.0, 0.0, 0.0)
     return {
@@ -140,7 +140,7 @@ def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array
 
 
 def of_class(name: str, count: int, seed: int = 0) -> Rays:
-    """Return rays at made-up halves of one class, from all around."""
+    """Return rays at synthetic halves of one class, from all around."""
     radius, bend, change = CLASSES[name]
     rng = np.random.default_rng([seed, list(CLASSES).index(name)])
     return aimed(halves(count, rng, 1.0, radius, bend, change), rng)
@@ -155,7 +155,7 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
         chosen = rng.integers(0, tubes.n_segments, 40 * count)
         middle = tubes.points[tubes.segments[chosen]].mean(axis=1)
         reach = tubes.radius[tubes.segments[chosen]].max(axis=1)
-        x, y, w = lens.seen(middle).T
+        x, y, w = lens.project(middle).T
         shown = (w > lens.near + 2.0 * reach) & (np.abs(y) < lens.slant) & (np.abs(x) < lens.slant * size[0] / size[1])
         some = curves.controls(tubes, chosen[shown][: count // 2])
         parts.append(aimed(some[np.arange(len(some)), rng.integers(0, 2, len(some))], rng, eye=lens.eye))

@@ -12,7 +12,7 @@ from pvfiblets.codec.reference import first_frame
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.report import culling, data
-from pvfiblets.report.culling_pictures import Shown, apart, averaged, colours, directions, errors, views
+from pvfiblets.report.culling_pictures import Visible, averaged, colours, difference, directions, errors, views
 from pvfiblets.report.flights import Flight
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Unavailable
@@ -28,8 +28,8 @@ def small(monkeypatch):
     monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
-def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
-    formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 2000, 0))
+def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
+    formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 2000, 0))
     left = []
     records = list(culling.STUDY.run(little(files=(tmp_path,)), left))
     assert not left
@@ -37,7 +37,7 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
     assert scenes == {
         "brain, far, 1.14° a frame", "brain, inside, 1.14° a frame", "some.tck",
     }  # fmt: skip
-    labels = {f"{way.name} ({way.setting})" for way in culling.ways(True)}
+    labels = {f"{method.name} ({method.setting})" for method in culling.variants(True)}
     for scene in scenes:
         found = {record.label: record for record in records if record.data == scene}
         assert set(found) == labels
@@ -72,9 +72,9 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
 
 def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monkeypatch):
     monkeypatch.setattr(culling, "QUICK_FLIGHTS", ())
-    monkeypatch.setattr(culling, "ways", lambda quick: [])
+    monkeypatch.setattr(culling, "variants", lambda quick: [])
     for name in ("a", "b"):
-        formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 800, 0))
+        formats.write(tmp_path / f"{name}.tck", data.synthetic_tracking(0.5, False, 800, 0))
     left = []
     assert list(culling.STUDY.run(little(files=(tmp_path,)), left)) == []
     assert left == [LeftOut("smaller files", "the largest are enough to see what culling does")]
@@ -94,7 +94,7 @@ def test_without_opengl_it_is_unavailable(small, monkeypatch):
 
 def picture(streamline, tangent=None):
     streamline = np.asarray(streamline, np.int64)
-    return Shown(streamline, np.zeros(streamline.shape, np.uint32) if tangent is None else np.asarray(tangent))
+    return Visible(streamline, np.zeros(streamline.shape, np.uint32) if tangent is None else np.asarray(tangent))
 
 
 def test_errors_are_shares_of_what_the_right_picture_covers():
@@ -114,8 +114,8 @@ def test_colours_are_those_of_directions_and_black_elsewhere():
     np.testing.assert_allclose(found[0], [[1, 0, 0], [0, 1, 0], [0, 0, 0]], atol=1e-6)
     # Of three pixels one shows nothing in both; x for y is two thirds of white apart.
     other = colours(picture([[7, 7, -1]], np.array([[along_y, along_y, along_x]], np.uint32)))
-    assert apart([found], [other]).value == pytest.approx(100.0 * (2 / 3) / 2)
-    assert apart([found], [found]).value == 0.0
+    assert difference([found], [other]).value == pytest.approx(100.0 * (2 / 3) / 2)
+    assert difference([found], [found]).value == 0.0
 
 
 def test_directions_are_those_that_the_codec_packs():

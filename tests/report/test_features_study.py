@@ -11,9 +11,10 @@ import pytest
 from pvfiblets import compress, regions
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.report import features
+from pvfiblets.report import features, features_window
 from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
-from pvfiblets.report.features_scenes import PLAIN, Drawn, brain_subject, torus
+from pvfiblets.report.features_scenes import PLAIN, Drawn
+from pvfiblets.report.features_subjects import brain_subject, torus
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.study import Budget, Unavailable
 from pvfiblets.synthetic import brain_streamlines
@@ -22,6 +23,7 @@ from .little import little
 
 SIZE = (96, 64)
 PIXELS = SIZE[0] * SIZE[1]
+IN_WINDOW = ("plane", "mesh", "length", "ambient occlusion", "depth cue", "one")  # of all that take half a minute
 
 
 @pytest.fixture
@@ -35,13 +37,15 @@ def small(monkeypatch):
 @pytest.fixture(scope="module")
 def measured(_headless, request):
     """What is found on very little data, by subject and feature."""
+    every = features_window.window_features
     with pytest.MonkeyPatch.context() as patch, _headless.context(request.module):
         for name, value in {"SEGMENTS": 10_000, "TUBES": 6, "VOXELS": 12, "SIZE": SIZE}.items():
             patch.setattr(features, f"QUICK_{name}", value)
+        patch.setattr(features_window, "window_features", lambda made: [f for f in every(made) if f.name in IN_WINDOW])
         left = []
         records = list(features.STUDY.run(little(), left))
     assert not left
-    return {(record.group, record.way, record.setting): record for record in records}
+    return {(record.group, record.method, record.setting): record for record in records}
 
 
 def more(found, *name):
@@ -51,11 +55,22 @@ def more(found, *name):
 
 def test_every_subject_is_beside_its_plain_self(measured):
     plain = {key: record for key, record in measured.items() if record.default}
-    assert {key[0] for key in plain} == {"streamlines", "spline-tubes", "lines-with-halos", "volume"}
+    assert {key[0] for key in plain} == {"streamlines", "spline-tubes", "lines-with-halos", "volume", "window"}
     assert all(key[1] == PLAIN for key in plain)
     for record in plain.values():
         assert record.costs["more memory"].value == record.costs["more time"].value == 0.0
         assert record.costs["memory"].value > PIXELS * 24 / 1e6  # the G-buffer alone
+
+
+def test_features_in_a_window_cost_frames_and_changes(measured):
+    found = {key[1:]: record for key, record in measured.items() if key[0] == "window"}
+    assert {group for group, _ in found} == {"cut", "criterion", "effects", "colours", PLAIN}
+    assert found["effects", "depth cue"].costs["more memory"].value == 0.0  # VTK's shader alone
+    assert found["effects", "ambient occlusion"].costs["more memory"].value == pytest.approx(2 * PIXELS / 1e6)
+    assert found["cut", "mesh"].costs["more memory"].value > found["cut", "plane"].costs["more memory"].value
+    varied = [name for name, record in found.items() if "change" in record.times]
+    assert ("cut", "plane") in varied
+    assert ("colours", "one") not in varied
 
 
 def test_figures_are_finite(measured):
@@ -90,7 +105,7 @@ def test_bytes_are_those_that_a_feature_asks_for(measured):
     assert more(measured, "lines-with-halos", "look", "thinner far away") == 0
 
 
-def test_features_are_no_rivals(measured):
+def test_no_feature_is_better_for_being_cheaper(measured):
     """None is better than another for being cheaper."""
     mark_fronts(measured.values(), features.STUDY.axes)
     assert not any(record.front for record in measured.values())
@@ -105,17 +120,17 @@ def test_whole_pictures_are_changed(gl, wanted):
     feature = next(item for item in subject.features if item.name == wanted.name)
     drawn = Drawn(gl, subject, feature, subject.path(2, (384, 256)))
     try:
-        shown = drawn.passes.shown()[..., :3].astype(int)
+        shown = drawn.passes.pixels()[..., :3].astype(int)
         plain = Drawn(gl, subject, replace(feature, passes=lambda ctx: WholePicture(ctx, PictureEffect("none"))),
                       subject.path(2, (384, 256)))  # fmt: skip
-        before = plain.passes.shown()[..., :3].astype(int)
+        before = plain.passes.pixels()[..., :3].astype(int)
         plain.release()
         assert (before != 255).any(axis=-1).sum() > 100
         assert (np.abs(shown - before).max(axis=-1) > 3).sum() > 50
         if wanted.focused and not wanted.tone.changes:
             assert np.abs(shown.mean(axis=(0, 1)) - before.mean(axis=(0, 1))).max() < 3.0  # light is spread, not lost
         drawn()
-        assert not np.array_equal(drawn.passes.shown()[..., :3], shown), "the camera has moved"
+        assert not np.array_equal(drawn.passes.pixels()[..., :3], shown), "the camera has moved"
     finally:
         drawn.release()
         drawn.release()
@@ -125,7 +140,8 @@ def test_time_that_is_used_up_is_told(gl, small):
     left = []
     assert list(features.STUDY.run(little(budget=Budget(0.0)), left)) == []
     assert [item.what for item in left] == [
-        f"{name}: everything" for name in ("streamlines", "spline tubes", "lines with halos", "volume")
+        f"{name}: everything"
+        for name in ("streamlines", "spline tubes", "lines with halos", "volume", "streamlines in a window, 96 x 64")
     ]
 
 

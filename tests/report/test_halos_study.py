@@ -31,8 +31,8 @@ def small(monkeypatch):
     monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
-def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
-    formats.write(tmp_path / "some.tck", data.made_up(0.5, False, 1500, 3))
+def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
+    formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 1500, 3))
     left = []
     records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
     assert not left
@@ -44,12 +44,12 @@ def test_all_ways_are_measured_on_every_scene(gl, small, tmp_path):
         assert record.value("times/draw") > 0.0
     for scene in ("brain, 0.5 mm", "some.tck"):
         found = {record.label: record for record in records if record.data == scene}
-        assert set(found) == {f"{way.name} ({way.setting})" for way in halos.ways(True, True)} | {
+        assert set(found) == {f"{variant.name} ({variant.setting})" for variant in halos.variants(True, True)} | {
             "black or white (64 samples)", "smooth edges (64 samples)",
         }  # fmt: skip
         assert [record.label for record in found.values() if record.default] == ["smooth edges (1 sample)"]
         mean = {label: record.errors["mean"].value for label, record in found.items()}
-        # The picture that all are held against is off by nothing, and more samples are nearer to it.
+        # The picture that all are compared with is off by nothing, and more samples are nearer to it.
         assert {figure.value for figure in found["black or white (64 samples)"].errors.values()} == {0.0}
         assert mean["black or white (1 sample)"] > 2.0 * mean["black or white (4 samples)"] > 0.0
         assert mean["smooth edges (1 sample)"] < mean["black or white (1 sample)"]
@@ -82,7 +82,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
 
 def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     for name in ("a", "b"):
-        formats.write(tmp_path / f"{name}.tck", data.made_up(0.5, False, 300, 0))
+        formats.write(tmp_path / f"{name}.tck", data.synthetic_tracking(0.5, False, 300, 0))
     left = []
     assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]
@@ -107,7 +107,7 @@ def test_gaps_of_a_perfect_picture_are_the_formula():
     half_line = 4.0
     fine = (np.arange(width * 50) + 0.5) / 50
     shown = np.zeros((height, width), np.float32)
-    for row, right in zip(made.rows, made.right, strict=True):
+    for row, right in zip(made.rows, made.truth, strict=True):
         away = np.abs(fine[:, None] - made.columns).min(axis=1)
         black = (away < half_line) | (away > half_line + right)
         shown[int(row) - 4 : int(row) + 4] = black.reshape(width, 50).mean(axis=1)
@@ -117,14 +117,14 @@ def test_gaps_of_a_perfect_picture_are_the_formula():
     assert {figure.unit for figure in found.values()} == {"px"}
     # All black has no gaps: it is off by the mean of all widths.
     nothing = gaps(np.ones((height, width), np.float32), made)
-    assert nothing["gap"].value == pytest.approx(made.right.mean())
-    assert nothing["gap max"].value == pytest.approx(made.right.max())
+    assert nothing["gap"].value == pytest.approx(made.truth.mean())
+    assert nothing["gap max"].value == pytest.approx(made.truth.max())
 
 
 def test_gaps_near_the_formula_with_the_number_of_samples(gl):
     made = crossings()
-    assert made.right[0] == 0.0
-    assert made.right[-1] == 12.0  # half of the strip's 32 pixels less the line's 8
+    assert made.truth[0] == 0.0
+    assert made.truth[-1] == 12.0  # half of the strip's 32 pixels less the line's 8
     found = []
     for times in (1, 2, 4):
         strips = Strips(gl, made.lines, times)

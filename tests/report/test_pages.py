@@ -14,7 +14,8 @@ from pvfiblets.report import plots, studies
 from pvfiblets.report.dot_plot import in_rows
 from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
-from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
+from pvfiblets.report.report_file import Report
 
 ABOUT = {
     "name": "m", "processor": "Some CPU", "cores": 2, "system": "Linux", "python": "3.11", "driver": "none",
@@ -101,8 +102,8 @@ def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys
 def test_each_default_is_told_at_its_own_figures_only():
     axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm"), Axes("b", "costs/size", "errors/wrong", "bytes", "%")]
     records = [
-        Record(data, "g", "", way, "", {error: Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")}, default=True)
-        for data, way, error in (("points", "ours", "max"), ("pixels", "theirs", "wrong"))
+        Record(data, "g", "", method, "", {error: Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")}, default=True)
+        for data, method, error in (("points", "ours", "max"), ("pixels", "theirs", "wrong"))
     ]
     text = page(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), {})
     assert "By default: **ours**, **theirs**." in text
@@ -132,27 +133,27 @@ def test_data_sets_without_a_pairs_figures_take_no_room_in_its_picture(tmp_path)
 def test_pictures_are_told_in_milliseconds_per_frame():
     axes = [Axes("time", "times/draw", "errors/wrong", "ms per frame", "wrong pixels, %")]
     records = [
-        Record("brain", "g", "pictures", way, "", {"wrong": Figure(error, "%")},
+        Record("brain", "g", "pictures", method, "", {"wrong": Figure(error, "%")},
                times={"draw": Timing(seconds, 0.5 * seconds, 2.0 * seconds, 3, 4, "frame", "cpu")},
                ours=ours, default=ours)
-        for way, error, seconds, ours in (("ours", 0.5, 0.1, True), ("rival", 0.25, 0.02, False))
+        for method, error, seconds, ours in (("ours", 0.5, 0.1, True), ("rival", 0.25, 0.02, False))
     ]  # fmt: skip
     text = page(Report(dict(ABOUT), [StudyResult("culling", "Culling", "", [], axes, records)]), {})
-    assert "| way | setting | wrong, % | draw, ms per frame | × default | front |" in text
+    assert "| method | setting | wrong, % | draw, ms per frame | × default | front |" in text
     assert "| **ours** |  | 0.5 | 25 (12.5–50) | 1 |  |" in text
     assert "| rival |  | 0.25 | 5 (2.5–10) | 0.2 |  |" in text
     assert "| brain | 0.5 / 25: rival |" in text
-    assert records[0].shown("times/draw") == 25.0
-    assert records[0].shown("errors/wrong") == 0.5
+    assert records[0].in_unit("times/draw") == 25.0
+    assert records[0].in_unit("errors/wrong") == 0.5
 
 
 def each_adds():
-    """What costs what, beside a plain way: nothing of it is a rival."""
-    axes = [Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory, MB", rivals=False)]
+    """What costs what, beside a plain method: nothing of it is an alternative."""
+    axes = [Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory, MB", alternatives=False)]
     records = [
-        Record("scene", "s", "nothing", way, setting, {}, {"memory": Figure(memory, "MB")},
-               {"draw": Timing(seconds, seconds, seconds, 3, 1, "frame", "cpu")}, ours=True, default=way == "plain")
-        for way, setting, memory, seconds in (
+        Record("scene", "s", "nothing", method, setting, {}, {"memory": Figure(memory, "MB")},
+               {"draw": Timing(seconds, seconds, seconds, 3, 1, "frame", "cpu")}, ours=True, default=method == "plain")
+        for method, setting, memory, seconds in (
             ("plain", "", 5.0, 0.02), ("lines", "wide", 5.0, 0.04), ("cut", "mesh", 20.0, 0.03),
             ("cut", "ball", 4.0, 0.01),
         )
@@ -167,16 +168,16 @@ def test_where_nothing_is_a_rival_there_is_no_front_and_nothing_beats_the_defaul
     text = page(Report(dict(ABOUT), [study]), {}).split("## Costs")[1]
     assert "### The default" not in text
     assert "front" not in text
-    assert "| way | setting | memory, MB | draw, ms per frame | × default |" in text
+    assert "| method | setting | memory, MB | draw, ms per frame | × default |" in text
     assert "| cut | mesh | 20 | 30 (30–30) | 1.5 |" in text
-    made = plots.draw(Report(dict(ABOUT), [study, *made_up_rivals()]), tmp_path)
+    made = plots.draw(Report(dict(ABOUT), [study, *synthetic_baselines()]), tmp_path)
     assert made["features"] == [("features-cost-s.png", "ms per frame and memory, MB of each: s")]
     assert made["codec"][0][1] == "largest error, mm against bytes per point: g"
     kept = Report.from_json(Report(dict(ABOUT), [study]).to_json()).studies[0]
     assert kept.axes == study.axes
 
 
-def made_up_rivals():
+def synthetic_baselines():
     return made().studies[:1]
 
 
@@ -194,17 +195,17 @@ def test_rows_show_each_figure_from_the_plain_one_on():
     assert (times.get_xlabel(), memory.get_xlabel()) == ("ms per frame", "memory, MB")
 
 
-def test_no_two_ways_of_a_picture_have_one_colour_and_its_titles_fit():
-    """However many ways other pictures of the study show, and however long the name of a file is."""
+def test_no_two_methods_of_a_picture_have_one_colour_and_its_titles_fit():
+    """However many methods other pictures of the study show, and however long the name of a file is."""
     name = "a_name_of_a_file_that_somebody_thought_about_for_long.trk.gz, 3,379 of 20,505 streamlines"
     records = [
-        Record(name if k < 12 else "other", "g" if k < 12 else "h", "", f"way {k % 24}", f"setting {k}",
+        Record(name if k < 12 else "other", "g" if k < 12 else "h", "", f"method {k % 24}", f"setting {k}",
                {"max": Figure(0.5 + k, "mm")}, {"size": Figure(2.0 + k, "bytes")})
         for k in (*range(12, 30), *range(12))
     ]  # fmt: skip
     pair = Axes("a", "costs/size", "errors/max", "bytes", "mm")
     study = StudyResult("x", "X", "", [], [pair], records)
-    picture = plots._picture(study, records[18:], pair, dict.fromkeys((f"way {k}" for k in range(24)), "black"))
+    picture = plots._picture(study, records[18:], pair, dict.fromkeys((f"method {k}" for k in range(24)), "black"))
     marks = [line for line in picture.axes[0].get_lines() if len(line.get_xdata()) == 1]
     looks = {(line.get_color(), line.get_marker()) for line in marks}
     assert len({colour for colour, _ in looks}) == len({marker for _, marker in looks}) == 12
@@ -215,13 +216,13 @@ def test_no_two_ways_of_a_picture_have_one_colour_and_its_titles_fit():
 
 
 def test_what_many_things_were_left_out_for_is_told_once():
-    left = [LeftOut(f"way {k}", "no time | left") for k in range(9)] + [LeftOut("x.tck", "empty")]
+    left = [LeftOut(f"method {k}", "no time | left") for k in range(9)] + [LeftOut("x.tck", "empty")]
     text = page(Report(dict(ABOUT), [StudyResult("x", "X", "", left_out=left)]), {})
-    assert "| 9 ways, listed below | no time \\| left |" in text
+    assert "| 9 methods, listed below | no time \\| left |" in text
     assert "| x.tck | empty |" in text
     assert text.count("no time") == 2
-    assert all(f"- way {k}\n" in text for k in range(9))
-    assert text.index("| x.tck") < text.index("<details>") < text.index("- way 0") < text.index("</details>")
+    assert all(f"- method {k}\n" in text for k in range(9))
+    assert text.index("| x.tck") < text.index("<details>") < text.index("- method 0") < text.index("</details>")
 
 
 def test_numbers_of_one_are_singular():
@@ -235,8 +236,8 @@ def test_numbers_of_one_are_singular():
 def test_measuring_needs_no_vtk_and_no_matplotlib():
     code = (
         "import sys, pvfiblets.report.run, pvfiblets.report.codec, pvfiblets.report.decode, pvfiblets.cli_report\n"
-        "from pvfiblets.report.data import made_up\n"
-        "made_up(1.0, True, 500, 0)\n"
+        "from pvfiblets.report.data import synthetic_tracking\n"
+        "synthetic_tracking(1.0, True, 500, 0)\n"
         "print(sorted({'vtkmodules', 'vtk', 'pyvista', 'matplotlib', 'dipy'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

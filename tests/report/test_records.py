@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +14,13 @@ from hypothesis import strategies as st
 from pvfiblets.errors import FormatError
 from pvfiblets.report.front import mark_fronts, pareto
 from pvfiblets.report.measure import Turns, distances, error_figures, median_step
-from pvfiblets.report.record import Axes, Figure, LeftOut, Record, Report, StudyResult, Timing
+from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
+from pvfiblets.report.report_file import Report
 
 
-def a_record(way="a", data="d", size=1.0, error=0.5, **rest):
+def a_record(method="a", data="d", size=1.0, error=0.5, **rest):
     return Record(
-        data=data, group="g", approximation="points", way=way, setting="8 bits",
+        data=data, group="g", approximation="points", method=method, setting="8 bits",
         errors={"max": Figure(error, "mm")}, costs={"size": Figure(size, "bytes/point")},
         times={"pack": Timing(2.0, 1.0, 3.0, 5, 100.0, "point", "cpu")}, **rest,
     )  # fmt: skip
@@ -181,3 +183,15 @@ def test_turns_stop_when_they_are_told_to():
     assert turns.timing(0, 1).repeats == 4
     turns.run(9, lambda: False)
     assert turns.timing(0, 1).repeats == 4
+
+
+@pytest.mark.parametrize("name", ["amd-epyc", "amd-epyc-drawing", "intel-xeon"])
+def test_committed_reports_are_read_and_written_under_their_names(name):
+    path = Path(__file__).resolve().parents[2] / "docs/benchmarks/report" / name / "report.json"
+    report, written = Report.load(path), json.loads(path.read_text(encoding="utf-8"))
+    for study, before in zip(report.to_json()["studies"], written["studies"], strict=True):
+        for key in ("axes", "records"):
+            for row, old in zip(study[key], before[key], strict=True):
+                assert {field: row[field] for field in old} == old
+    first = next(study for study in report.studies if study.records)
+    assert first.records[0].method == next(s for s in written["studies"] if s["records"])["records"][0]["way"]

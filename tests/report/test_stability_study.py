@@ -8,7 +8,8 @@ import math
 import pytest
 
 from pvfiblets.report.page import page
-from pvfiblets.report.record import FORMAT, Report, StudyResult
+from pvfiblets.report.record import StudyResult
+from pvfiblets.report.report_file import FORMAT, Report
 from pvfiblets.report.run import one_study
 from pvfiblets.report.stability import study
 from pvfiblets.report.stability.case import Case, Cases, Outcome, Setting, refused, worst
@@ -33,7 +34,7 @@ def no_context(options):
 
 @pytest.fixture
 def result(monkeypatch):
-    """The study over the made-up cases, where no context can be made."""
+    """The study over the synthetic cases, where no context can be made."""
 
     monkeypatch.setattr(study, "all_cases", some_cases)
     monkeypatch.setattr(study, "drawing_context", no_context)

@@ -82,7 +82,7 @@ def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
     from pvfiblets.report.baselines.directions import widest_turn
     from pvfiblets.report.measure import median_step
 
-    smooth, noisy = (data.made_up(0.5, noise, 3000, 0) for noise in (False, True))
+    smooth, noisy = (data.synthetic_tracking(0.5, noise, 3000, 0) for noise in (False, True))
     for made in (smooth, noisy):
         assert median_step(made.points, made.offsets) == pytest.approx(0.5, rel=1e-4)
         assert 1000 < made.n_points <= 3000
@@ -103,9 +103,9 @@ def test_every_way_is_measured_on_every_set_or_named(of_codec):
     sets = {record.data for record in records}
     assert len(sets) == 4
     named = {item.what for item in left}
-    for way in codec.ways(True):
-        found = [record for record in records if (record.way, record.setting) == (way.name, way.setting)]
-        assert len(found) == 4 or way.name in named
+    for method in codec.variants(True):
+        found = [record for record in records if (record.method, record.setting) == (method.name, method.setting)]
+        assert len(found) == 4 or method.name in named
     assert all(record.default for record in records if record.label == "fiblets (0.1 steps)")
     assert all(record.costs["size"].value > 0.5 for record in records)
     assert all(timing.median > 0.0 for record in records for timing in record.times.values())
@@ -122,7 +122,7 @@ def test_records_of_fewer_points():
     offsets = np.array([0, 0, 31, 60, 61])
     np.testing.assert_array_equal(codec.recut(offsets, 30), [0, 0, 30, 31, 60, 61])
     np.testing.assert_array_equal(codec.recut(offsets, 60), offsets)
-    streamlines = data.made_up(0.2, False, 1500, 0)
+    streamlines = data.synthetic_tracking(0.2, False, 1500, 0)
     points, lines = streamlines.points, np.asarray(streamlines.offsets)
     packed = codec._fiblets(0.1, "fast", 15)(0.2)(points, lines)
     from pvfiblets.codec.layout import unpack
@@ -137,7 +137,7 @@ def test_a_missing_package_is_named_once(monkeypatch):
     left = []
     records = list(codec.STUDY.run(little(), left))
     assert [item for item in left if "zstd" in item.what] == [LeftOut("zstd of float32", "zstandard is not installed")]
-    assert not any(record.way.startswith("zstd") for record in records)
+    assert not any(record.method.startswith("zstd") for record in records)
 
 
 # ------------------------------------------------------------------------------------------------------------- decode
@@ -156,7 +156,7 @@ EVERY = [(order, algebra, source) for order in (0, 1) for algebra in (0, 1) for 
 
 
 @pytest.mark.parametrize("cap", [0, 7, 15])
-def test_all_ways_of_decoding_mean_the_same(cap):
+def test_all_variants_of_decoding_mean_the_same(cap):
     made = decode.made(20, cap, 0.2, 0)
     right = decode.exact(made)
     for how in EVERY:
@@ -193,7 +193,7 @@ def test_straight_codes_give_a_straight_line():
     np.testing.assert_allclose(apart[:, 59], 59 * apart[:, 1], rtol=1e-9, atol=1e-12)
 
 
-def test_the_study_of_decoding_measures_all_ways(monkeypatch):
+def test_the_study_of_decoding_measures_all_variants(monkeypatch):
     monkeypatch.setattr(decode, "QUICK_FIBLETS", 10)
     left = []
     records = list(decode.STUDY.run(little(), left))
@@ -232,7 +232,7 @@ class FakeStudy:
                 left_out.append(LeftOut(f"{i}", "the time given was used up"))
                 continue
             self.clock.now += self.seconds
-            yield Record("set", "g", "nothing", "way", f"{i}", {"max": Figure(1.0 / (i + 1), "mm")},
+            yield Record("set", "g", "nothing", "method", f"{i}", {"max": Figure(1.0 / (i + 1), "mm")},
                          {"size": Figure(float(i + 1), "bytes")}, default=i == 0)  # fmt: skip
 
 

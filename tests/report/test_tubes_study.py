@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets.report import tubes
+from pvfiblets.report import tubes, tubes_solvers
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.study import Budget, Unavailable
@@ -22,13 +22,13 @@ from .little import little
 @pytest.fixture
 def small(monkeypatch):
     """Have the study measure hardly anything."""
-    monkeypatch.setattr(tubes, "QUICK_CLASSES", ("usual",))
-    monkeypatch.setattr(tubes, "QUICK_RAYS", 400)
+    monkeypatch.setattr(tubes_solvers, "QUICK_CLASSES", ("usual",))
+    monkeypatch.setattr(tubes_solvers, "QUICK_RAYS", 400)
     monkeypatch.setattr(tubes, "QUICK_SIZE", (64, 36))
     monkeypatch.setattr(tubes, "TUBES", 2)
 
 
-def test_all_parts_are_measured_and_the_exact_ways_are_exact(gl, small):
+def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     left = []
     options = little()
     records = list(tubes.STUDY.run(options, left))
@@ -37,7 +37,7 @@ def test_all_parts_are_measured_and_the_exact_ways_are_exact(gl, small):
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
     assert all(record.machine == "m" for record in records)
 
-    rays = {(record.way, record.setting): record for record in records if record.group == "rays"}
+    rays = {(record.method, record.setting): record for record in records if record.group == "rays"}
     default = next(record for record in rays.values() if record.default)
     assert default.label == "illinois, loop (48 iterations)"
     assert 0.0 < default.errors["hit p50"].value <= default.errors["hit p99"].value < 1e-4  # float32 rounds, no more
@@ -57,7 +57,7 @@ def test_all_parts_are_measured_and_the_exact_ways_are_exact(gl, small):
     stiff = [record for record in records if record.group == "stiff"]
     length = next(record for record in stiff if record.data == "length over radius" and record.ours)
     assert length.errors["p99 at ratio 1"].value < 1e-5 < length.errors["p99 at ratio 100000"].value
-    stored = {record.way: record.errors for record in records if record.group == "stored"}
+    stored = {record.method: record.errors for record in records if record.group == "stored"}
     assert stored["24 bits"]["p99 at far/near 1e+06"].value > 0.1
     assert stored["key of 32 bits, as drawn"]["p99 at far/near 1e+06"].value < 0.02
     cubics = {

@@ -40,7 +40,7 @@ GOLDEN = (3242174889, 2447445414)
 
 AWAY, NEAR, BEND, MEAN_SAMPLES = 0.06, 0.2, 0.15, 16.0
 """What the mean looks at: parts of the radius out of a pixel's plane and from its place, and 1 less the cosine between
-normals, all for so many rays. Of four other choices none erred less on both sets of ``benchmarks/volume_occlusion.py``;
+normals, all for so many rays. Of four other choices none erred less on both sets of the report's study of volumes;
 with these no number of rays errs more than without the mean."""
 
 _NAME, _MEAN = "ray occlusion", "mean ray occlusion"

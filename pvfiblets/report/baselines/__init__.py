@@ -1,4 +1,4 @@
-"""Other ways of keeping streamlines, written plainly, for the study of the codec to compare with.
+"""Other methods of keeping streamlines, written plainly, for the study of the codec to compare with.
 
 Each gives a :class:`Packed`. They are as compact as their description allows, and compiled where the codec is, for one
 thread, which is what the study runs on: times can be compared. They are not meant for use.

@@ -1,7 +1,7 @@
 """QFib, and fiblets as the paper has them: constant steps by quantised directions within the file's widest turn.
 
 QFib (Mercier et al. 2020, from its description in Schertzer et al. 2022, section 3.2.1): a streamline is its first two
-points and one quantised unit vector for each further point. The vector is told within a cap around the direction
+points and one quantised unit vector for each further point. The vector is coded within a cap around the direction
 before, as decoded; the cap is stretched over the whole sphere and rounded on an octahedron of 16 x 16 (one byte) or
 256 x 256 values (two). The widest turn of the file is the cap's half-angle; every step is the file's median step. The
 encoder aims from the decoded point, so that only what steps differ by adds up, along the streamline's whole length.
@@ -175,7 +175,7 @@ def _around(x: float, y: float, z: float) -> Any:
 
 @kernel
 def _next_frame(frame: Any, local: Any, dx: float, dy: float, dz: float, propagated: bool) -> Any:
-    """The frame that the next direction is told in: built anew, or turned on from the one before."""
+    """The frame that the next direction is coded in: built anew, or turned on from the one before."""
     if not propagated:
         ax, ay, az, bx, by, bz = _basis(dx, dy, dz)
         return dx, dy, dz, ax, ay, az, bx, by, bz

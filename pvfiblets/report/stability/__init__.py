@@ -1,8 +1,8 @@
 """Stiff and extreme cases of every system, as objects that both the tests and the report run.
 
 A :class:`~.case.Case` says what it does and what must hold, and measures one figure by which that is judged, against
-something independent: a promise, a formula, NumPy in float64. A statement that does not hold is an error of the
-program, told by the report and failed by the tests.
+something independent: an error bound, a formula, NumPy in float64. A statement that does not hold is an error of the
+program, reported by the report and failed by the tests.
 
 To add a case, write a function in its system's module; to add a system, a module with ``CASES``, and its name here.
 """

@@ -28,7 +28,7 @@ def fine(streamlines: Streamlines) -> FibletSet:
     return compress(streamlines, max_error=1e-3 * float(np.median(streamlines.lengths()) + 1e-30) / 60.0)
 
 
-def right(setting: Setting, streamlines: Streamlines, matrix: Array, size: tuple[int, int] = SIZE) -> Outcome:
+def compare(setting: Setting, streamlines: Streamlines, matrix: Array, size: tuple[int, int] = SIZE) -> Outcome:
     """Draw lines and compare the picture with them."""
     fiblets = fine(streamlines)
     shown = drawn(setting.gl, fiblets, View(size, matrix))
@@ -50,7 +50,7 @@ def _far_away(setting: Setting) -> Outcome:
     base, matrix = tracking(6), camera(SIZE)
     return worst(
         [
-            right(setting, Streamlines(base.points + shift, base.offsets), moved_camera(matrix, 1.0, shift))
+            compare(setting, Streamlines(base.points + shift, base.offsets), moved_camera(matrix, 1.0, shift))
             for shift in (1e7, -1e7)
         ]
     )
@@ -61,7 +61,7 @@ def _sizes(setting: Setting) -> Outcome:
     base, matrix = tracking(6), camera(SIZE)
     return worst(
         [
-            right(setting, Streamlines(base.points * scale, base.offsets), moved_camera(matrix, scale, 0.0))
+            compare(setting, Streamlines(base.points * scale, base.offsets), moved_camera(matrix, scale, 0.0))
             for scale in (1e-6, 1e6)
         ]
     )
@@ -71,7 +71,7 @@ def _sizes(setting: Setting) -> Outcome:
 def _near(setting: Setting) -> Outcome:
     base = tracking(6)
     eyes = ((0.0, -260.0, 60.0), (3.0, -4.0, 2.0))
-    return worst([right(setting, base, camera(SIZE, eye=eye, near=1e-3, far=1e3)) for eye in eyes])
+    return worst([compare(setting, base, camera(SIZE, eye=eye, near=1e-3, far=1e3)) for eye in eyes])
 
 
 @CASES.add("eye on a line's point", "the eye exactly at a point of a line, looking along it", ON_LINES)
@@ -79,7 +79,7 @@ def _on_a_point(setting: Setting) -> Outcome:
     line = np.array(tracking(1).points)
     lines = lines_of(line, line + [1.0, 2.0, 3.0])
     at = np.asarray(fine(lines).decompress([0], dtype=np.float64).points)
-    return right(setting, lines, camera(SIZE, eye=at[40], target=at[60], near=0.01, far=300.0))
+    return compare(setting, lines, camera(SIZE, eye=at[40], target=at[60], near=0.01, far=300.0))
 
 
 @CASES.add("windows of 1 × 1 and one pixel high or wide", "four sizes; parallel projection", ON_LINES)
@@ -104,7 +104,7 @@ def _wide(setting: Setting) -> Outcome:
     wave = np.stack([60.0 * t, 10.0 * t, 0.03 * np.sin(9.0 * t)], axis=1)
     return worst(
         [
-            right(setting, lines_of(wave[:, order]), camera(size, eye=(0.0, -260.0, 0.0), height=height), size)
+            compare(setting, lines_of(wave[:, order]), camera(size, eye=(0.0, -260.0, 0.0), height=height), size)
             for size, height, order in (((16384, 12), 0.1, [0, 1, 2]), ((12, 16384), 120.0, [2, 1, 0]))
         ]
     )
@@ -186,14 +186,14 @@ def _stiff(setting: Setting) -> Outcome:
     mixed = np.cumsum(steps, axis=0)
     mixed *= 60.0 / np.ptp(mixed, axis=0).max()
     still = np.repeat(rng.uniform(-20.0, 20.0, (8, 3)), 3, axis=0)
-    return right(setting, lines_of(30.0 * zigzag(40) - [15.0, 0, 0], mixed - mixed.mean(axis=0), still), camera(SIZE))
+    return compare(setting, lines_of(30.0 * zigzag(40) - [15.0, 0, 0], mixed - mixed.mean(axis=0), still), camera(SIZE))
 
 
 @CASES.add("lines through the eye's plane", "lines of 1e6 mm that pass behind the eye", ON_LINES)
 def _through(setting: Setting) -> Outcome:
-    ways = np.random.default_rng(9).normal(size=(5, 3))
-    lines = [np.linspace(-5e5, 5e5, 30)[:, None] * way / np.linalg.norm(way) + way for way in ways]
-    return right(setting, lines_of(*lines), camera(SIZE, eye=(3.0, -20.0, 2.0), near=0.01, far=1e4))
+    directions = np.random.default_rng(9).normal(size=(5, 3))
+    lines = [np.linspace(-5e5, 5e5, 30)[:, None] * d / np.linalg.norm(d) + d for d in directions]
+    return compare(setting, lines_of(*lines), camera(SIZE, eye=(3.0, -20.0, 2.0), near=0.01, far=1e4))
 
 
 @CASES.add("lines wider than the window", "100 pixels wide in 64 × 48", "every pixel shows it, by finite numbers")

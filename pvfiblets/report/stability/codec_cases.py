@@ -13,13 +13,13 @@ from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .synthetic_lines import apart, helix, lines_of, tracking, turning, zigzag
+from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
 
 __all__ = ["CASES"]
 
 CASES = Cases("codec")
 WITHIN = "every decoded point within the promise of its original; counts as they were"
-PROMISE = "of the promise"
+BOUND = "of the error bound"
 EFFORTS: tuple[Effort, ...] = ("fast", "high")
 ANGLES = np.geomspace(1e-6, np.pi, 25)  # radians
 SIZES = (1e-6, 1e-3, 1.0, 1e3, 1e6)  # mm
@@ -38,12 +38,12 @@ def kept(
             fiblets.verify()
             decoded = fiblets.decompress(dtype=np.float64)
             if not np.array_equal(decoded.offsets, streamlines.offsets) or not np.isfinite(decoded.points).all():
-                return Outcome(np.inf, 1.0, PROMISE, "counts changed, or points are not finite")
-            largest = float(apart(decoded.points, streamlines.points).max(initial=0.0))
+                return Outcome(np.inf, 1.0, BOUND, "counts changed, or points are not finite")
+            largest = float(differences(decoded.points, streamlines.points).max(initial=0.0))
             said = (
                 note or f"promise {fiblets.promise:.3g} mm, {fiblets.nbytes / max(streamlines.n_points, 1):.3g} B/point"
             )
-            found.append(Outcome(largest / fiblets.promise, 1.0, PROMISE, said))
+            found.append(Outcome(largest / fiblets.promise, 1.0, BOUND, said))
     return worst(found)
 
 
@@ -60,8 +60,8 @@ def _back_and_forth(_: Setting) -> Outcome:
 
 @CASES.add("exactly straight", "lines along ±x, ±y, ±z and a diagonal: cap angle 0", WITHIN)
 def _straight(_: Setting) -> Outcome:
-    ways = np.concatenate([np.eye(3), -np.eye(3), [[1.0, 1.0, 1.0]]])
-    return kept([lines_of(*(0.5 * np.arange(300)[:, None] * way for way in ways))])
+    directions = np.concatenate([np.eye(3), -np.eye(3), [[1.0, 1.0, 1.0]]])
+    return kept([lines_of(*(0.5 * np.arange(300)[:, None] * direction for direction in directions))])
 
 
 @CASES.add("helix at the step's Nyquist", "turns of π − 0.001 from point to point, pitch 0.01 mm", WITHIN)
@@ -161,7 +161,7 @@ def _same(_: Setting) -> Outcome:
         fiblets = compress(lines, order="hilbert")
         fiblets.verify()
         decoded = fiblets.decompress(dtype=np.float64)
-        found.append(Outcome(float(apart(decoded.points, lines.points).max()) / fiblets.promise, 1.0, PROMISE))
+        found.append(Outcome(float(differences(decoded.points, lines.points).max()) / fiblets.promise, 1.0, BOUND))
     return worst(found)
 
 
@@ -230,7 +230,7 @@ def _resampled(_: Setting) -> Outcome:
     for step in (1e-3, 0.7, 64.0, 1e6):
         made = resample(lines, step)
         for before, after in zip(lines, made, strict=True):
-            ends = apart(before[[0, -1]], after[[0, -1]]).max()
+            ends = differences(before[[0, -1]], after[[0, -1]]).max()
             a, b = before[:-1], before[1:]
             some = after[:: max(len(after) // 400, 1)]
             off = _from_segments(some, a, b) if len(a) else np.zeros(1)

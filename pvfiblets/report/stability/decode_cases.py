@@ -1,4 +1,4 @@
-"""Decoding and what is told of fiblets without it: the same numbers by every way, and every point in its capsule."""
+"""Decoding, and what is known without it: the same numbers by every method, and every point in its capsule."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .. import decoders
 from ..decode import Made, exact, made
 from .case import Cases, Outcome, Setting, worst
 from .render_checks import Array, camera, drawing
-from .synthetic_lines import apart, helix, lines_of, tracking, turning, zigzag
+from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
 
 __all__ = ["CASES", "stiff"]
 
@@ -69,7 +69,7 @@ def _two_decoders(_: Setting) -> Outcome:
         starts = np.append(fiblets.fiblet_points(), fiblets.n_points)
         for f in range(min(fiblets.n_fiblets, 40)):
             mine = literal(fiblets, f)
-            off = float(apart(decoded[starts[f] : starts[f + 1]], mine).max(initial=0.0))
+            off = float(differences(decoded[starts[f] : starts[f + 1]], mine).max(initial=0.0))
             rounding = 64.0 * float(np.spacing(np.abs(mine).max() + np.abs(fiblets.origin).max()))
             found.append(Outcome(off / (rounding + 1e-9 * fiblets.promise), 1.0, "of rounding", name))
     return worst(found)

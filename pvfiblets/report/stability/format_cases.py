@@ -17,7 +17,7 @@ from pvfiblets.errors import FibletsError
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .synthetic_lines import apart, lines_of, tracking
+from .synthetic_lines import differences, lines_of, tracking
 
 __all__ = ["CASES"]
 
@@ -37,7 +37,7 @@ def through_files(streamlines: Streamlines, slack: float = 0.0) -> Outcome:
     for suffix, read in _written(streamlines):
         if not np.array_equal(read.offsets, streamlines.offsets):
             return Outcome(np.inf, 1.0, ROUNDING, f"{suffix}: counts changed, dropped {read.dropped}")
-        off = float(apart(read.points, streamlines.points).max(initial=0.0))
+        off = float(differences(read.points, streamlines.points).max(initial=0.0))
         allowed = rounding + corner * (suffix == ".trk")
         found.append(Outcome(off / allowed, 1.0, ROUNDING, suffix))
     return worst(found)

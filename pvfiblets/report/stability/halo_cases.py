@@ -57,7 +57,7 @@ def kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: Loo
         renderer.release()
 
 
-def right(
+def compare(
     setting: Setting,
     drawn: HaloLines | HaloPoints,
     matrix: Array,
@@ -85,7 +85,7 @@ def _no_length(setting: Setting) -> Outcome:
         [[3, 1, 12]] * 6,
         [[-3, 1, 12]] * 2,
     )
-    return right(setting, drawn, camera(SIZE, eye=EYE, near=10.0, far=200.0, height=46.0))
+    return compare(setting, drawn, camera(SIZE, eye=EYE, near=10.0, far=200.0, height=46.0))
 
 
 @CASES.add("steps of 1e-9 to 1e-4 mm", "a bend within no length", "the picture without it, but for 1 pixel in 1,000")
@@ -102,7 +102,7 @@ def _short(setting: Setting) -> Outcome:
 @CASES.add("the eye on a line", "a line through the eye and along the view, perspective, among others", SURE)
 def _through_the_eye(setting: Setting) -> Outcome:
     drawn = of_lines([[0, -40, 0], [0, -1, 0], [0, 0, 0], [0, 5, 0], [0, 40, 0]], [[-9, 20, 3], [9, 21, 4]])
-    return right(setting, drawn, camera(SIZE, eye=(0.0, 0.0, 0.0), target=(0.0, 1.0, 0.0), near=0.1, far=50.0))
+    return compare(setting, drawn, camera(SIZE, eye=(0.0, 0.0, 0.0), target=(0.0, 1.0, 0.0), near=0.1, far=50.0))
 
 
 @CASES.add("seen end on", "lines along the view's axis, parallel and in perspective", SURE)
@@ -111,7 +111,7 @@ def _end_on(setting: Setting) -> Outcome:
     drawn = of_lines([[0, -5, 0], [0, 5, 0]], along, bent)
     return worst(
         [
-            right(setting, drawn, camera(SIZE, eye=(0.0, -60.0, 0.0), near=10.0, far=200.0, height=height))
+            compare(setting, drawn, camera(SIZE, eye=(0.0, -60.0, 0.0), near=10.0, far=200.0, height=height))
             for height in (None, 32.0)
         ]
     )
@@ -129,7 +129,7 @@ def _nothing(setting: Setting) -> Outcome:
 @CASES.add("strips wider than the scene", "500 mm wide, that lie 50 mm back", SURE)
 def _wide(setting: Setting) -> Outcome:
     look = Look(1.0, 500.0, 50.0, n_tapered=0, min_width=0.0)
-    return right(setting, wandering(6, 2, 1), camera(SIZE, eye=EYE, near=10.0, far=200.0), look=look)
+    return compare(setting, wandering(6, 2, 1), camera(SIZE, eye=EYE, near=10.0, far=200.0), look=look)
 
 
 @CASES.add("offsets of ±1e7 mm", "lines and camera moved by 1e7 mm either way", SURE)
@@ -138,7 +138,7 @@ def _far_away(setting: Setting) -> Outcome:
     for shift in (1e7, -1e7):
         back = np.eye(4)
         back[:3, 3] = -shift
-        found.append(right(setting, HaloLines(base.points + shift, base.offsets), matrix @ back))
+        found.append(compare(setting, HaloLines(base.points + shift, base.offsets), matrix @ back))
     return worst(found)
 
 
@@ -148,7 +148,7 @@ def _sizes(setting: Setting) -> Outcome:
     for size in (1e-6, 1e6):
         back = np.diag([1 / size, 1 / size, 1 / size, 1.0])
         look = Look(2.0 * size, 7.0 * size, 2.5 * size, n_tapered=0, min_width=0.0)
-        found.append(right(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
+        found.append(compare(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
     return worst(found)
 
 
@@ -157,7 +157,7 @@ def _small(setting: Setting) -> Outcome:
     points = HaloPoints(np.random.default_rng(0).uniform(-14.0, 14.0, (60, 3)))
     return worst(
         [
-            right(setting, drawn, camera(size, eye=EYE, near=10.0, far=200.0, height=46.0), size)
+            compare(setting, drawn, camera(size, eye=EYE, near=10.0, far=200.0, height=46.0), size)
             for size in ((1, 1), (1, 50), (70, 1), (3, 2))
             for drawn in (wandering(), points)
         ]

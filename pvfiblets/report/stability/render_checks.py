@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from pvfiblets.engine import FibletRenderer, Style, View
 
-__all__ = ["EVERY_POINT", "OFF_LINE", "Shown", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
+__all__ = ["EVERY_POINT", "OFF_LINE", "Picture", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
 
 Array = npt.NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def camera(
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class Picture:
     """What a G-buffer of fiblets holds; arrays are ``(height, width, …)``, row 0 at the bottom."""
 
     key: npt.NDArray[np.uint32]
@@ -80,7 +80,7 @@ class Shown:
         there = self.there
         return bool(((self.owner != EMPTY) == there).all() and np.isfinite(self.position[there][:, 0]).all())
 
-    def differs(self, other: Shown) -> int:
+    def differs(self, other: Picture) -> int:
         """Count pixels that are not the same, bit by bit."""
         unlike = (self.key != other.key) | (self.owner != other.owner)
         both = self.there & other.there
@@ -89,14 +89,14 @@ class Shown:
         return int(unlike.sum())
 
 
-def read(buffer: Any) -> Shown:
+def read(buffer: Any) -> Picture:
     """Read a G-buffer back."""
     width, height = buffer.size
 
     def get(texture: Any, dtype: str) -> npt.NDArray[Any]:
         return np.frombuffer(texture.read(), dtype).reshape(height, width, -1)
 
-    return Shown(
+    return Picture(
         get(buffer.depth, "<u4")[..., 0],
         get(buffer.ids, "<u4"),
         get(buffer.position, "<f4"),
@@ -114,7 +114,7 @@ def drawing(ctx: Any, fiblets: Any, **options: Any) -> Iterator[FibletRenderer]:
         renderer.release()
 
 
-def drawn(ctx: Any, fiblets: Any, view: View, style: Style = EVERY_POINT, **options: Any) -> Shown:
+def drawn(ctx: Any, fiblets: Any, view: View, style: Style = EVERY_POINT, **options: Any) -> Picture:
     """Draw one picture with a renderer of its own."""
     with drawing(ctx, fiblets, **options) as renderer:
         return read(renderer.render(view, style))
@@ -154,7 +154,7 @@ def _inside(p: Array, q: Array) -> tuple[float, float]:
     return low, high
 
 
-def off_lines(shown: Shown, lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, int]) -> float:
+def off_lines(shown: Picture, lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, int]) -> float:
     """Return the largest distance in pixels between the picture and the lines in float64, either way.
 
     Of a drawn pixel's centre from the nearest place on a line, and of a place on a line from the nearest drawn pixel's;
@@ -191,5 +191,5 @@ def pixel_rays(matrix: Array, size: tuple[int, int]) -> tuple[Array, Array]:
         clip = np.stack([2.0 * x / width - 1.0, 2.0 * y / height - 1.0, np.full_like(x, depth), np.ones_like(x)], -1)
         at = clip.reshape(-1, 4) @ back.T
         ends.append(at[:, :3] / at[:, 3:])
-    ways = ends[1] - ends[0]
-    return ends[0], ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    directions = ends[1] - ends[0]
+    return ends[0], directions / np.linalg.norm(directions, axis=1, keepdims=True)

@@ -55,7 +55,7 @@ class StabilityStudy:
     title = "Stiff and extreme cases"
     approximates = (
         "What must hold whatever the data, the camera or the file: each case says it, and measures one figure by which "
-        "it is judged, against a promise, a formula, or NumPy in float64."
+        "it is judged, against an error bound, a formula, or NumPy in float64."
     )
     axes: Sequence[Axes] = ()
     notes = (

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from pvfiblets.streamlines import Streamlines
 
-__all__ = ["apart", "helix", "lines_of", "tracking", "turning", "zigzag"]
+__all__ = ["differences", "helix", "lines_of", "tracking", "turning", "zigzag"]
 
 Array = npt.NDArray[np.float64]
 
@@ -23,24 +23,24 @@ def tracking(n: int = 12, points: int = 130, step: float = 0.5, seed: int = 0) -
     """Smooth lines of constant step that wander within some 100 mm, as tracking gives them."""
     rng = np.random.default_rng(seed)
     turns = np.cumsum(rng.normal(0.0, 0.03, (n, points, 3)), axis=1)
-    ways = rng.normal(size=(n, 1, 3)) + turns
-    ways *= step / np.linalg.norm(ways, axis=2, keepdims=True)
-    places = np.cumsum(ways, axis=1) + rng.uniform(-30.0, 30.0, (n, 1, 3))
+    directions = rng.normal(size=(n, 1, 3)) + turns
+    directions *= step / np.linalg.norm(directions, axis=2, keepdims=True)
+    places = np.cumsum(directions, axis=1) + rng.uniform(-30.0, 30.0, (n, 1, 3))
     return Streamlines(places.reshape(-1, 3), points * np.arange(n + 1))
 
 
 def turning(turn: float, points: int = 130, step: float = 0.5) -> Array:
     """One line of constant step that turns by an angle at every point, about an axis that turns as well."""
-    way, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-    ways = [way]
+    forwards, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    directions = [forwards]
     for _ in range(points - 2):
-        side = np.cross(up, way)
-        way, up = _turned(way, side, turn), _turned(up, side, 0.37)  # the second about the new way, more or less
-        way /= np.linalg.norm(way)
-        up -= (up @ way) * way
+        side = np.cross(up, forwards)
+        forwards, up = _turned(forwards, side, turn), _turned(up, side, 0.37)  # the second about the new one
+        forwards /= np.linalg.norm(forwards)
+        up -= (up @ forwards) * forwards
         up /= np.linalg.norm(up)
-        ways.append(way)
-    return np.concatenate([np.zeros((1, 3)), np.cumsum(step * np.array(ways), axis=0)])
+        directions.append(forwards)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(step * np.array(directions), axis=0)])
 
 
 def _turned(a: Array, b: Array, angle: float) -> Array:
@@ -62,7 +62,7 @@ def helix(points: int = 500, turn: float = np.pi - 1e-3, pitch: float = 0.01, ra
     return np.stack([radius * np.cos(turn * i), radius * np.sin(turn * i), pitch * i], axis=1)
 
 
-def apart(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+def differences(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
     """Distances of points one by one, right for denormal and for huge ones too."""
     delta = np.abs(np.asarray(a, np.float64) - np.asarray(b, np.float64))
     most = delta.max(axis=1, initial=0.0)

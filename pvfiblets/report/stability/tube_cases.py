@@ -154,7 +154,7 @@ def winding(scale: float = 1.0, shift: float = 0.0, radius: float = 2.0) -> Spli
     )  # fmt: skip
 
 
-def right(setting: Setting, tubes: SplineTubes, matrix: Array, size: tuple[int, int] = SIZE) -> Outcome:
+def compare(setting: Setting, tubes: SplineTubes, matrix: Array, size: tuple[int, int] = SIZE) -> Outcome:
     """Compare a picture with the hits of all pixels' rays in float64."""
     renderer = TubeRenderer(setting.gl, tubes, min_width=0.0)
     try:
@@ -190,7 +190,7 @@ def _far_away(setting: Setting) -> Outcome:
     for shift in (1e7, -1e7):
         back = np.eye(4)
         back[:3, 3] = -shift
-        found.append(right(setting, winding(shift=shift), matrix @ back))
+        found.append(compare(setting, winding(shift=shift), matrix @ back))
     return worst(found)
 
 
@@ -198,17 +198,17 @@ def _far_away(setting: Setting) -> Outcome:
 def _sizes(setting: Setting) -> Outcome:
     matrix = camera(SIZE, eye=(0.0, -60.0, 20.0), near=5.0, far=200.0)
     sizes = (1e-6, 1e6)
-    return worst([right(setting, winding(s), matrix @ np.diag([1 / s, 1 / s, 1 / s, 1.0])) for s in sizes])
+    return worst([compare(setting, winding(s), matrix @ np.diag([1 / s, 1 / s, 1 / s, 1.0])) for s in sizes])
 
 
 @CASES.add("near plane at a millionth of the far", "near 0.001 mm, far 1000 mm", SHOWN)
 def _near(setting: Setting) -> Outcome:
-    return right(setting, winding(), camera(SIZE, eye=(0.0, -40.0, 10.0), near=1e-3, far=1e3))
+    return compare(setting, winding(), camera(SIZE, eye=(0.0, -40.0, 10.0), near=1e-3, far=1e3))
 
 
 @CASES.add("a huge radius", "a tube 1000 mm thick, seen from 3000 mm", SHOWN, long=True)
 def _huge(setting: Setting) -> Outcome:
-    return right(setting, winding(radius=1e3), camera(SIZE, eye=(0.0, -3000.0, 900.0), near=100.0, far=1e4))
+    return compare(setting, winding(radius=1e3), camera(SIZE, eye=(0.0, -3000.0, 900.0), near=100.0, far=1e4))
 
 
 @CASES.add("windows of 1 × 1 and one pixel high or wide", "four sizes", SHOWN)
@@ -216,7 +216,7 @@ def _small(setting: Setting) -> Outcome:
     sizes = ((1, 1), (1, 50), (60, 1), (3, 2))
     return worst(
         [
-            right(
+            compare(
                 setting,
                 winding(radius=8.0),
                 camera(s, eye=(0.0, -60.0, 20.0), target=(0.0, 9.1, 0.4), near=5.0, far=200.0, height=12.0),
