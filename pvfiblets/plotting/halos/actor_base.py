@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -11,16 +12,15 @@ import pyvista as pv
 from pvfiblets.halos import HaloLines, Look
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-from pvfiblets.plotting.coloured import Coloured
+from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
+from pvfiblets.plotting.halos.settings import LOOKS, HaloSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
-from pvfiblets.plotting.mapper import Plotted
-from pvfiblets.plotting.report import added_up
+from pvfiblets.plotting.setting_places import OPTIONS
+from pvfiblets.plotting.settings import Given
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.plotting.fiblets.scalars import Scalars
-    from pvfiblets.plotting.halos.style import Threshold
 
 BACKGROUND = "background"
 
@@ -37,31 +37,19 @@ class PlottedHalos(Plotted, HaloMapper):
     """
 
 
-class HaloActor(Coloured, pv.Actor):
+class HaloActor(HaloSettings, Coloured, pv.Actor):
     """What actors of lines and of points with halos have in common.
 
     Parameters
     ----------
     held : Held
         What to draw, and the numbers that colour and filter it.
-    looks : LookSettings, optional
-        How it looks.
-    settings : ColourSettings, optional
-        Colour map and colours.
-    halo_color : color-like or "background", optional
-        As for :attr:`halo_color`.
-    light_on_dark : bool, default: False
-        As for :attr:`light_on_dark`.
-    opacity : float, default: 1.0
-        Of lines, points and halos.
-    lighting : bool, default: False
-        Whether the scene's lights shade lines and points.
+    settings : mapping, optional
+        Arguments of ``plotter.add_halo_lines`` or ``add_halo_points`` that are settings, by name.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
-    options : HaloOptions, optional
-        How those behind others are found out.
     """
 
     _KIND: ClassVar[type]
@@ -70,32 +58,27 @@ class HaloActor(Coloured, pv.Actor):
         self,
         held: Held,
         *,
-        looks: LookSettings | None = None,
-        settings: ColourSettings | None = None,
-        halo_color: Any = None,
-        light_on_dark: bool = False,
-        opacity: float = 1.0,
-        lighting: bool = False,
+        settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
-        options: HaloOptions | None = None,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
+        given = Given(type(self), settings)
         self._held = replace(held, drawn=self._checked(held.drawn))
-        self._looks = LookSettings(filter_by=held.filter_by) if looks is None else looks
+        self._looks = LookSettings(filter_by=held.filter_by, **given.at(LOOKS))
         self._spacing = Spacing(held.drawn)
-        self._light_on_dark = bool(light_on_dark)
-        self._halo_choice = _halo_choice(halo_color)
-        self._init_colours(held.scalars, settings, theme)
+        self._light_on_dark = given["light_on_dark"]
+        self._halo_choice = _halo_choice(given["halo_color"])
+        self._init_colours(held.scalars, given, theme)
         self._own_color = self._settings.color is not None
         self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
-        mapper = PlottedHalos(held.drawn, self._looks.look(held.drawn, self._spacing), options=options)
+        look = self._looks.look(held.drawn, self._spacing)
+        mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
         super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._mapper = mapper  # VTK keeps the C++ half only
-        mapper.attach(self)
-        self._init_looks(opacity, lighting)
+        self._finish(mapper, given)
         self._colour_halos()
         self._recolour()
+        self._take(given)
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
@@ -103,48 +86,35 @@ class HaloActor(Coloured, pv.Actor):
 
     # Colours ------------------------------------------------------------------------------------
 
-    @property
-    def color(self) -> pv.Color:
-        """One colour for all; black, or white with ``light_on_dark``, where none was given.
-
-        Setting it puts scalars out of use; ``None`` sets that default.
-        """
+    def _read_color(self) -> pv.Color:
         return pv.Color(self._settings.color)
 
-    @color.setter
-    def color(self, color: Any) -> None:
+    def _write_color(self, color: Any) -> None:
         checked = pv.Color(color, default_color=self._ink)
         self._own_color = color is not None
         self._settings.color = checked
         self.scalars = None
 
-    @property
-    def halo_color(self) -> pv.Color | str:
-        """Colour of the halos: white, or black with ``light_on_dark``, where none was given.
+    def _kept_color(self) -> Any:
+        return self._settings.color if self._own_color else None
 
-        ``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets
-        the default.
-        """
+    def _read_halo_color(self) -> pv.Color | str:
         if self._halo_choice == BACKGROUND:
             return BACKGROUND
         return pv.Color(self._halo_choice, default_color=self._paper)
 
-    @halo_color.setter
-    def halo_color(self, color: Any) -> None:
+    def _write_halo_color(self, color: Any) -> None:
         self._halo_choice = _halo_choice(color)
         self._colour_halos()
 
-    @property
-    def light_on_dark(self) -> bool:
-        """White in black halos instead of black in white ones; colours that were given stay.
+    def _kept_halo_color(self) -> Any:
+        return self._halo_choice
 
-        The background is the plotter's: ``plotter.set_background("black")``.
-        """
+    def _read_light_on_dark(self) -> bool:
         return self._light_on_dark
 
-    @light_on_dark.setter
-    def light_on_dark(self, wanted: bool) -> None:
-        self._light_on_dark = bool(wanted)
+    def _write_light_on_dark(self, wanted: bool) -> None:
+        self._light_on_dark = wanted
         if not self._own_color:
             self._settings.color = pv.Color(self._ink)
         self._colour_halos()
@@ -175,58 +145,6 @@ class HaloActor(Coloured, pv.Actor):
         """Every setting below as it is drawn, with the numbers that were measured of the data."""
         return self._mapper.look
 
-    @property
-    def max_displacement(self) -> float:
-        """By how many mm the edge of a halo lies behind its line or point; ``None`` sets what suits the data.
-
-        Lines that cross with less between them have narrower halos, those side by side none.
-        """
-        return self.look.max_displacement
-
-    @max_displacement.setter
-    def max_displacement(self, mm: float | None) -> None:
-        self._change(max_displacement=mm)
-
-    @property
-    def displacement(self) -> Any:
-        """How far back a halo lies between its line and its edge, as shares of ``max_displacement``.
-
-        ``"linear"``, ``"square"``, ``"square root"``; 2 to 64 numbers in 0..1 at equally spaced places
-        from the axis to the edge; or a function of an array of places in 0..1.
-        """
-        return self._looks.displacement
-
-    @displacement.setter
-    def displacement(self, displacement: Any) -> None:
-        self._change(displacement=displacement)
-
-    @property
-    def width_cue(self) -> float:
-        """By which share the farthest in the data are thinner than the nearest, 0 to 1; halos keep their width."""
-        return self.look.width_cue
-
-    @width_cue.setter
-    def width_cue(self, share: float) -> None:
-        self._change(width_cue=share)
-
-    @property
-    def min_width(self) -> float:
-        """Pixels of the window that a line or point takes at least; 0 leaves it as it is."""
-        return self.look.min_width
-
-    @min_width.setter
-    def min_width(self, pixels: float) -> None:
-        self._change(min_width=pixels)
-
-    @property
-    def smooth(self) -> bool:
-        """Whether lines and points turn into their halos gradually, over a pixel."""
-        return self.look.smooth
-
-    @smooth.setter
-    def smooth(self, smooth: bool) -> None:
-        self._change(smooth=smooth)
-
     # Filter -------------------------------------------------------------------------------------
 
     @property
@@ -245,29 +163,6 @@ class HaloActor(Coloured, pv.Actor):
         looks = replace(self._looks, filter_by=held.filter_by, threshold=threshold)
         self._hold(held, looks)
 
-    @property
-    def threshold(self) -> Threshold:
-        """The least number of ``filter_by`` that shows, or the least and the greatest, ``None`` for no end.
-
-        Changing it costs a redraw, and nothing is copied to the GPU.
-        """
-        return self._looks.threshold
-
-    @threshold.setter
-    def threshold(self, threshold: Threshold) -> None:
-        self._change(threshold=threshold)
-
-    # How it is drawn ----------------------------------------------------------------------------
-
-    @property
-    def culling(self) -> str | None:
-        """How those behind others are found out: ``"two-phase"``, or ``None``; the picture is the same."""
-        return self._mapper.options.culling
-
-    @culling.setter
-    def culling(self, culling: str | None) -> None:
-        self._mapper.options = HaloOptions(culling)
-
     def copy(self, deep: bool = True) -> Self:
         """Return another actor that draws the same with the same looks, colours and place.
 
@@ -282,19 +177,8 @@ class HaloActor(Coloured, pv.Actor):
         HaloLineActor or HaloPointActor
             Not in any plotter yet.
         """
-        twin = type(self)(
-            self._held,
-            looks=self._looks,
-            settings=replace(self._settings, color=self._settings.color if self._own_color else None),
-            halo_color=self._halo_choice,
-            light_on_dark=self._light_on_dark,
-            theme=self._theme,
-            options=self._mapper.options,
-        )
-        twin.prop = self.prop.copy() if deep else self.prop
-        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
-        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
-        twin.visibility, twin.pickable = self.visibility, self.pickable
+        twin = type(self)(self._held, settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)  # noqa: SLF001 - another of the same
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -313,19 +197,6 @@ class HaloActor(Coloured, pv.Actor):
         del total["fiblets"]
         latest = report["windows"][-1] if report["windows"] else {}
         return {**total, **self._totals, "culling": latest.get("culling")}
-
-    # What a component asks ----------------------------------------------------------------------
-
-    def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
-
-    def raise_pending(self) -> None:
-        """Raise what drawing stored, once."""
-        self._mapper.raise_pending()
-
-    def release(self, window: Any = None) -> None:
-        """Give back the GPU memory that the actor has in a window, or in all."""
-        self._mapper.release(window)
 
     # Inside -------------------------------------------------------------------------------------
 
