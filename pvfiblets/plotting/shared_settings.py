@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.plotting.setting_places import COLOURS, PROPERTY, Effect
+from pvfiblets.plotting.setting_places import COLOURS, OWN, PROPERTY, Effect
 from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
 
 CMAPS = (
@@ -29,6 +29,19 @@ def by_numbers(settings: Any) -> bool:
     return settings["scalars"] not in (None, "orientation")
 
 
+def color(doc: str) -> Setting[Any]:
+    """Return the one colour of some drawable that numbers may colour, too."""
+    return Setting(
+        None,
+        "One colour for all; setting it puts scalars out of use.",
+        argument=doc,
+        header="color-like, optional",
+        where=OWN,
+        row=Row("Colour", "Of all, where nothing else colours it.", type="colour", default="#ffffff",
+                matters=lambda settings: settings["scalars"] is None),
+    )  # fmt: skip
+
+
 CMAP: Setting[Any] = Setting(
     None,
     "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
@@ -40,6 +53,11 @@ CMAP: Setting[Any] = Setting(
             choices=[(None, "usual"), *MAPS], matters=by_numbers),
 )  # fmt: skip
 
+CLIM_ROW = Row(
+    "Range", "Values of the first and the last colour; empty: all of the data's.", type="range", optional=True,
+    read=lambda actor: list(actor.clim), matters=by_numbers,
+)  # fmt: skip
+
 CLIM: Setting[tuple[float, float]] = Setting(
     None,
     "Values of the first and the last colour; ``None`` sets the range of the data.\n\n"
@@ -48,9 +66,8 @@ CLIM: Setting[tuple[float, float]] = Setting(
     header="float or (float, float), optional",
     where=COLOURS,
     read=lambda actor: tuple(actor.lookup_table.scalar_range),
-    row=Row("Range", "Values of the first and the last colour; empty: all of the data's.", type="range",
-            optional=True, read=lambda actor: list(actor.clim), matters=by_numbers),
-)  # fmt: skip
+    row=CLIM_ROW,
+)
 
 N_COLORS: Setting[int] = Setting(
     256, "Entries of the look-up table.", argument="Number of colours in the map.", kind="int", where=COLOURS

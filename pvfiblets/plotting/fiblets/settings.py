@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
@@ -17,6 +18,11 @@ def _radii(data: Any) -> tuple[float, float]:
     return 1e-5 * size, 0.1 * size
 
 
+def _clim_span(actor: Any) -> tuple[float, float]:
+    scalars = actor.active_scalars
+    return scalars.range if scalars is not None and scalars.mapped else actor.clim
+
+
 def _line_width(name: str, width: Any) -> float:
     if not 0.0 < float(width) <= 64.0:
         raise ValueError(f"{name} is {width!r}; give pixels above 0 and up to 64")
@@ -26,15 +32,9 @@ def _line_width(name: str, width: Any) -> float:
 class FibletSettings(Settings):
     """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that is set, in the order of the page."""
 
-    color: Setting[Any] = Setting(
-        None,
-        "One colour for all; setting it puts scalars out of use.",
-        argument="One colour for all. ``scalars`` go before it.",
-        header="color-like, optional",
-        where=OWN,
-    )
+    color = shared.color("One colour for all. ``scalars`` go before it.")
     cmap = shared.CMAP
-    clim = shared.CLIM
+    clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_clim_span))
     n_colors = shared.N_COLORS
     log_scale = shared.LOG_SCALE
     nan_color = shared.NAN_COLOR

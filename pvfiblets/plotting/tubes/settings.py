@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
-from pvfiblets.plotting.setting_places import LATER, OPTIONS, OWN
+from pvfiblets.plotting.setting_places import LATER, OPTIONS
 from pvfiblets.plotting.settings import NoSetting, Row, Setting, Settings
 
 _OF_LINES = "{name} is for lines, and spline tubes are surfaces; "
@@ -20,13 +20,7 @@ class TubeSettings(Settings):
     line_width = NoSetting(_OF_LINES + "min_width is the width in pixels that they take at least")
     halos = NoSetting(_OF_LINES + "silhouette draws a line around them")
 
-    color: Setting[Any] = Setting(
-        None,
-        "One colour for all; setting it puts scalars out of use.",
-        argument="One colour for all, the theme's by default. ``scalars`` go before it.",
-        header="color-like, optional",
-        where=OWN,
-    )
+    color = shared.color("One colour for all, the theme's by default. ``scalars`` go before it.")
     cmap = shared.CMAP
     clim = shared.CLIM
     n_colors = shared.N_COLORS

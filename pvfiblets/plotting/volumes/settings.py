@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
@@ -96,9 +97,8 @@ class VolumeSettings(Settings):
                 choices=shared.MAPS, matters=lambda s: s["color"] is None),
     )  # fmt: skip
     clim = shared.CLIM.but(
-        row=Row("Range", "Values of the first and the last colour; empty: all of the data's.", type="range",
-                optional=True, read=lambda actor: list(actor.clim), span=_values_span)
-    )  # fmt: skip
+        row=replace(shared.CLIM_ROW, span=_values_span, matters=None)
+    )
     n_colors = shared.N_COLORS.but(argument_doc="Number of colours in the map, between which light is linear.")
     flip_scalars = shared.FLIP_SCALARS
     opacity: Setting[Any] = Setting(
