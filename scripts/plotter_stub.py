@@ -93,7 +93,8 @@ def _adder(component: Any) -> str:
 def _class_of_adder(component: Any, imports: set[str]) -> str:
     signature = inspect.signature(component.add)
     source = f"{component.__name__.removesuffix('Component')}Source"
-    imports.add(f"from {component.__module__} import Source as {source}")
+    own = signature.parameters["source"].annotation
+    imports.add(f"from {component.__module__} import {own} as {source}")
     actor = signature.return_annotation
     imports.add(f"from {_home(component, actor)} import {actor}")
     parts = ["self", f"source: {source}", "*"]

@@ -11,10 +11,8 @@ from pvfiblets.plotting.fiblets.actor import FibletActor
 from pvfiblets.plotting.fiblets.component import FibletsComponent
 from pvfiblets.plotting.fiblets.component import Source as FibletsSource
 from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
-from pvfiblets.plotting.halos.component import HaloLinesComponent
-from pvfiblets.plotting.halos.component import Source as HaloLinesSource
-from pvfiblets.plotting.halos.point_component import HaloPointsComponent
-from pvfiblets.plotting.halos.point_component import Source as HaloPointsSource
+from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsComponent
+from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
 from pvfiblets.plotting.halos.style import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
 from pvfiblets.plotting.tubes.actor import TubeActor

@@ -203,7 +203,7 @@ class Setting(Argument, Generic[T]):
         **more: Any,
     ) -> None:
         super().__init__(default, argument if isinstance(argument, str) else doc, where=where, **more)
-        self.__doc__ = doc
+        self.__doc__ = doc + self._choices_in_words(doc)
         self.is_argument = argument is not False
         self.low, self.high, self.unit, self._read, self.row = low, high, unit, read, row
 
@@ -215,6 +215,13 @@ class Setting(Argument, Generic[T]):
                 raise AttributeError(f"a setting has no {name}")
             setattr(found, name, value)
         return found
+
+    def _choices_in_words(self, doc: str) -> str:
+        """Return what the property may be, where its doc does not say it; arguments have that in their header."""
+        if not self.choices or any(f"``{choice!r}``" in doc.replace('"', "'") for choice in self.choices):
+            return ""
+        *first, last = (f"``{choice!r}``" for choice in self.choices)
+        return f"\n\n{', '.join(first)} or {last}."
 
     @overload
     def __get__(self, actor: None, kind: type | None = None) -> Self: ...

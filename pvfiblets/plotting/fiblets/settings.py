@@ -44,7 +44,6 @@ class FibletSettings(Settings):
     categories: Setting[bool] = Setting(
         False,
         "Whether there are as many colours as different values, instead of ``n_colors``.",
-        argument="As many colours as there are different values, instead of ``n_colors``.",
         kind="bool",
         where=COLOURS,
         check=truth,
@@ -57,8 +56,6 @@ class FibletSettings(Settings):
         "four, each with its own colour, light and depth, blended in order. A number from 2 to 64:\n"
         "as many. What lies behind the last does not show. A layer costs a drawing of all\n"
         "streamlines in view, and 44 bytes of GPU memory a pixel; opaque actors pay for none.",
-        argument="How many layers of lines show through each other where ``opacity`` is below 1: ``None``, the nearest "
-        'alone; ``"layers"``, four; or a number from 2 to 64.',
         kind="str | int | None",
         header='{None, "layers"} or int, optional',
         where=LATER,
@@ -69,7 +66,6 @@ class FibletSettings(Settings):
     line_width: Setting[float] = Setting(
         None,
         "Width in pixels.",
-        argument="In pixels; the theme's by default.",
         kind="float | None",
         where=OWN,
         check=_line_width,
@@ -136,16 +132,14 @@ class FibletSettings(Settings):
     )  # fmt: skip
     pipeline: Setting[str] = Setting(
         "auto",
-        "How fiblets become pixels; ``plotter.fiblets.pipelines()`` lists the choices.",
-        argument='How fiblets become pixels; ``"auto"`` takes the fastest that the plotter\'s OpenGL has, and '
-        ":meth:`pipelines` lists all.",
+        'How fiblets become pixels; ``"auto"`` takes the fastest that the plotter\'s OpenGL has, and '
+        "``plotter.fiblets.pipelines()`` lists all.",
         kind="str",
         where=OPTIONS,
     )
     culling: Setting[str | None] = Setting(
         "two-phase",
-        'How fiblets behind others are found out: ``"two-phase"``, ``"coverage"`` or ``None``.',
-        argument='How fiblets behind others are found out. ``"two-phase"`` changes no pixel; ``"coverage"`` may lose '
+        'How fiblets behind others are found out. ``"two-phase"`` changes no pixel; ``"coverage"`` may lose '
         "some for a frame after the camera jumped; ``None`` draws all that the camera may see.",
         kind="str | None",
         choices=("two-phase", "coverage", None),
@@ -155,8 +149,7 @@ class FibletSettings(Settings):
     )  # fmt: skip
     fit: Setting[str | None] = Setting(
         None,
-        'What to do where memory does not suffice: ``None`` refuses, ``"sample"`` draws a share.',
-        argument="Where the fiblets need more GPU memory than there is: ``None`` refuses, ``\"sample\"`` draws a share "
+        "Where the fiblets need more GPU memory than there is: ``None`` refuses, ``\"sample\"`` draws a share "
         "of the streamlines.",
         kind="str | None",
         choices=(None, "sample"),

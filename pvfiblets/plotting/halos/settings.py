@@ -53,8 +53,6 @@ class HaloSettings(Settings):
         None,
         "By how many mm the edge of a halo lies behind its line or point; ``None`` sets what suits the data.\n\n"
         "Lines that cross with less between them have narrower halos, those side by side none.",
-        argument="mm by which the edges of halos lie behind their lines or points: what is as far behind has the "
-        "widest gaps. By default what suits the width of the halos and the extent of the data.",
         kind="float | None",
         where=LOOKS,
     )
@@ -63,8 +61,6 @@ class HaloSettings(Settings):
         "How far back a halo lies between its line and its edge, as shares of ``max_displacement``.\n\n"
         '``"linear"``, ``"square"``, ``"square root"``; 2 to 64 numbers in 0..1 at equally spaced places\n'
         "from the axis to the edge; or a function of an array of places in 0..1.",
-        argument="How far back a halo lies from its axis to its edge: 2 to 64 shares of ``max_displacement`` at "
-        "equally spaced places, or a function of an array of places in 0..1.",
         kind="Displacement",
         header='{"linear", "square", "square root"}, table or function, default: "linear"',
         where=LOOKS,
@@ -73,7 +69,6 @@ class HaloSettings(Settings):
     width_cue: Setting[float] = Setting(
         WIDTH_CUE,
         "By which share the farthest in the data are thinner than the nearest, 0 to 1; halos keep their width.",
-        argument="By which share the farthest are thinner than the nearest, beside perspective.",
         kind="float",
         where=LOOKS,
     )
@@ -81,7 +76,6 @@ class HaloSettings(Settings):
         None,
         "The least number of ``filter_by`` that shows, or the least and the greatest, ``None`` for no end.\n\n"
         "Changing it costs a redraw, and nothing is copied to the GPU.",
-        argument="The least number that shows, or the least and the greatest, ``None`` for no end.",
         kind="Threshold",
         header="float or (float, float), optional",
         where=LOOKS,
@@ -100,7 +94,6 @@ class HaloSettings(Settings):
         "Colour of the halos: white, or black with ``light_on_dark``, where none was given.\n\n"
         '``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets\n'
         "the default.",
-        argument="Of the halos, white by default.",
         header='color-like or "background", optional',
         where=OWN,
     )
@@ -108,7 +101,6 @@ class HaloSettings(Settings):
         False,
         "White in black halos instead of black in white ones; colours that were given stay.\n\n"
         'The background is the plotter\'s: ``plotter.set_background("black")``.',
-        argument="White in black halos by default, instead of black in white ones.",
         kind="bool",
         where=OWN,
         check=truth,
@@ -132,14 +124,12 @@ class HaloSettings(Settings):
     min_width: Setting[float] = Setting(
         1.0,
         "Pixels of the window that a line or point takes at least; 0 leaves it as it is.",
-        argument="Pixels that a line or point takes at least, however thin and far it is.",
         kind="float",
         where=LOOKS,
     )
     culling: Setting[str | None] = Setting(
         "two-phase",
-        'How those behind others are found out: ``"two-phase"``, or ``None``; the picture is the same.',
-        argument="How those behind others are found out, where there are many; the picture is the same.",
+        "How those behind others are found out, where there are many; the picture is the same.",
         kind="str | None",
         choices=("two-phase", None),
         where=OPTIONS,
@@ -152,14 +142,12 @@ class HaloLineSettings(HaloSettings):
     line_width: Setting[float] = Setting(
         None,
         "Width (mm) of the lines; ``None`` sets what suits the data.",
-        argument="mm. By default what suits the distances between the lines, which are measured.",
         kind="float | None",
         where=LOOKS,
     )
     strip_width: Setting[float] = Setting(
         None,
         "Width (mm) of a line with the halos on both its sides; ``None`` sets what suits ``line_width``.",
-        argument="mm of a line with the halos on both its sides; a multiple of ``line_width`` by default.",
         kind="float | None",
         where=LOOKS,
     )
@@ -168,8 +156,6 @@ class HaloLineSettings(HaloSettings):
         "How ends of lines narrow: over so many vertices, which go so far along the mask, up to 0.5.\n\n"
         "The mask is as wide as the strip from 0.2 on. ``True`` sets the paper's (2, 0.2), ``False``\n"
         "(0, 0.2): square ends.",
-        argument="How ends of lines narrow: ``(n, t)``, over ``n`` vertices, which go as far as ``t`` along the mask, "
-        "up to 0.5; it is at its widest from 0.2 on. True means (2, 0.2), False square ends.",
         kind="bool | tuple[int, float]",
         header="bool or (int, float), default: True",
         where=LOOKS,
@@ -184,7 +170,6 @@ class HaloLineSettings(HaloSettings):
     filter_taper: Setting[float] = Setting(
         None,
         "Length (mm) over which lines narrow where the filter ends them; ``None`` sets two mean segments.",
-        argument="mm over which lines narrow where the filter ends them; two mean segments by default.",
         kind="float | None",
         where=LOOKS,
     )
@@ -196,7 +181,6 @@ class HaloPointSettings(HaloSettings):
     point_size: Setting[float] = Setting(
         None,
         "Diameter of the points, mm; ``None`` sets what suits the data.",
-        argument="Diameter of a point, mm. By default what suits the distances between them, which are measured.",
         kind="float | None",
         where=LOOKS,
         field="line_width",
@@ -204,7 +188,6 @@ class HaloPointSettings(HaloSettings):
     halo_size: Setting[float] = Setting(
         None,
         "Diameter of a point with its halo, mm; ``None`` sets what suits ``point_size``.",
-        argument="Diameter of a point with its halo, mm; a multiple of ``point_size`` by default.",
         kind="float | None",
         where=LOOKS,
         field="strip_width",

@@ -45,24 +45,20 @@ class TubeSettings(Settings):
     min_width: Setting[float] = Setting(
         1.0,
         "Pixels that a tube takes at least, however thin and far it is; 0 leaves thin ones as they are.",
-        argument="Pixels that a tube takes at least, however thin and far it is.",
         kind="float",
         where=OPTIONS,
         row=Row("Least width", "Pixels that a tube takes at least.", "Drawing", limits=(0.0, 16.0)),
     )
     silhouettes: Setting[str] = Setting(
         "auto",
-        "What covers the pixels whose rays are tried; the picture is the same.\n\n"
-        '``"auto"``, ``"rectangles"``, ``"boxes"`` or ``"pulled-boxes"``.',
-        argument="What covers the pixels whose rays are tried; the picture is the same.",
+        "What covers the pixels whose rays are tried; the picture is the same.",
         kind="str",
         choices=("auto", "rectangles", "boxes", "pulled-boxes"),
         where=OPTIONS,
     )
     solver: Setting[str] = Setting(
         "auto",
-        'How roots are searched: ``"auto"``, ``"illinois"``, ``"newton"``, ``"itp"`` or ``"bisection"``.',
-        argument='How the first point on a ray is searched. ``"bisection"`` is the paper\'s.',
+        "How the first point on a ray is searched; the paper bisects.",
         kind="str",
         choices=("auto", "illinois", "newton", "itp", "bisection"),
         where=OPTIONS,
@@ -71,14 +67,12 @@ class TubeSettings(Settings):
     iterations: Setting[int | None] = Setting(
         None,
         "Steps of one search at most; ``None`` for the solver's own number.",
-        argument="Steps of one search at most; the solver's own number by default.",
         kind="int | None",
         where=OPTIONS,
     )
     culling: Setting[str | None] = Setting(
         "two-phase",
-        'How segments behind others are found out: ``"two-phase"``, or ``None``; the picture is the same.',
-        argument="How segments behind others are found out, where there are many; the picture is the same.",
+        "How segments behind others are found out, where there are many; the picture is the same.",
         kind="str | None",
         choices=("two-phase", None),
         where=OPTIONS,

@@ -64,8 +64,6 @@ class VolumeSettings(Settings):
         '``"isosurface"``: the first of the surfaces of ``values``. ``"composite"``: the light of all\n'
         'that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
         "least ``peak``, or the greatest value where there is none.",
-        argument="What a ray shows: the light of all that it passes through, the first surface, the greatest value, or "
-        "the first peak.",
         kind="str",
         choices=("composite", "isosurface", "mip", "local-mip"),
         where=CASTING,
@@ -76,7 +74,6 @@ class VolumeSettings(Settings):
     values: Setting[Any] = Setting(
         None,
         "Where surfaces are, up to eight; ``None`` sets the middle of the volume's values.",
-        argument="Where surfaces are, up to eight; the middle of the volume's values by default.",
         kind="float | Any",
         header="float or list of float, optional",
         where=CHOSEN,
@@ -86,7 +83,6 @@ class VolumeSettings(Settings):
     color: Setting[Any] = Setting(
         None,
         "One colour for all in place of the map; ``None`` for the map.",
-        argument="One colour for all in place of the map.",
         header="color-like, optional",
         where=OWN,
         row=Row("Colour", "One for all, in place of the map.", type="colour", optional=True),
@@ -108,9 +104,6 @@ class VolumeSettings(Settings):
         "from 0 to 1, or one number for all. Of light it is the opacity of ``opacity_unit_distance``\n"
         "mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not\n"
         "touch them.",
-        argument="How opaque values are, from the first colour to the last: a name as for "
-        ":meth:`pyvista.Plotter.add_volume`, numbers from 0 to 1 that are linear between, or one number for all. One "
-        "number makes surfaces translucent, too; all else does not touch them.",
         kind="str | float | Any",
         header='str, float or list of float, default: "linear"',
         where=CHOSEN,
@@ -121,8 +114,6 @@ class VolumeSettings(Settings):
     opacity_unit_distance: Setting[float] = Setting(
         None,
         "Length, mm, of which ``opacity`` says how opaque it is; ``None`` sets the volume's mean spacing.",
-        argument="mm of which ``opacity`` is, so that light does not depend on the step; the mean spacing of the "
-        "voxels by default.",
         kind="float | None",
         where=CHOSEN,
         row=Row("Opaque over", "mm of which the opacity is; empty: a voxel.", optional=True, limits=_unit_limits,
@@ -131,7 +122,6 @@ class VolumeSettings(Settings):
     thresholds: Setting[Any] = Setting(
         None,
         '(low, high): values that are there, in all modes but ``"isosurface"``; either may be ``None``.',
-        argument="Least and greatest value that is there, either may be ``None``; not of surfaces.",
         header="(float, float), optional",
         where=CHOSEN,
         row=Row("Only values", "Values that are there; empty: all.", type="range", optional=True, span=_values_span,
@@ -140,7 +130,6 @@ class VolumeSettings(Settings):
     peak: Setting[float] = Setting(
         None,
         'The least value of a peak, for ``"local-mip"``; ``None`` sets the middle of the volume\'s values.',
-        argument='The least value of a peak for ``"local-mip"``; the middle of the volume\'s by default.',
         kind="float | None",
         where=CHOSEN,
         row=Row("Peaks from", "The least value of a peak; empty: the middle.", optional=True,
@@ -149,7 +138,6 @@ class VolumeSettings(Settings):
     smooth: Setting[Any] = Setting(
         None,
         "Standard deviation of a Gaussian that the volume is smoothed with first, voxels; ``None`` for none.",
-        argument="Standard deviation of a Gaussian that the volume is smoothed with first, voxels.",
         kind="float | Any",
         header="float or (float, float, float), optional",
         where=OWN,
@@ -159,15 +147,13 @@ class VolumeSettings(Settings):
     step: Setting[float] = Setting(
         0.5,
         "Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it.",
-        argument="Of a ray, in mean spacings of voxels.",
         kind="float",
         where=CASTING,
         row=Row("Step", "Between two looks at the volume, voxels.", "Rays", limits=(0.05, 8.0)),
     )
     filter: Setting[str] = Setting(
         "trilinear",
-        "Reconstruction between voxels: ``'nearest'``, ``'trilinear'`` or ``'tricubic'``.",
-        argument="Reconstruction between voxels.",
+        "Reconstruction between voxels.",
         kind="str",
         choices=("nearest", "trilinear", "tricubic"),
         where=CASTING,
@@ -175,21 +161,18 @@ class VolumeSettings(Settings):
     )
     refine: Setting[str] = Setting(
         "regula-falsi",
-        "How a surface is refined: ``'regula-falsi'``, ``'newton'`` or ``'none'``.",
-        argument="How the place of a surface on its ray is refined.",
+        "How the place of a surface on its ray is refined.",
         kind="str",
         choices=("regula-falsi", "newton", "none"),
         where=CASTING,
         row=Row("Refine surfaces", "How a surface's place is found.", "Rays", matters=_mode("isosurface")),
     )
     iterations: Setting[int] = Setting(
-        5, "Steps of that refinement, 1 to 64.", argument="Steps of that.", kind="int", where=CASTING
+        5, "Steps of that refinement, 1 to 64.", kind="int", where=CASTING
     )
     integrator: Setting[str] = Setting(
         "adaptive",
-        "How light is added up: ``'adaptive'``, ``'preintegrated'``, ``'exponential'``, ``'riemann'``, ``'simpson'``, "
-        "``'romberg'`` or ``'rk4'``.",
-        argument='How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
+        'How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
         'light however dense and steep opacities are: it is ``"preintegrated"`` where that suffices, takes steps in '
         "parts at edges from voxel to voxel, and is several times as slow where opacities are steep.",
         kind="str",
@@ -200,7 +183,6 @@ class VolumeSettings(Settings):
     jitter: Setting[bool] = Setting(
         False,
         "Whether each ray starts at a place of its own in its first step: noise instead of rings.",
-        argument="Have each ray start at a place of its own in the first step: noise in place of rings.",
         kind="bool",
         where=CASTING,
         row=Row("Jitter", "Noise in place of rings.", "Rays"),
@@ -208,30 +190,25 @@ class VolumeSettings(Settings):
     octree: Setting[bool] = Setting(
         True,
         "Whether parts with nothing to see are skipped; the picture is the same.",
-        argument="Skip parts with nothing to see; the picture is the same.",
         kind="bool",
         where=CASTING,
     )
     homogeneous: Setting[float] = Setting(
         0.0,
         "Difference of values up to which parts of the volume are taken as their mean; 0 for none.",
-        argument="Difference of values up to which parts are taken as their mean.",
         kind="float",
         where=CASTING,
     )
     recon: Setting[bool] = Setting(
         False,
         "Whether parts in which colour and opacity are the same for all values are taken as one.",
-        argument="Take parts in which colour and opacity are the same for all values there as one: light is the same, "
-        "and faster where opacities have plateaus.",
         kind="bool",
         where=CASTING,
     )
     sparse: Setting[int] = Setting(
         1,
-        "Pixels along each axis for which there is one ray at first: 1, 2 or 4.",
-        argument="Cast a ray for every so many pixels along each axis, and for those between only where what the first "
-        "ones found differs. Things thinner than that may be missed.",
+        "Pixels along each axis for which there is one ray at first. Those between have rays only where what "
+        "the first ones found differs, so that thinner things may be missed.",
         kind="int",
         choices=(1, 2, 4),
         where=CASTING,
@@ -239,14 +216,12 @@ class VolumeSettings(Settings):
     sparse_threshold: Setting[float] = Setting(
         0.05,
         "Difference between those rays from which on pixels between have their own, 0 to 1.",
-        argument="By how much that may differ, from 0 to 1.",
         kind="float",
         where=CASTING,
     )
     stop: Setting[float] = Setting(
         0.999,
         "Opacity at which a ray ends, up to 1.",
-        argument="Opacity at which a ray ends.",
         kind="float",
         where=CASTING,
     )
@@ -257,8 +232,6 @@ class VolumeSettings(Settings):
         "whose steps are integrated beforehand keeps its step. As soon as the camera rests, there is\n"
         "one more picture, with all as it is set. What counts is that the window wants the rate of\n"
         "an interactor that is being used.",
-        argument="While the camera moves, how well: from 0 to 1, which is as at rest, or "
-        '``{"step": factor, "sparse": pixels}``. At rest all is drawn as it is set.',
         kind="float | dict[str, Any]",
         header="float or dict, default: 0.5",
         where=OWN,
@@ -266,7 +239,6 @@ class VolumeSettings(Settings):
     box: Setting[Any] = Setting(
         None,
         "(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; ``None`` for all.",
-        argument="(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; all by default.",
         header="(float, float, float, float, float, float), optional",
         where=CASTING,
     )
@@ -284,8 +256,6 @@ class VolumeSettings(Settings):
         "darken; ``None``, the default, is a 20th of the data's diagonal. ``strength`` (1.0): 0 to 1.\n"
         "``seed`` (0): the same picture with the same seed is the same to the last bit. ``smooth``\n"
         "(``True``): mean over neighbouring pixels of the same piece of surface, in place of grain.",
-        argument="Darken surfaces where the volume stands over them, by rays through it: "
-        '``{"samples": 32, "radius": mm, "strength": 1.0, "seed": 0, "smooth": True}``, or ``True`` for these.',
         kind="bool | dict[str, Any]",
         header="bool or dict, default: False",
         where=Effect("pvfiblets.mappers.ray_occlusion:RayOcclusion"),
