@@ -17,6 +17,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Settings
+from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
 
 
@@ -80,7 +81,7 @@ class _Bar:
 class ActorRegistry(Generic[A]):
     """The part of a component that makes and keeps actors of one kind; the base of all components that add actors.
 
-    A subclass says what can be set, in `SETTINGS`, and makes actors, in ``_make``. Arguments and doc of its ``add`` are
+    A subclass says what can be set, in `_SETTINGS`, and makes actors, in ``_make``. Arguments and doc of its ``add`` are
     put together of these (`pvfiblets.plotting.call_signature`).
 
     Parameters
@@ -89,15 +90,16 @@ class ActorRegistry(Generic[A]):
         The plotter it belongs to.
     """
 
-    SETTINGS: ClassVar[type[Settings]]
+    # What can be set of its actors.
+    _SETTINGS: ClassVar[type[Settings]]
+    # By which plotters know the component.
     NAME: ClassVar[str]
-    """By which plotters know the component."""
 
+    # Name of the plotter's method that does the same as ``add``.
     ADD: ClassVar[str]
-    """Name of the plotter's method that does the same as ``add``."""
 
+    # Arguments of ``_make`` beside the settings.
     OWN: ClassVar[frozenset[str]] = frozenset()
-    """Arguments of ``_make`` beside the settings."""
 
     def __init_subclass__(cls, **more: Any) -> None:
         super().__init_subclass__(**more)
@@ -113,8 +115,8 @@ class ActorRegistry(Generic[A]):
     def add(self, /, source: Any, **arguments: Any) -> A:
         """Make an actor and add it to the plotter."""
         common = {name: arguments.pop(name, one.default) for name, one in Common.DECLARED.items()}
-        known = set(self.SETTINGS.arguments())
-        given = Given(self.SETTINGS, arguments)
+        known = set(settings_of_call(self._SETTINGS))
+        given = Given(self._SETTINGS, arguments)
         own = {name: value for name, value in arguments.items() if name not in known}
         self._check_known(own)
         return self._add_actor(self._make(source, given, **own), **common)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
+from pvfiblets.plotting.settings import arguments
 from pvfiblets.plotting.shared_settings import Common
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def document(component: type[ActorRegistry[Any]]) -> None:
     own = [one for name, one in made.parameters.items() if name not in skipped]
     last = [one for one in own if one.kind is one.VAR_KEYWORD]
     component.OWN = frozenset(one.name for one in own if one.kind is one.KEYWORD_ONLY)
-    declared = {**component.SETTINGS.arguments(), **Common.DECLARED}
+    declared = {**arguments(component._SETTINGS), **Common.DECLARED}  # noqa: SLF001
     settings = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=one.default, annotation=one.kind)
         for name, one in declared.items()

@@ -27,6 +27,7 @@ __all__ = [
     "Row",
     "Setting",
     "Settings",
+    "arguments",
     "truth",
 ]
 
@@ -269,8 +270,8 @@ class NoSetting:
 class Settings:
     """The part of an actor that has settings; a drawable's are declared in the body of a subclass."""
 
+    # All of them by name, in their order; those of a class before those that it inherits.
     DECLARED: ClassVar[dict[str, Argument]] = {}
-    """All of them by name, in their order; those of a class before those that it inherits."""
 
     def __init_subclass__(cls, **more: Any) -> None:
         super().__init_subclass__(**more)
@@ -280,15 +281,9 @@ class Settings:
             if not isinstance(value, Setting):  # of the call alone
                 delattr(cls, name)
 
-    @classmethod
-    def arguments(cls) -> dict[str, Argument]:
-        """Return those that ``add_...`` takes."""
-        declared = cls.DECLARED.items()
-        return {name: one for name, one in declared if not isinstance(one, Setting) or one.is_argument}
-
     def _kept(self) -> dict[str, Any]:
         """Return the arguments that make an actor with the same settings."""
-        return {name: one.where.kept(self, one) for name, one in self.arguments().items() if one.where is not None}
+        return {name: one.where.kept(self, one) for name, one in arguments(type(self)).items() if one.where is not None}
 
     def _take(self, values: Mapping[str, Any]) -> None:
         """Set those values that an actor is not made with, in the order of their declarations."""
@@ -302,6 +297,12 @@ class Settings:
         self._take({name: getattr(other, name) for name, one in self.DECLARED.items() if isinstance(one, Setting)})
 
 
+def arguments(settings: type[Settings]) -> dict[str, Argument]:
+    """Return those of a drawable's settings that ``add_...`` takes."""
+    declared = settings.DECLARED.items()
+    return {name: one for name, one in declared if not isinstance(one, Setting) or one.is_argument}
+
+
 class Given(dict[str, Any]):
     """Settings that were given to ``add_...``, checked, and the defaults of all others.
 
@@ -309,13 +310,13 @@ class Given(dict[str, Any]):
     ----------
     settings : type
         The drawable's `Settings`.
-    arguments : mapping, optional
+    given : mapping, optional
         By name; those that are no settings are left to others.
     """
 
-    def __init__(self, settings: type[Settings], arguments: Mapping[str, Any] | None = None) -> None:
-        self._known = settings.arguments()
-        given = arguments or {}
+    def __init__(self, settings: type[Settings], given: Mapping[str, Any] | None = None) -> None:
+        self._known = arguments(settings)
+        given = given or {}
         super().__init__((name, one.given(given.get(name, one.default))) for name, one in self._known.items())
 
     def at(self, where: Place) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.settings import Settings
+from pvfiblets.plotting.settings import Settings, arguments
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
@@ -55,7 +55,7 @@ _SETTINGS: dict[str, type[Settings]] = {
 }
 
 ARGUMENTS: dict[str, frozenset[str]] = {
-    kind: frozenset({"scalars", *settings.arguments()}) for kind, settings in _SETTINGS.items()
+    kind: frozenset({"scalars", *arguments(settings)}) for kind, settings in _SETTINGS.items()
 }
 """Looks that are arguments of ``plotter.add_...``, too; all others are attributes only. All those of meshes are."""
 

@@ -51,7 +51,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
     True
     """
 
-    SETTINGS = FibletSettings
+    _SETTINGS = FibletSettings
     NAME, ADD = "fiblets", "add_fiblets"
 
     def __init__(self, plotter: pv.BasePlotter) -> None:

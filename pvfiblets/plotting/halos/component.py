@@ -50,7 +50,7 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
     True
     """
 
-    SETTINGS = HaloLineSettings
+    _SETTINGS = HaloLineSettings
     NAME, ADD = "halo_lines", "add_halo_lines"
 
     def _make(
@@ -148,7 +148,7 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
     True
     """
 
-    SETTINGS = HaloPointSettings
+    _SETTINGS = HaloPointSettings
     NAME, ADD = "halo_points", "add_halo_points"
 
     def _make(

@@ -48,7 +48,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
     True
     """
 
-    SETTINGS = TubeSettings
+    _SETTINGS = TubeSettings
     NAME, ADD = "spline_tubes", "add_spline_tubes"
 
     def _make(

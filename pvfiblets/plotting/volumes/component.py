@@ -45,7 +45,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
     True
     """
 
-    SETTINGS = VolumeSettings
+    _SETTINGS = VolumeSettings
     NAME, ADD = "raycast_volumes", "add_raycast_volume"
 
     def _make(
