@@ -26,6 +26,7 @@ plotter = Plotter(off_screen=True)
 reveal_type(plotter.add_fiblets("brain.trk"))
 reveal_type(plotter.raycast_volumes.add("t1.nii"))
 plotter.add_halo_lines("brain.trk", line_widht=2)
+reveal_type(plotter.add_spline_tubes("vessel.vtp", min_width=2).min_width)
 plotter.add_mesh("brain.vtp")
 """
 
@@ -74,5 +75,6 @@ def test_a_checker_knows_what_comes_back(tmp_path):
     said = done.stdout
     assert 'Revealed type is "pvfiblets.plotting.fiblets.actor.FibletActor"' in said
     assert 'Revealed type is "pvfiblets.plotting.volumes.actor.VolumeActor"' in said
+    assert 'Revealed type is "float"' in said.replace("builtins.", "")
     assert 'Unexpected keyword argument "line_widht"' in said
     assert "Found 1 error" in said
