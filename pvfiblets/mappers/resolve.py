@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.shaders import read_shader
 
 FEATURES = (
@@ -121,6 +122,13 @@ def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
     return tuple((stage, where, tag, "\n".join(lines).strip("\n")) for stage, where, tag, lines in sections)
 
 
+def _has_piece(feature: str) -> bool:
+    try:
+        return bool(read_shader(f"resolve/{feature}.glsl"))
+    except EngineError:
+        return False
+
+
 @cache
 def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
     """Return the shader replacements of a set of features.
@@ -128,7 +136,7 @@ def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
     Parameters
     ----------
     features : frozenset of str
-        Names from `FEATURES`.
+        Names from `FEATURES`; or of other files of ``shaders/resolve``, which come after these.
 
     Returns
     -------
@@ -140,12 +148,13 @@ def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
     ValueError
         A name is unknown, or a piece's tag is left without the piece that has it.
     """
-    unknown = features - set(FEATURES)
+    more = sorted(features - set(FEATURES))
+    unknown = [feature for feature in more if not _has_piece(feature)]
     if unknown:
-        raise ValueError(f"unknown resolve features {sorted(unknown)}; known are {FEATURES}")
+        raise ValueError(f"unknown resolve features {unknown}; known are {FEATURES}")
     edits: dict[tuple[str, str], _Edits] = {}
     result = []
-    for feature in FEATURES:
+    for feature in (*FEATURES, *more):
         if feature not in features:
             continue
         for stage, where, tag, text in _sections(feature):

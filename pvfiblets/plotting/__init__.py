@@ -4,10 +4,10 @@
 ``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
 ``plotter.add_halo_points(...)``, ``plotter.halo_points``, ``plotter.add_raycast_volume(...)``,
 ``plotter.raycast_volumes`` and ``polydata.fiblets`` need no import: PyVista finds them by entry
-points (see ``pyproject.toml``), which name the modules ``component``, ``spline_component``,
-``halo_component``, ``halo_point_component``, ``raycast_component`` and ``accessor`` here. ``files``
-serves ``pyvista.read`` and ``save``. The actor's colours are found in ``scalars`` and made into a
-look-up table in ``colours``; the drawing is the mapper's.
+points (see ``pyproject.toml``), which name the modules ``component`` of each drawable's folder and
+``accessor`` here. ``files`` serves ``pyvista.read`` and ``save``. What can be set of a drawable is
+declared once, in the ``settings`` of its folder. The actor's colours are found in ``scalars`` and made
+into a look-up table in ``colours``; the drawing is the mapper's.
 
 Importing this package registers the components, which import actors, mappers and the engine when
 something is added: a scene of lines loads no volumes, and a file that is compressed already no compiler.
@@ -19,8 +19,12 @@ from typing import TYPE_CHECKING
 
 from pvfiblets.lazy_imports import names_from
 from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
-from pvfiblets.plotting.halos.component import AddHaloLines, HaloLinesComponent
-from pvfiblets.plotting.halos.point_component import AddHaloPoints, HaloPointsComponent
+from pvfiblets.plotting.halos.component import (
+    AddHaloLines,
+    AddHaloPoints,
+    HaloLinesComponent,
+    HaloPointsComponent,
+)
 from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
 from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 

@@ -8,23 +8,17 @@ plotter closes.
 
 from __future__ import annotations
 
-import functools
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Concatenate, Generic, ParamSpec, Protocol, TypeVar, cast
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import pyvista as pv
 
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
-
-
-def same_as(
-    method: Callable[Concatenate[Any, _P], _R],
-) -> Callable[[Callable[..., Any]], Callable[Concatenate[Any, _P], _R]]:
-    """Give a method the arguments, types and docs of one of another class, for people and for type checkers."""
-    return cast("Any", functools.wraps(method))
+from pvfiblets.plotting.call_signature import document
+from pvfiblets.plotting.settings import Given, Settings
+from pvfiblets.plotting.settings import arguments as settings_of_call
+from pvfiblets.plotting.shared_settings import Common
 
 
 class Registered(Protocol):
@@ -85,15 +79,57 @@ class _Bar:
 
 
 class ActorRegistry(Generic[A]):
-    """The part of a component that keeps actors of one kind."""
+    """The part of a component that makes and keeps actors of one kind; the base of all components that add actors.
 
-    _plotter: Any
+    A subclass says what can be set, in `_SETTINGS`, and makes actors, in ``_make``. Arguments and doc of its ``add``
+    are put together of these (`pvfiblets.plotting.call_signature`).
 
-    def _init_keeping(self, plotter: pv.BasePlotter) -> None:
-        self._plotter = weakref.proxy(plotter)
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+        The plotter it belongs to.
+    """
+
+    # What can be set of its actors.
+    _SETTINGS: ClassVar[type[Settings]]
+    # By which plotters know the component.
+    NAME: ClassVar[str]
+
+    # Name of the plotter's method that does the same as ``add``.
+    ADD: ClassVar[str]
+
+    # Arguments of ``_make`` beside the settings.
+    OWN: ClassVar[frozenset[str]] = frozenset()
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        if "_make" in vars(cls):
+            document(cls)
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter: Any = weakref.proxy(plotter)
         self._actors: list[A] = []
         self._renderers: dict[str, tuple[Any, int]] = {}
         self._bars: dict[str, _Bar] = {}
+
+    def add(self, /, source: Any, **arguments: Any) -> A:
+        """Make an actor and add it to the plotter."""
+        common = {name: arguments.pop(name, one.default) for name, one in Common.DECLARED.items()}
+        known = set(settings_of_call(self._SETTINGS))
+        given = Given(self._SETTINGS, arguments)
+        own = {name: value for name, value in arguments.items() if name not in known}
+        self._check_known(own)
+        return self._add_actor(self._make(source, given, **own), **common)
+
+    def _make(self, *source: Any, **own: Any) -> A:
+        """Return an actor; its doc and its arguments are those of ``add``."""
+        raise NotImplementedError
+
+    def _check_known(self, own: dict[str, Any]) -> None:
+        """Refuse arguments that are none, before they are said of a function that nobody called."""
+        unknown = next((name for name in own if name not in self.OWN), None)
+        if unknown is not None:
+            raise TypeError(f"{self.ADD}() got an unexpected keyword argument {unknown!r}")
 
     def __iter__(self) -> Iterator[A]:
         return iter(tuple(self._actors))
@@ -111,7 +147,7 @@ class ActorRegistry(Generic[A]):
         """
         return [{"name": actor.name, **actor.explain()} for actor in self]
 
-    def _enter(
+    def _add_actor(
         self,
         actor: A,
         *,

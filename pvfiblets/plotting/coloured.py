@@ -1,14 +1,14 @@
-"""Colours that an actor shows by PyVista's rules: look-up table, scalar bar and theme, live."""
+"""What all actors of this package have in common: colours by PyVista's rules, place, life and report."""
 
 from __future__ import annotations
 
-from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.setting_places import COLOURS, PROPERTY
+from pvfiblets.plotting.settings import Given, Setting, Settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
-class Coloured:
+class Coloured(Settings):
     """The part of actors that has colours; see :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`.
 
     What an actor draws, and what ``scalars`` mean for that, is its own: it brings ``scalars`` and
@@ -27,18 +27,14 @@ class Coloured:
     prop: Any
     scalars: Any
 
-    def _init_colours(self, choice: Any, settings: ColourSettings | None, theme: Any) -> None:
+    def _init_colours(self, choice: Any, given: Given, theme: Any) -> None:
         self._theme = theme
-        self._settings = settings if settings is not None else ColourSettings()
+        color = given["color"]
+        self._settings = ColourSettings(None if color is None else pv.Color(color), **given.at(COLOURS))
         self._choice = choice
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
         self._bar_changed: Callable[[Any], None] | None = None
-
-    def _init_looks(self, opacity: float, lighting: bool | None) -> None:
-        """Set what the property knows, which a mapper must be attached for."""
-        self.opacity = opacity
-        self.lighting = self._theme.lighting if lighting is None else lighting
 
     @property
     def _drawn(self) -> Any:
@@ -48,6 +44,35 @@ class Coloured:
     def _find(self, drawn: Any, choice: Any) -> Scalars | None:
         """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
         raise NotImplementedError
+
+    def _finish(self, mapper: Any, given: Given) -> None:
+        """Attach the mapper to an actor that VTK has made, and set what needs both."""
+        self._mapper = mapper  # VTK keeps the C++ half only
+        mapper.attach(self)
+        for name, value in given.items():
+            one = self.DECLARED[name]
+            if one.where is PROPERTY and isinstance(one, Setting):
+                setattr(self, name, getattr(self._theme, one.field) if value is None else value)
+
+    def _be_like(self, other: Any, deep: bool) -> None:
+        """Take over place, property and all settings that an actor is not made with."""
+        self.prop = other.prop.copy() if deep else other.prop
+        for name in ("position", "scale", "origin", "orientation", "user_matrix", "visibility", "pickable"):
+            setattr(self, name, getattr(other, name))
+        self._take_from(other)
+
+    # What a component asks ----------------------------------------------------------------------
+
+    def entered(self, renderer: Any) -> None:
+        """Be told that a renderer draws the actor from now on."""
+
+    def raise_pending(self) -> None:
+        """Raise what drawing stored, once."""
+        self._mapper.raise_pending()
+
+    def release(self, window: Any = None) -> None:
+        """Give back the GPU memory that the actor has in a window, or in all."""
+        self._mapper.release(window)
 
     # Colours ------------------------------------------------------------------------------------
 
@@ -61,13 +86,10 @@ class Coloured:
         """Whether the numbers that colour the actor are labels, each with a name."""
         return self._scalars is not None and self._scalars.categories is not None
 
-    @property
-    def color(self) -> pv.Color | None:
-        """One colour for all; setting it puts scalars out of use."""
+    def _read_color(self) -> pv.Color | None:
         return None if self._settings.color is None else pv.Color(self._settings.color)
 
-    @color.setter
-    def color(self, color: Any) -> None:
+    def _write_color(self, color: Any) -> None:
         checked = None if color is None else pv.Color(color)
         self._settings.color = checked
         self.scalars = None
@@ -76,93 +98,6 @@ class Coloured:
     def lookup_table(self) -> pv.LookupTable:
         """The table that colours both the picture and the scalar bar."""
         return self._table
-
-    @property
-    def clim(self) -> tuple[float, float]:
-        """Values of the first and the last colour; ``None`` sets the range of the data.
-
-        Once set it stays, other scalars or not.
-        """
-        low, high = self._table.scalar_range
-        return low, high
-
-    @clim.setter
-    def clim(self, clim: Any) -> None:
-        self._set("clim", clim)
-
-    @property
-    def cmap(self) -> Any:
-        """Colour map, as for :meth:`pyvista.Plotter.add_mesh`."""
-        return self._theme.cmap if self._settings.cmap is None else self._settings.cmap
-
-    @cmap.setter
-    def cmap(self, cmap: Any) -> None:
-        self._set("cmap", cmap)
-
-    @property
-    def n_colors(self) -> int:
-        """Entries of the look-up table."""
-        return self._settings.n_colors
-
-    @n_colors.setter
-    def n_colors(self, n_colors: int) -> None:
-        self._set("n_colors", n_colors)
-
-    @property
-    def log_scale(self) -> bool:
-        """Whether the colours spread over the logarithm of the values."""
-        return self._settings.log_scale
-
-    @log_scale.setter
-    def log_scale(self, log_scale: bool) -> None:
-        self._set("log_scale", bool(log_scale))
-
-    @property
-    def nan_color(self) -> pv.Color:
-        """Colour of NaN."""
-        return pv.Color(self._table.nan_color)
-
-    @nan_color.setter
-    def nan_color(self, color: Any) -> None:
-        self._set("nan_color", color)
-
-    @property
-    def below_color(self) -> Any:
-        """Colour of values below ``clim``; ``None`` uses the first of the map."""
-        return self._settings.below_color
-
-    @below_color.setter
-    def below_color(self, color: Any) -> None:
-        self._set("below_color", color)
-
-    @property
-    def above_color(self) -> Any:
-        """Colour of values above ``clim``; ``None`` uses the last of the map."""
-        return self._settings.above_color
-
-    @above_color.setter
-    def above_color(self, color: Any) -> None:
-        self._set("above_color", color)
-
-    # Looks --------------------------------------------------------------------------------------
-
-    @property
-    def opacity(self) -> float:
-        """From 0, not to be seen, to 1."""
-        return self.prop.opacity
-
-    @opacity.setter
-    def opacity(self, opacity: float) -> None:
-        self.prop.opacity = _fraction(opacity)
-
-    @property
-    def lighting(self) -> bool:
-        """Whether the scene's lights shade what is drawn."""
-        return self.prop.lighting
-
-    @lighting.setter
-    def lighting(self, lighting: bool) -> None:
-        self.prop.lighting = bool(lighting)
 
     def watch(self, bar_changed: Callable[[Any], None] | None) -> None:
         """Call ``bar_changed(actor)`` whenever the actor comes to need another scalar bar."""
@@ -204,8 +139,60 @@ class Coloured:
         self.prop.color = colour if scalars is None else "white"
 
 
-def _fraction(opacity: Any) -> float:
-    number = isinstance(opacity, Real) or (isinstance(opacity, np.ndarray) and opacity.ndim == 0)
-    if not number or not 0.0 <= float(opacity) <= 1.0:
-        raise ValueError(f"opacity is {opacity!r}; give a number from 0 to 1")
-    return float(opacity)
+class Plotted:
+    """The part of a mapper that shows PyVista's scalar bars the actor's own look-up table."""
+
+    @property
+    def lookup_table(self) -> pv.LookupTable:
+        """The table that colours both the picture and the scalar bar."""
+        return self._shown_by().lookup_table
+
+    @property
+    def scalar_range(self) -> tuple[float, float]:
+        """Values of the first and last colour; bars that several actors share set it."""
+        return cast("Any", self._shown_by()).clim
+
+    @scalar_range.setter
+    def scalar_range(self, clim: tuple[float, float]) -> None:
+        cast("Any", self._shown_by()).clim = clim
+
+    def _shown_by(self) -> Coloured:
+        return cast("Coloured", cast("Any", self).actor)
+
+
+# What the engine counts in each window (pvfiblets.engine.fiblets.census).
+COUNTS = ("total", "in_frustum", "drawn", "visible")
+
+
+def added_up(report: dict[str, Any]) -> dict[str, Any]:
+    """Return one report of all windows.
+
+    Parameters
+    ----------
+    report : dict
+        Of :meth:`pvfiblets.mappers.FibletMapper.explain`.
+
+    Returns
+    -------
+    dict
+        ``passes``, ``features``, ``buffers``, ``gpu_bytes`` and ``fiblets``, as
+        :meth:`FibletActor.explain` has them.
+    """
+    windows = report["windows"]
+    buffers = [buffer for window in windows for buffer in window["buffers"]]
+    buffers += report["textures"]
+    features = {feature for window in windows for feature in window["features"]}
+    return {
+        "passes": [item for window in windows for item in window["passes"]],
+        "features": sorted(features | set(report["features"])),
+        "buffers": buffers,
+        "gpu_bytes": sum(buffer["bytes"] for buffer in buffers),
+        "fiblets": {count: _sum(windows, count) for count in COUNTS},
+    }
+
+
+def _sum(windows: list[dict[str, Any]], count: str) -> int | None:
+    """Add what the engines of some windows counted; None where none of them knows."""
+    counts = [window.get("fiblets", {}).get(count) for window in windows]
+    known = [number for number in counts if number is not None]
+    return sum(known) if known else None

@@ -14,6 +14,8 @@ import pyvista as pv
 
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers.picture import DepthOfField, Picture
+from pvfiblets.plotting.setting_places import Place
+from pvfiblets.plotting.settings import Setting
 
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
@@ -22,6 +24,16 @@ OPERATOR = "aces"
 """Of a tone that says nothing else."""
 
 TICK = 15  # ms between pictures while the focus is on its way
+
+
+class _ToneMapping(Place):
+    """A field of the tone of the active renderer's picture, which checks it."""
+
+    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+        return getattr(actor._picture().tone, setting.field)  # noqa: SLF001 - of the class that it is part of
+
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        actor._set_tone(**{setting.field: value})  # noqa: SLF001
 
 
 @pv.register_plotter_component("picture")
@@ -107,32 +119,17 @@ class PictureComponent:
         new = {name: getattr(plain, name) for name in TONE}
         self._set_tone(**(new if given is None else new | {"operator": OPERATOR} | given))
 
-    @property
-    def brightness(self) -> float:
-        """What is added to colours in 0 to 1, after tone mapping: -1 to 1, 0 for nothing."""
-        return self._picture().tone.brightness
-
-    @brightness.setter
-    def brightness(self, brightness: float) -> None:
-        self._set_tone(brightness=brightness)
-
-    @property
-    def contrast(self) -> float:
-        """Factor of the distance of colours from middle grey, after tone mapping: 0 or more, 1 for no change."""
-        return self._picture().tone.contrast
-
-    @contrast.setter
-    def contrast(self, contrast: float) -> None:
-        self._set_tone(contrast=contrast)
-
-    @property
-    def gamma(self) -> float:
-        """Colours, at last, are raised to ``1 / gamma``: above 1 is brighter, 1 no change."""
-        return self._picture().tone.gamma
-
-    @gamma.setter
-    def gamma(self, gamma: float) -> None:
-        self._set_tone(gamma=gamma)
+    brightness: Setting[float] = Setting(
+        0.0, "What is added to colours in 0 to 1, after tone mapping: -1 to 1, 0 for nothing.", where=_ToneMapping()
+    )
+    contrast: Setting[float] = Setting(
+        1.0,
+        "Factor of the distance of colours from middle grey, after tone mapping: 0 or more, 1 for no change.",
+        where=_ToneMapping(),
+    )
+    gamma: Setting[float] = Setting(
+        1.0, "Colours, at last, are raised to ``1 / gamma``: above 1 is brighter, 1 no change.", where=_ToneMapping()
+    )
 
     def reset(self) -> None:
         """Show the active renderer as it is drawn: all effects off."""

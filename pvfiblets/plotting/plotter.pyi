@@ -1,34 +1,141 @@
+# Written by scripts/plotter_stub.py from the settings that are declared; do not change it by hand.
+
+from collections.abc import Iterable
+from typing import Any, Protocol
+
+import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
-from pvfiblets.plotting.halos.component import AddHaloLines, HaloLinesComponent
-from pvfiblets.plotting.halos.point_component import AddHaloPoints, HaloPointsComponent
+from pvfiblets.halos.displacement import Displacement
+from pvfiblets.plotting.fiblets.actor import FibletActor
+from pvfiblets.plotting.fiblets.component import FibletsComponent
+from pvfiblets.plotting.fiblets.component import Source as FibletsSource
+from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
+from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsComponent
+from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
+from pvfiblets.plotting.halos.style import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
-from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
-from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
+from pvfiblets.plotting.tubes.actor import TubeActor
+from pvfiblets.plotting.tubes.component import Source as SplineTubesSource
+from pvfiblets.plotting.tubes.component import SplineTubesComponent
+from pvfiblets.plotting.volumes.actor import VolumeActor
+from pvfiblets.plotting.volumes.component import RaycastVolumesComponent
+from pvfiblets.plotting.volumes.component import Source as RaycastVolumesSource
 
 __all__ = ["Plotter"]
 
+class _AddFiblets(Protocol):
+    def __call__(
+        self, source: FibletsSource, *, scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
+        per_point: Iterable[str] = (), max_error: float | None = None, progress: bool = False, color: Any = None,
+        cmap: Any = None, clim: Any = None, n_colors: int = 256, log_scale: bool = False, nan_color: Any = None,
+        below_color: Any = None, above_color: Any = None, flip_scalars: bool = False, categories: bool = False,
+        opacity: float = 1.0, transparency: str | int | None = None, line_width: float | None = None,
+        lighting: bool | None = True, pipeline: str = "auto", culling: str | None = "two-phase",
+        fit: str | None = None, name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True, **options: Any,
+    ) -> FibletActor: ...
+
+class _FibletsComponent(FibletsComponent):
+    @property
+    def add(self) -> _AddFiblets: ...
+
+class _AddSplineTubes(Protocol):
+    def __call__(
+        self, source: SplineTubesSource, *, radius: float | str | np.ndarray | None = None,
+        scalars: str | np.ndarray | None = None, tangents: str | np.ndarray | None = None, method: str = "finite",
+        radius_slopes: float | str | np.ndarray | None = None, scalar_slopes: str | np.ndarray | None = None,
+        scaled: bool | None = None, rgb: bool = False, color: Any = None, cmap: Any = None, clim: Any = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
+        above_color: Any = None, flip_scalars: bool = False, opacity: float = 1.0, lighting: bool | None = None,
+        min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto", iterations: int | None = None,
+        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+    ) -> TubeActor: ...
+
+class _SplineTubesComponent(SplineTubesComponent):
+    @property
+    def add(self) -> _AddSplineTubes: ...  # type: ignore[override]
+
+class _AddHaloLines(Protocol):
+    def __call__(
+        self, source: HaloLinesSource, *, scalars: str | np.ndarray | None = None,
+        filter_by: str | np.ndarray | None = None, rgb: bool = False, line_width: float | None = None,
+        strip_width: float | None = None, tapering: bool | tuple[int, float] = True,
+        filter_taper: float | None = None, max_displacement: float | None = None,
+        displacement: Displacement = "linear", width_cue: float = 0.5, threshold: Threshold = None,
+        color: Any = None, halo_color: Any = None, light_on_dark: bool = False, cmap: Any = None, clim: Any = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
+        above_color: Any = None, flip_scalars: bool = False, opacity: float = 1.0, lighting: bool = False,
+        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+    ) -> HaloLineActor: ...
+
+class _HaloLinesComponent(HaloLinesComponent):
+    @property
+    def add(self) -> _AddHaloLines: ...  # type: ignore[override]
+
+class _AddHaloPoints(Protocol):
+    def __call__(
+        self, source: HaloPointsSource, *, scalars: str | np.ndarray | None = None,
+        filter_by: str | np.ndarray | None = None, rgb: bool = False, point_size: float | None = None,
+        halo_size: float | None = None, max_displacement: float | None = None, displacement: Displacement = "linear",
+        width_cue: float = 0.5, threshold: Threshold = None, color: Any = None, halo_color: Any = None,
+        light_on_dark: bool = False, cmap: Any = None, clim: Any = None, n_colors: int = 256,
+        log_scale: bool = False, nan_color: Any = None, below_color: Any = None, above_color: Any = None,
+        flip_scalars: bool = False, opacity: float = 1.0, lighting: bool = False, smooth: bool = True,
+        min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+    ) -> HaloPointActor: ...
+
+class _HaloPointsComponent(HaloPointsComponent):
+    @property
+    def add(self) -> _AddHaloPoints: ...  # type: ignore[override]
+
+class _AddRaycastVolume(Protocol):
+    def __call__(
+        self, source: RaycastVolumesSource, *, scalars: str | np.ndarray | None = None, spacing: Any = None,
+        origin: Any = None, direction: Any = None, affine: Any = None, shape: Any = None, dtype: Any = None,
+        mode: str = "composite", values: float | Any = None, color: Any = None, cmap: Any = None, clim: Any = None,
+        n_colors: int = 256, flip_scalars: bool = False, opacity: str | float | Any = "linear",
+        opacity_unit_distance: float | None = None, thresholds: Any = None, peak: float | None = None,
+        smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear", refine: str = "regula-falsi",
+        iterations: int = 5, integrator: str = "adaptive", jitter: bool = False, octree: bool = True,
+        homogeneous: float = 0.0, recon: bool = False, sparse: int = 1, sparse_threshold: float = 0.05,
+        stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5, box: Any = None,
+        lighting: bool | None = None, ray_occlusion: bool | dict[str, Any] = False, name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+    ) -> VolumeActor: ...
+
+class _RaycastVolumesComponent(RaycastVolumesComponent):
+    @property
+    def add(self) -> _AddRaycastVolume: ...  # type: ignore[override]
+
 class Plotter(pv.Plotter):
     @property
-    def add_fiblets(self) -> AddFiblets: ...
+    def add_fiblets(self) -> _AddFiblets: ...
     @property
-    def fiblets(self) -> FibletsComponent: ...
+    def fiblets(self) -> _FibletsComponent: ...
     @property
-    def add_spline_tubes(self) -> AddSplineTubes: ...
+    def add_spline_tubes(self) -> _AddSplineTubes: ...
     @property
-    def spline_tubes(self) -> SplineTubesComponent: ...
+    def spline_tubes(self) -> _SplineTubesComponent: ...
     @property
-    def add_halo_lines(self) -> AddHaloLines: ...
+    def add_halo_lines(self) -> _AddHaloLines: ...
     @property
-    def halo_lines(self) -> HaloLinesComponent: ...
+    def halo_lines(self) -> _HaloLinesComponent: ...
     @property
-    def add_halo_points(self) -> AddHaloPoints: ...
+    def add_halo_points(self) -> _AddHaloPoints: ...
     @property
-    def halo_points(self) -> HaloPointsComponent: ...
+    def halo_points(self) -> _HaloPointsComponent: ...
     @property
-    def add_raycast_volume(self) -> AddRaycastVolume: ...
+    def add_raycast_volume(self) -> _AddRaycastVolume: ...
     @property
-    def raycast_volumes(self) -> RaycastVolumesComponent: ...
+    def raycast_volumes(self) -> _RaycastVolumesComponent: ...
     @property
     def picture(self) -> PictureComponent: ...

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source
-from pvfiblets.web.layers import RADIUS_SCALE, looks
+from pvfiblets.web.layers import RADIUS_SCALE, SELECTION, looks
 from pvfiblets.web.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
@@ -37,10 +37,7 @@ __all__ = [
 MOST_PLANES = 6
 """That VTK cuts a mesh or tubes by."""
 
-_COLOURS = ("scalars", "color", "clim", "log_scale")
 _CONDITION = "regions"
-_STYLE = {"selection_color": "color", "selection_dim": "dim", "selection_as_tubes": "as_tubes",
-          "selection_radius": "radius"}  # fmt: skip
 
 
 def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours) -> Any:
@@ -126,7 +123,7 @@ def _set(actor: Any, wanted: Mapping[str, Any], data: Any, colours: Colours) -> 
 
 
 def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
-    return {theirs: settings[ours] for ours, theirs in _STYLE.items() if ours in settings}
+    return {theirs: settings[ours] for ours, theirs in SELECTION.items() if ours in settings}
 
 
 # What is shown of lines -----------------------------------------------------------------------------

@@ -11,6 +11,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION
+from pvfiblets.plotting.fiblets.settings import FibletSettings
+from pvfiblets.plotting.settings import Settings, arguments
+from pvfiblets.plotting.tubes.settings import TubeSettings
+from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
 from pvfiblets.web.properties import TYPES, Choices, Property
 from pvfiblets.web.tables import MESH, TRACTOGRAM, TUBES, VOLUME
@@ -21,8 +25,10 @@ __all__ = [
     "KINDS",
     "LINES",
     "RADIUS_SCALE",
+    "SELECTION",
     "TABLES",
     "TYPES",
+    "USUAL",
     "Layer",
     "Property",
     "changed",
@@ -41,18 +47,36 @@ TABLES: dict[str, tuple[Property, ...]] = {
 }
 """Properties of each kind, in the order of a panel."""
 
+_SETTINGS: dict[str, type[Settings]] = {
+    "tractogram": FibletSettings,
+    "tubes": TubeSettings,
+    "volume": VolumeSettings,
+    "selection": FibletSettings,
+}
+
 ARGUMENTS: dict[str, frozenset[str]] = {
-    "tractogram": frozenset(
-        {"scalars", "color", "cmap", "clim", "log_scale", "nan_color", "opacity", "transparency", "line_width",
-         "lighting", "culling", "fit"}
-    ),
-    "tubes": frozenset({"scalars", "color", "cmap", "clim", "log_scale", "opacity", "lighting", "min_width",
-                        "culling", "solver"}),
-    "volume": frozenset({"mode", "values", "cmap", "clim", "color", "opacity", "opacity_unit_distance", "thresholds",
-                         "peak", "smooth", "step", "filter", "refine", "integrator", "jitter", "lighting"}),
-}  # fmt: skip
+    kind: frozenset({"scalars", *arguments(settings)}) for kind, settings in _SETTINGS.items()
+}
 """Looks that are arguments of ``plotter.add_...``, too; all others are attributes only. All those of meshes are."""
-ARGUMENTS["selection"] = ARGUMENTS["tractogram"]
+
+USUAL: dict[str, dict[str, Any]] = {
+    kind: {prop.name: prop.usual for prop in TABLES[kind] if prop.live} for kind in _SETTINGS
+}
+"""What actors do that are not told of a look."""
+for _lines_kind in LINES:
+    USUAL[_lines_kind]["scalars"] = ORIENTATION
+USUAL["mesh"] = {
+    "cmap": None, "clim": None, "log_scale": False, "opacity": 1.0, "style": "surface", "show_edges": False,
+    "smooth_shading": False, "specular": 0.0, "lighting": True, "culling": None,
+}  # fmt: skip
+
+SELECTION = {
+    "selection_color": "color",
+    "selection_dim": "dim",
+    "selection_as_tubes": "as_tubes",
+    "selection_radius": "radius",
+}
+"""Properties of lines that are arguments of ``actor.selection_style``, by the names that they have there."""
 
 RADIUS_SCALE = "radius_scale"
 """A look of tubes that is no attribute of their actor: its tubes are others."""
@@ -114,48 +138,38 @@ def looks(kind: str, settings: Mapping[str, Any]) -> dict[str, Any]:
 
     Of a mesh, these are arguments of ``plotter.add_mesh``. Scalars that are a :class:`.Source` stand for that volume.
     """
-    return {"tractogram": _lines, "selection": _lines, "tubes": _tubes, "volume": _volume, "mesh": _mesh}[kind](
-        settings
-    )
+    if kind == "mesh":
+        return _mesh(settings)
+    found: dict[str, Any] = {RADIUS_SCALE: settings[RADIUS_SCALE]} if kind == "tubes" else {}
+    if "scalars" in settings:
+        found |= _coloured(kind, settings)
+    for prop in TABLES[kind]:
+        if prop.live and not ("scalars" in settings and prop.name in _OF_COLOURS):
+            found[prop.name] = _plain(prop, settings)
+    if kind in LINES and settings["style"] != "surface":  # which sets halos of its own
+        del found["halos"]
+    if kind == "volume" and settings["mode"] == "isosurface":
+        found["opacity"] = settings["surface_opacity"]
+    return found
 
 
-def _coloured(s: Mapping[str, Any]) -> dict[str, Any]:
+_OF_COLOURS = ("color", "cmap", "clim", "log_scale", "nan_color")
+
+
+def _plain(prop: Property, s: Mapping[str, Any]) -> Any:
+    value = s[prop.name]
+    return tuple(value) if prop.type == "range" and value is not None else value
+
+
+def _coloured(kind: str, s: Mapping[str, Any]) -> dict[str, Any]:
     """One colour, or numbers and their colours."""
     if s["scalars"] is None:
         return {"color": s["color"]}
     if s["scalars"] == ORIENTATION:
         return {"scalars": ORIENTATION}
-    clim = None if s["clim"] is None else tuple(s["clim"])
-    scalars = volume_in(s["scalars"]) or s["scalars"]
-    return {"scalars": scalars, "cmap": s["cmap"], "clim": clim, "log_scale": s["log_scale"]}
-
-
-def _lines(s: Mapping[str, Any]) -> dict[str, Any]:
-    found = _coloured(s)
-    if "cmap" in found:
-        found["nan_color"] = s["nan_color"]
-    same = ("opacity", "transparency", "line_width", "lighting", "culling", "fit", "style")
-    found |= {name: s[name] for name in same}
-    if s["style"] == "surface":  # the other one sets halos of its own
-        found["halos"] = s["halos"]
-    more = ("illuminated", "tube_shading", "tube_radius", "ambient_occlusion", "depth_cue")
-    return found | {name: s[name] for name in more}
-
-
-def _tubes(s: Mapping[str, Any]) -> dict[str, Any]:
-    same = ("opacity", "lighting", "min_width", "culling", "solver", "silhouette", "ambient_occlusion", "depth_cue")
-    return {RADIUS_SCALE: s[RADIUS_SCALE]} | _coloured(s) | {name: s[name] for name in same}
-
-
-def _volume(s: Mapping[str, Any]) -> dict[str, Any]:
-    surface = s["mode"] == "isosurface"
-    found = {"mode": s["mode"], "values": s["values"]}
-    found |= {"color": s["color"], "cmap": s["cmap"], "clim": None if s["clim"] is None else tuple(s["clim"])}
-    found["opacity"] = s["surface_opacity"] if surface else s["opacity"]
-    found["thresholds"] = None if s["thresholds"] is None else tuple(s["thresholds"])
-    same = ("opacity_unit_distance", "peak", "smooth", "step", "filter", "refine", "integrator", "jitter", "lighting",
-            "ambient_occlusion", "depth_cue")  # fmt: skip
-    return found | {name: s[name] for name in same}
+    found = {"scalars": volume_in(s["scalars"]) or s["scalars"]}
+    table = _BY_NAME[kind]
+    return found | {name: _plain(table[name], s) for name in _OF_COLOURS[1:] if name in table}
 
 
 def _mesh(s: Mapping[str, Any]) -> dict[str, Any]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any
 
+from pvfiblets.plotting.settings import SAME, Row, Setting
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth, whole
 
 __all__ = ["TYPES", "Property"]
@@ -18,58 +19,45 @@ Choices = Sequence[tuple[Any, str]]
 
 
 @dataclass(frozen=True)
-class Property:
-    """One thing that can be set, or read, of a layer.
+class Property(Row):
+    """One thing that can be set, or read, of a layer: a `Row` with all that it leaves out.
 
     Attributes
     ----------
     name : str
         Of the setting; where an actor has the same, that of its attribute.
-    type : str
-        Of `TYPES`.
-    label, help : str
-        For people.
-    group : str
-        Heading that it stands under.
-    default : JSON value
-        What an actor does if nothing is set.
-    optional : bool
-        Whether ``None`` is allowed: as the data or the program sees fit.
-    choices : sequence of (value, label), or function of the data
-        Of a choice.
-    limits : (low, high), or function of the data
-        Of a number; of the others what a slider should offer, and no limit.
-    whole : bool
-        Whether a number has no fraction.
-    read : function of the actor, optional
-        What ``None`` amounts to, or what a property is that can only be read.
-    span : function of the actor, optional
-        Between what a range makes sense.
-    read_only : bool
-    resets : tuple of str
-        Settings that go back to their defaults when this one changes.
-    matters : function of the settings, optional
-        Whether it changes anything as the others are.
-    volumes : bool
-        Whether the scene's volumes are choices, too.
+    live : bool
+        Whether it is a setting of the actor, and not of the page alone.
+    usual : object
+        What actors do that are not told of it.
     """
 
-    name: str
-    type: str
-    label: str
-    help: str
-    group: str = "Colours"
-    default: Any = None
-    optional: bool = False
-    choices: Choices | Callable[[Any], Choices] | None = None
-    limits: Limits | Callable[[Any], Limits] | None = None
-    whole: bool = False
-    read: Callable[[Any], Any] | None = None
-    span: Callable[[Any], Limits] | None = None
-    read_only: bool = False
-    resets: tuple[str, ...] = ()
-    matters: Callable[[Mapping[str, Any]], bool] | None = None
-    volumes: bool = False
+    name: str = ""
+    live: bool = False
+    usual: Any = None
+
+    @classmethod
+    def own(cls, name: str, type: str, label: str, help: str, group: str = "Colours", default: Any = None,  # noqa: A002
+            **more: Any) -> Property:  # fmt: skip
+        """Return a property that is the page's alone."""
+        return cls(label, help, group, type, default, name=name, **more)
+
+    @classmethod
+    def of(cls, setting: Setting[Any]) -> Property:
+        """Return the property of a layer that a setting of actors is."""
+        row, limits = setting.row, (setting.low, setting.high)
+        assert row is not None
+        found = {field.name: getattr(row, field.name) for field in fields(Row)}
+        found["default"] = setting.default if row.default is SAME else row.default
+        found["help"] = row.help or (setting.__doc__ or "").split("\n\n")[0]
+        kinds = ((bool, "bool"), (str, "text"))
+        plain = next((kind for of, kind in kinds if isinstance(setting.default, of)), "number")
+        found["type"] = row.type or ("choice" if row.choices or setting.choices else plain)
+        if found["type"] == "choice" and row.choices is None:
+            found["choices"] = [(name, str(name).replace("-", " ").replace("_", " ")) for name in setting.choices]
+        if row.limits is None and None not in limits:
+            found["limits"] = limits
+        return cls(**found, name=setting.name, live=True, usual=setting.default)
 
     def choices_for(self, data: Any, volumes: Choices = ()) -> Choices:
         """Return values and labels that can be chosen for some data, in a scene with some volumes."""

@@ -21,38 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["as_script"]
 
-_UNSAID: dict[str, dict[str, Any]] = {
-    "tractogram": {
-        "scalars": "orientation", "cmap": None, "clim": None, "log_scale": False, "nan_color": None, "opacity": 1.0,
-        "transparency": None, "lighting": True, "culling": "two-phase", "fit": None, "style": "surface", "halos": False,
-        "illuminated": False, "tube_shading": False, "tube_radius": None, "ambient_occlusion": False,
-        "depth_cue": False,
-    },
-    "tubes": {
-        "radius_scale": 1.0, "cmap": None, "clim": None, "log_scale": False, "opacity": 1.0, "min_width": 1.0,
-        "culling": "two-phase",
-        "solver": "auto", "silhouette": False, "ambient_occlusion": False, "depth_cue": False,
-    },
-    "volume": {
-        "mode": "composite", "values": None, "color": None, "clim": None, "thresholds": None,
-        "opacity_unit_distance": None, "peak": None, "smooth": None, "step": 0.5, "filter": "trilinear",
-        "refine": "regula-falsi", "integrator": "adaptive", "jitter": False, "ambient_occlusion": False,
-        "depth_cue": False,
-    },
-    "mesh": {
-        "cmap": None, "clim": None, "log_scale": False, "opacity": 1.0, "style": "surface", "show_edges": False,
-        "smooth_shading": False, "specular": 0.0, "lighting": True, "culling": None,
-    },
-}  # fmt: skip
-"""Looks that need not be said, because they are so anyhow."""
-_UNSAID["selection"] = _UNSAID["tractogram"]
-
-_SELECTION = {
-    "selection_color": ("color", None),
-    "selection_dim": ("dim", 0.8),
-    "selection_as_tubes": ("as_tubes", False),
-    "selection_radius": ("radius", 0.5),
-}
 _WIDEST = 110
 _LABELS = '''
 def labels_of(path, labels):
@@ -143,7 +111,7 @@ class _Writer:
 
     def _layer(self, layer: Layer) -> None:
         name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
-        unsaid = _UNSAID[layer.kind]
+        unsaid = layers.USUAL[layer.kind]
         if isinstance(looks.get("scalars"), Source):
             looks["scalars"] = self._colours(looks["scalars"])
         scale = looks.pop(layers.RADIUS_SCALE, 1.0)
@@ -242,10 +210,11 @@ class _Writer:
     def _selection(self, name: str, layer: Layer) -> None:
         if layer.selected is None:
             return
+        usual = layers.defaults(layer.kind)
         style = {
             theirs: layer.settings[ours]
-            for ours, (theirs, usual) in _SELECTION.items()
-            if layer.settings[ours] != usual
+            for ours, theirs in layers.SELECTION.items()
+            if layer.settings[ours] != usual[ours]
         }
         if style:
             self._lines += [f"{name}.selection_style({', '.join(f'{k}={v!r}' for k, v in style.items())})"]

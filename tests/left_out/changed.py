@@ -401,6 +401,6 @@ CHANGED = {
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.effects, engine.effects.screen, engine.volumes.occlusion",
+        modules="engine.effects, engine.effects.screen, engine.volumes.occlusion, mappers.ray_occlusion",
     ),
 }

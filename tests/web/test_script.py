@@ -12,7 +12,8 @@ import pyvista as pv
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.options import INTEGRATORS
 from pvfiblets.web import layers
-from pvfiblets.web.script import _UNSAID, as_script
+from pvfiblets.web.layers import USUAL
+from pvfiblets.web.script import as_script
 
 
 def tracts(scene):
@@ -152,7 +153,7 @@ def test_demos_are_made_in_a_script(scene):
 def test_what_is_not_said_is_so_anyhow(kind, method, what):
     plotter = pv.Plotter(off_screen=True)
     actor = getattr(plotter, method)(what)
-    unsaid = {name: value for name, value in _UNSAID[kind].items() if hasattr(actor, name) and value is not None}
+    unsaid = {name: value for name, value in USUAL[kind].items() if hasattr(actor, name) and value is not None}
     unsaid.pop("scalars", None)  # None of an actor, whose colours are then by orientation
     assert {name: getattr(actor, name) for name in unsaid} == unsaid
     plotter.close()

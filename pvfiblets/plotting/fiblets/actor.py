@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.plotting.coloured import Coloured
-from pvfiblets.plotting.fiblets.engine_options import Engines
+from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.scalars import find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
+from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
-from pvfiblets.plotting.fiblets.transparency import Transparency
-from pvfiblets.plotting.mapper import Plotted
-from pvfiblets.plotting.report import added_up
+from pvfiblets.plotting.setting_places import OPTIONS
+from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import Shading
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-    from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.plotting.fiblets.scalars import Scalars
+
+_LAYERS = "layers"
+_SOME_LAYERS = 4
 
 
 class PlottedMapper(Plotted, FibletMapper):
@@ -39,7 +41,7 @@ class PlottedMapper(Plotted, FibletMapper):
     """
 
 
-class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency, pv.Actor):
+class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Actor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -52,20 +54,12 @@ class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency
         What to draw.
     scalars : str, array or VolumeSource, optional
         As for ``plotter.add_fiblets``.
-    settings : ColourSettings, optional
-        Colour map and colours.
-    line_width : float, optional
-        Pixels; the theme's by default.
-    opacity : float, default: 1.0
-        Of all streamlines.
-    lighting : bool, optional
-        Shade the lines by the scene's lights.
+    settings : mapping, optional
+        Arguments of ``plotter.add_fiblets`` that are settings, by name.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
-    options : EngineOptions, optional
-        Pipeline and culling.
     progress : bool, default: False
         Show a progress bar while copying to the GPU.
     """
@@ -75,28 +69,24 @@ class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency
         fiblets: FibletSet,
         *,
         scalars: Any = None,
-        settings: ColourSettings | None = None,
-        line_width: float | None = None,
-        opacity: float = 1.0,
-        lighting: bool | None = None,
+        settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
-        options: EngineOptions | None = None,
         progress: bool = False,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
+        given = Given(FibletSettings, settings)
         self._fiblets = fiblets
-        self._init_colours(scalars, settings, theme)
+        self._init_colours(scalars, given, theme)
         self._init_shading()
         self._init_filtering()
         self._init_selection()
-        mapper = PlottedMapper(fiblets, options=options, progress=progress)
+        mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
         super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._mapper = mapper  # VTK keeps the C++ half only
-        mapper.attach(self)
-        self._init_looks(opacity, lighting)
-        self.line_width = theme.line_width if line_width is None else line_width
+        self._finish(mapper, given)
+        self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
+        self._take(given)
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
@@ -133,22 +123,10 @@ class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency
         FibletActor
             Not in any plotter yet.
         """
-        twin = FibletActor(
-            self._fiblets,
-            scalars=self._choice,
-            settings=replace(self._settings),
-            line_width=self.line_width,
-            theme=self._theme,
-            options=self._mapper.options,
-        )
-        twin.prop = self.prop.copy() if deep else self.prop
+        twin = FibletActor(self._fiblets, scalars=self._choice, settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)
         twin._choose_as(self)
         twin._select_like(self)
-        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
-        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
-        twin.visibility, twin.pickable = self.visibility, self.pickable
-        twin._shade_like(self)
-        twin.transparency = self.transparency
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -206,28 +184,46 @@ class FibletActor(Coloured, Engines, Filtering, Selecting, Shading, Transparency
             self._draw(fiblets)
         self._colour_by(scalars, found)
 
-    @property
-    def categories(self) -> bool:
-        """Whether there are as many colours as different values, instead of ``n_colors``."""
-        return self._settings.categories
-
-    @categories.setter
-    def categories(self, categories: bool) -> None:
-        self._set("categories", bool(categories))
-
-    # Looks --------------------------------------------------------------------------------------
+    # How it is drawn ----------------------------------------------------------------------------
 
     @property
-    def line_width(self) -> float:
-        """Width in pixels."""
+    def pipeline_in_use(self) -> str | None:
+        """The pipeline that drew the last picture; ``None`` before the first."""
+        return self._mapper.pipeline_in_use
+
+    @property
+    def share(self) -> float | None:
+        """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
+
+        Less only where ``fit`` is ``"sample"`` and memory does not suffice for all.
+        """
+        return self._mapper.share
+
+    def _read_line_width(self) -> float:
         return self._mapper.line_width
 
-    @line_width.setter
-    def line_width(self, width: float) -> None:
-        if not 0.0 < float(width) <= 64.0:
-            raise ValueError(f"line_width is {width!r}; give pixels above 0 and up to 64")
-        self.prop.line_width = float(width)
-        self._mapper.line_width = float(width)
+    def _write_line_width(self, width: float) -> None:
+        self.prop.line_width = width
+        self._mapper.line_width = width
+
+    def _read_transparency(self) -> str | int | None:
+        extra: Any = self._mapper.extras.get(_LAYERS)
+        if extra is None:
+            return None
+        return "layers" if extra.count == _SOME_LAYERS else extra.count
+
+    def _write_transparency(self, transparency: str | int | None) -> None:
+        if transparency is None:
+            self._mapper.set_extra(_LAYERS, None)
+            return
+        layers = _SOME_LAYERS if transparency == "layers" else transparency
+        try:
+            extra = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
+            ) from error
+        self._mapper.set_extra(_LAYERS, extra)
 
     # Inside -------------------------------------------------------------------------------------
 

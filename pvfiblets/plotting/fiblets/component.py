@@ -8,16 +8,19 @@ either name. :class:`FibletsComponent` lives as long as its plotter; its life cy
 from __future__ import annotations
 
 import inspect
-import weakref
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actor_registry import ActorRegistry, same_as
+from pvfiblets.plotting.actor_registry import ActorRegistry
+from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.fiblets.picking import Picking
+from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.fiblets.widgets import Widgets
+from pvfiblets.plotting.setting_places import OPTIONS
+from pvfiblets.plotting.settings import Given, Setting
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -48,45 +51,23 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
     True
     """
 
+    _SETTINGS = FibletSettings
+    NAME, ADD = "fiblets", "add_fiblets"
+
     def __init__(self, plotter: pv.BasePlotter) -> None:
-        self._init_keeping(plotter)
+        super().__init__(plotter)
         self._init_widgets()
         self._init_picking()
 
-    def add(
+    def _make(
         self,
-        /,
         source: Source,
+        settings: Given,
         *,
         scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
-        color: Any = None,
-        cmap: Any = None,
-        clim: Any = None,
-        n_colors: int = 256,
-        log_scale: bool = False,
-        nan_color: Any = None,
-        below_color: Any = None,
-        above_color: Any = None,
-        flip_scalars: bool = False,
-        categories: bool = False,
-        opacity: float = 1.0,
-        transparency: str | int | None = None,
-        line_width: float | None = None,
-        lighting: bool | None = True,
-        name: str | None = None,
-        label: str | None = None,
-        show_scalar_bar: bool | None = None,
-        scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True,
-        user_matrix: Any = None,
-        reset_camera: bool | None = None,
-        render: bool = True,
         per_point: Iterable[str] = (),
         max_error: float | None = None,
         progress: bool = False,
-        pipeline: str = "auto",
-        culling: str | None = "two-phase",
-        fit: str | None = None,
         **options: Any,
     ) -> FibletActor:
         """Add streamlines to the scene, compressed.
@@ -108,63 +89,12 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             :class:`pyvista.ImageData`, ``(array, affine)``, or a NIfTI image or its path. It is
             sampled on the GPU at every point: floats trilinear, integers (labels) by the nearest
             voxel; ``nan_color`` shows outside of it.
-        color : color-like, optional
-            One colour for all. ``scalars`` go before it.
-        cmap : str, list or colormap, optional
-            Colour map; the theme's by default.
-        clim : float or (float, float), optional
-            Values of the first and the last colour; the range of the data by default.
-        n_colors : int, default: 256
-            Number of colours in the map.
-        log_scale : bool, default: False
-            Spread the colours over the logarithm of the values.
-        nan_color, below_color, above_color : color-like, optional
-            Colour of NaN, and of values outside ``clim``.
-        flip_scalars : bool, default: False
-            Reverse the colour map.
-        categories : bool, default: False
-            As many colours as there are different values, instead of ``n_colors``.
-        opacity : float, default: 1.0
-            Of all streamlines.
-        transparency : {None, "layers"} or int, optional
-            How many layers of lines show through each other where ``opacity`` is below 1:
-            ``None``, the nearest alone; ``"layers"``, four; or a number from 2 to 64.
-        line_width : float, optional
-            In pixels; the theme's by default.
-        lighting : bool, default: True
-            Shade the lines by the scene's lights; ``None`` for the theme's.
-        name : str, optional
-            Replaces the actor of the same name.
-        label : str, optional
-            For :meth:`pyvista.Plotter.add_legend`.
-        show_scalar_bar : bool, optional
-            The theme's by default; colours without a colour map never have one.
-        scalar_bar_args : dict, optional
-            For :meth:`pyvista.Plotter.add_scalar_bar`.
-        pickable : bool, default: True
-            Whether pickers find the actor.
-        user_matrix : transform-like, optional
-            From data to world coordinates.
-        reset_camera : bool, optional
-            As for :meth:`pyvista.Plotter.add_mesh`.
-        render : bool, default: True
-            Render at once if the window is shown already.
         per_point : iterable of str
             Per-point arrays of ``source`` to keep besides ``scalars``.
         max_error : float, optional
             Greatest distance (mm) of a drawn from a given point; a tenth of a step by default.
         progress : bool, default: False
             Show a progress bar while reading, compressing, and copying to the GPU.
-        pipeline : str, default: "auto"
-            How fiblets become pixels; ``"auto"`` takes the fastest that the plotter's OpenGL has, and
-            :meth:`pipelines` lists all.
-        culling : {"two-phase", "coverage", None}, default: "two-phase"
-            How fiblets behind others are found out. ``"two-phase"`` changes no pixel;
-            ``"coverage"`` may lose some for a frame after the camera jumped; ``None`` draws all
-            that the camera may see.
-        fit : {None, "sample"}, optional
-            Where the fiblets need more GPU memory than there is: ``None`` refuses, ``"sample"``
-            draws a share of the streamlines.
         **options
             Further arguments of :func:`pvfiblets.codec.compress`, such as ``step`` or ``effort``.
 
@@ -191,51 +121,31 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         >>> actor.line_width = 2
         """
         from pvfiblets.mappers.engines import EngineOptions
-        from pvfiblets.plotting.colours import ColourSettings
         from pvfiblets.plotting.fiblets.actor import FibletActor
         from pvfiblets.plotting.fiblets.sources import as_fiblets
 
-        _check_options(options)
-        theme = self._plotter.theme
-        engine = EngineOptions(pipeline=pipeline, culling=culling, fit=fit)  # before the slow part
+        EngineOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         fiblets, scalars = as_fiblets(
             source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress, **options
         )
-        settings = ColourSettings(
-            color=None if color is None else pv.Color(color),
-            cmap=cmap,
-            clim=clim,
-            n_colors=n_colors,
-            log_scale=bool(log_scale),
-            nan_color=nan_color,
-            below_color=below_color,
-            above_color=above_color,
-            flip_scalars=flip_scalars,
-            categories=bool(categories),
+        return FibletActor(
+            fiblets, scalars=scalars, settings=settings, theme=self._plotter.theme, progress=progress
         )
-        actor = FibletActor(
-            fiblets,
-            scalars=scalars,
-            settings=settings,
-            line_width=line_width,
-            opacity=opacity,
-            lighting=lighting,
-            theme=theme,
-            options=engine,
-            progress=progress,
-        )
-        actor.transparency = transparency
-        return self._enter(
-            actor,
-            name=name,
-            label=label,
-            show_scalar_bar=show_scalar_bar,
-            scalar_bar_args=scalar_bar_args,
-            pickable=pickable,
-            user_matrix=user_matrix,
-            reset_camera=reset_camera,
-            render=render,
-        )
+
+    def _check_known(self, own: dict[str, Any]) -> None:
+        options = set(own) - self.OWN
+        if not options:
+            return
+        from pvfiblets.codec.compress import compress
+        from pvfiblets.plotting.fiblets.actor import FibletActor
+
+        unknown = sorted(options - set(inspect.signature(compress).parameters))
+        live = [name for name in unknown if isinstance(getattr(FibletActor, name, None), (property, Setting))]
+        if live:
+            sets = "; ".join(f"actor.{name} = ..." for name in live)
+            raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
+        if unknown:
+            raise TypeError(f"add_fiblets() got an unexpected keyword argument {unknown[0]!r}")
 
     def pipelines(self) -> PipelineTable:
         """Return every pipeline: whether the plotter's OpenGL has it, or why not.
@@ -273,36 +183,4 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         super().__plotter_close__()
 
 
-@pv.register_plotter_component("add_fiblets")
-class AddFiblets:
-    """What makes ``plotter.add_fiblets`` callable; the same as ``plotter.fiblets.add``.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-        The plotter it belongs to.
-    """
-
-    def __init__(self, plotter: pv.BasePlotter) -> None:
-        self._plotter: Any = weakref.proxy(plotter)
-
-    @same_as(FibletsComponent.add)
-    def __call__(self, source: Source, **arguments: Any) -> FibletActor:
-        """Add streamlines; see :meth:`FibletsComponent.add`."""
-        return self._plotter.fiblets.add(source, **arguments)
-
-
-def _check_options(options: dict[str, Any]) -> None:
-    """Refuse what compressing does not know, before it is said of a function that nobody called."""
-    if not options:
-        return
-    from pvfiblets.codec.compress import compress
-    from pvfiblets.plotting.fiblets.actor import FibletActor
-
-    unknown = sorted(set(options) - set(inspect.signature(compress).parameters))
-    live = [name for name in unknown if isinstance(getattr(FibletActor, name, None), property)]
-    if live:
-        sets = "; ".join(f"actor.{name} = ..." for name in live)
-        raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
-    if unknown:
-        raise TypeError(f"add_fiblets() got an unexpected keyword argument {unknown[0]!r}")
+AddFiblets = plotter_method(FibletsComponent)

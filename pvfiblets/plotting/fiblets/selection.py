@@ -10,9 +10,9 @@ import pyvista as pv
 
 from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.picking import Layer
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
 from pvfiblets.plotting.fiblets.profiles import SelectionMeasures
-from pvfiblets.plotting.report import added_up
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

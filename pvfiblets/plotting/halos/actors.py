@@ -2,13 +2,274 @@
 
 from __future__ import annotations
 
-from typing import cast
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
-from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.plotting.halos.actor_base import HaloActor
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.halos import HaloMapper, HaloOptions
+from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
+from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
+from pvfiblets.plotting.halos.style import LookSettings, Spacing
+from pvfiblets.plotting.setting_places import OPTIONS
+from pvfiblets.plotting.settings import Given
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.fiblets.scalars import Scalars
+
+BACKGROUND = "background"
 
 
-class HaloLineActor(HaloActor):
+class PlottedHalos(Plotted, HaloMapper):
+    """A mapper of lines or points with halos, with scalar bars.
+
+    Parameters
+    ----------
+    drawn : HaloLines or HaloPoints
+        What to draw.
+    look : Look
+        How.
+    """
+
+
+class HaloActor(HaloSettings, Coloured, pv.Actor):
+    """What actors of lines and of points with halos have in common.
+
+    Parameters
+    ----------
+    held : Held
+        What to draw, and the numbers that colour and filter it.
+    settings : mapping, optional
+        Arguments of ``plotter.add_halo_lines`` or ``add_halo_points`` that are settings, by name.
+    name : str, optional
+        Under which the plotter knows the actor.
+    theme : pyvista theme, optional
+        Gives what is not given.
+    """
+
+    _KIND: ClassVar[type]
+
+    def __init__(
+        self,
+        held: Held,
+        *,
+        settings: Mapping[str, Any] | None = None,
+        name: str | None = None,
+        theme: Any = None,
+    ) -> None:
+        theme = pv.global_theme if theme is None else theme
+        given = Given(type(self), settings)
+        self._held = replace(held, drawn=self._checked(held.drawn))
+        self._looks = LookSettings(filter_by=held.filter_by, **given.at(LOOKS))
+        self._spacing = Spacing(held.drawn)
+        self._light_on_dark = given["light_on_dark"]
+        self._halo_choice = _halo_choice(given["halo_color"])
+        self._init_colours(held.scalars, given, theme)
+        self._own_color = self._settings.color is not None
+        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
+        look = self._looks.look(held.drawn, self._spacing)
+        mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
+        super().__init__(prop=pv.Property(theme=theme), name=name)
+        self._finish(mapper, given)
+        self._colour_halos()
+        self._recolour()
+        self._take(given)
+
+    def __repr__(self) -> str:
+        colours = "one colour" if self._scalars is None else self._scalars.name
+        return f"<{type(self).__name__} {self.name!r}: {self._counted}, coloured by {colours}>"
+
+    # Colours ------------------------------------------------------------------------------------
+
+    def _read_color(self) -> pv.Color:
+        return pv.Color(self._settings.color)
+
+    def _write_color(self, color: Any) -> None:
+        checked = pv.Color(color, default_color=self._ink)
+        self._own_color = color is not None
+        self._settings.color = checked
+        self.scalars = None
+
+    def _kept_color(self) -> Any:
+        return self._settings.color if self._own_color else None
+
+    def _read_halo_color(self) -> pv.Color | str:
+        if self._halo_choice == BACKGROUND:
+            return BACKGROUND
+        return pv.Color(self._halo_choice, default_color=self._paper)
+
+    def _write_halo_color(self, color: Any) -> None:
+        self._halo_choice = _halo_choice(color)
+        self._colour_halos()
+
+    def _kept_halo_color(self) -> Any:
+        return self._halo_choice
+
+    def _read_light_on_dark(self) -> bool:
+        return self._light_on_dark
+
+    def _write_light_on_dark(self, wanted: bool) -> None:
+        self._light_on_dark = wanted
+        if not self._own_color:
+            self._settings.color = pv.Color(self._ink)
+        self._colour_halos()
+        self._show(self._scalars)
+
+    @property
+    def scalars(self) -> str | np.ndarray | None:
+        """What colours the actor; ``None`` for one colour.
+
+        The name of numbers or colours that it was made with, or an array with one number or one
+        colour (3 or 4 columns) per point. Lines also have ``"orientation"`` (the absolute direction
+        as red, green, blue), ``"arc_length"`` (mm from the line's first point) and ``"length"``
+        (mm), and take arrays with a row per line.
+        """
+        return self._choice
+
+    @scalars.setter
+    def scalars(self, scalars: Any) -> None:
+        held = coloured(self._held, scalars)
+        found = find_scalars(held)
+        self._hold(held)
+        self._colour_by(held.scalars, found)
+
+    # Looks --------------------------------------------------------------------------------------
+
+    @property
+    def look(self) -> Look:
+        """Every setting below as it is drawn, with the numbers that were measured of the data."""
+        return self._mapper.look
+
+    # Filter -------------------------------------------------------------------------------------
+
+    @property
+    def filter_by(self) -> str | None:
+        """By which numbers ``threshold`` filters; ``None`` shows all, and forgets the threshold.
+
+        Set it to a name, as for ``scalars``, or to an array of a number per point (``"filter"`` is
+        then their name), or per line. Where there is no number (NaN), nothing shows.
+        """
+        return self._looks.filter_by
+
+    @filter_by.setter
+    def filter_by(self, filter_by: str | np.ndarray | None) -> None:
+        held = filtered(self._held, filter_by)
+        threshold = None if held.filter_by is None else self._looks.threshold
+        looks = replace(self._looks, filter_by=held.filter_by, threshold=threshold)
+        self._hold(held, looks)
+
+    def copy(self, deep: bool = True) -> Self:
+        """Return another actor that draws the same with the same looks, colours and place.
+
+        Parameters
+        ----------
+        deep : bool, default: True
+            Give the copy a property of its own; else both share one. A mapper serves one actor,
+            so each has its own in any case; the data are shared.
+
+        Returns
+        -------
+        HaloLineActor or HaloPointActor
+            Not in any plotter yet.
+        """
+        twin = type(self)(self._held, settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)  # noqa: SLF001 - another of the same
+        return twin
+
+    def explain(self) -> dict[str, Any]:
+        """Return what is active for this actor and what it costs, over all windows that show it.
+
+        Returns
+        -------
+        dict
+            ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
+            shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
+            their sum; ``points_total``, and of lines ``lines_total`` and ``segments_total``;
+            ``culling``: the one in use, ``None`` before the first picture.
+        """
+        report = self._mapper.explain()
+        total = added_up(report)
+        del total["fiblets"]
+        latest = report["windows"][-1] if report["windows"] else {}
+        return {**total, **self._totals, "culling": latest.get("culling")}
+
+    # Inside -------------------------------------------------------------------------------------
+
+    @property
+    def _counted(self) -> str:
+        raise NotImplementedError
+
+    @property
+    def _totals(self) -> dict[str, int]:
+        raise NotImplementedError
+
+    @property
+    def _ink(self) -> str:
+        return "white" if self._light_on_dark else "black"
+
+    @property
+    def _paper(self) -> str:
+        return "black" if self._light_on_dark else "white"
+
+    @property
+    def _drawn(self) -> Held:
+        return self._held
+
+    def _checked(self, drawn: Any) -> Any:
+        if not isinstance(drawn, self._KIND):
+            what = self._KIND.__name__
+            make = "as_halo_lines" if self._KIND is HaloLines else "as_halo_points"
+            raise TypeError(
+                f"what to draw is a {type(drawn).__name__}; give {what}, which pvfiblets.halos.build.{make} makes"
+            )
+        return drawn
+
+    def _find(self, drawn: Held, choice: Any) -> Scalars | None:
+        return find_scalars(replace(drawn, scalars=choice))
+
+    def _change(self, **settings: Any) -> None:
+        """Change settings of the look; refused ones leave all as it was."""
+        looks = replace(self._looks, **settings)
+        self._mapper.look = looks.look(self._held.drawn, self._spacing)
+        self._looks = looks
+
+    def _hold(self, held: Held, looks: LookSettings | None = None) -> None:
+        """Draw something else, of the same points, or in another way."""
+        looks = self._looks if looks is None else looks
+        look = looks.look(held.drawn, self._spacing)
+        if held.drawn is not self._held.drawn:
+            self._mapper.set_drawn(held.drawn, look)
+        elif look != self._mapper.look:
+            self._mapper.look = look
+        self._held, self._looks = held, looks
+
+    def _draw_others(self, drawn: Any) -> None:
+        """Draw other lines or points by the same settings."""
+        kept = self._choice if isinstance(self._choice, str) or self._choice is None else np.asarray(self._choice)
+        lines = getattr(self._checked(drawn), "n_lines", None)
+        of_lines = {name: values for name, values in self._held.line_values.items() if len(values) == lines}
+        held = filtered(coloured(Held(drawn, line_values=of_lines), kept), self._looks.filter_by)
+        found = find_scalars(held)
+        spacing = Spacing(drawn)
+        look = self._looks.look(held.drawn, spacing)
+        # Colours for another number of lines go first.
+        self._mapper.colouring = Colouring("solid")
+        self._mapper.set_drawn(held.drawn, look)
+        self._held, self._spacing = held, spacing
+        self._choice = held.scalars
+        self._show(found)
+
+    def _colour_halos(self) -> None:
+        color = self.halo_color
+        self._mapper.halo_color = color.float_rgb if isinstance(color, pv.Color) else None
+
+
+class HaloLineActor(HaloLineSettings, HaloActor):
     """Lines with depth-dependent halos.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -33,64 +294,6 @@ class HaloLineActor(HaloActor):
     @lines.setter
     def lines(self, lines: HaloLines) -> None:
         self._draw_others(lines)
-
-    @property
-    def line_width(self) -> float:
-        """Width (mm) of the lines; ``None`` sets what suits the data."""
-        return self.look.line_width
-
-    @line_width.setter
-    def line_width(self, mm: float | None) -> None:
-        self._change(line_width=mm)
-
-    @property
-    def strip_width(self) -> float:
-        """Width (mm) of a line with the halos on both its sides; ``None`` sets what suits ``line_width``."""
-        return self.look.strip_width
-
-    @strip_width.setter
-    def strip_width(self, mm: float | None) -> None:
-        self._change(strip_width=mm)
-
-    @property
-    def tapering(self) -> tuple[int, float]:
-        """How ends of lines narrow: over so many vertices, which go so far along the mask, up to 0.5.
-
-        The mask is as wide as the strip from 0.2 on. ``True`` sets the paper's (2, 0.2), ``False``
-        (0, 0.2): square ends.
-        """
-        return self.look.n_tapered, self.look.t_tapered
-
-    @tapering.setter
-    def tapering(self, tapering: bool | tuple[int, float]) -> None:
-        self._change(tapering=tapering)
-
-    @property
-    def n_tapered(self) -> int:
-        """Vertices over which ends of lines narrow; 0 leaves them square."""
-        return self.look.n_tapered
-
-    @n_tapered.setter
-    def n_tapered(self, n: int) -> None:
-        self._change(tapering=(n, self.t_tapered))
-
-    @property
-    def t_tapered(self) -> float:
-        """How far along the mask those vertices go."""
-        return self.look.t_tapered
-
-    @t_tapered.setter
-    def t_tapered(self, t: float) -> None:
-        self._change(tapering=(self.n_tapered, t))
-
-    @property
-    def filter_taper(self) -> float:
-        """Length (mm) over which lines narrow where the filter ends them; ``None`` sets two mean segments."""
-        return self.look.filter_taper
-
-    @filter_taper.setter
-    def filter_taper(self, mm: float | None) -> None:
-        self._change(filter_taper=mm)
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
         """Return the line at a window pixel, and where along it the pixel lies.
@@ -120,7 +323,7 @@ class HaloLineActor(HaloActor):
         }  # fmt: skip
 
 
-class HaloPointActor(HaloActor):
+class HaloPointActor(HaloPointSettings, HaloActor):
     """Points with depth-dependent halos: discs that face the viewer, in cones that lead away from him.
 
     Everything of :class:`pyvista.Actor` works. The properties below may be set at any time and take
@@ -145,24 +348,6 @@ class HaloPointActor(HaloActor):
     def points(self, points: HaloPoints) -> None:
         self._draw_others(points)
 
-    @property
-    def point_size(self) -> float:
-        """Diameter of the points, mm; ``None`` sets what suits the data."""
-        return self.look.line_width
-
-    @point_size.setter
-    def point_size(self, mm: float | None) -> None:
-        self._change(line_width=mm)
-
-    @property
-    def halo_size(self) -> float:
-        """Diameter of a point with its halo, mm; ``None`` sets what suits ``point_size``."""
-        return self.look.strip_width
-
-    @halo_size.setter
-    def halo_size(self, mm: float | None) -> None:
-        self._change(strip_width=mm)
-
     def pick_at(self, x: int, y: int) -> int | None:
         """Return the point at a window pixel.
 
@@ -185,3 +370,11 @@ class HaloPointActor(HaloActor):
     @property
     def _totals(self) -> dict[str, int]:
         return {"points_total": self.points.n_points}
+
+
+
+def _halo_choice(color: Any) -> Any:
+    """Return a colour, "background", or None for the default."""
+    if color is None or (isinstance(color, str) and color == BACKGROUND):
+        return color
+    return pv.Color(color)

@@ -11,7 +11,7 @@ import numpy as np
 from pvfiblets.halos import HaloLines, HaloPoints, Look
 from pvfiblets.halos.displacement import as_displacement
 from pvfiblets.halos.spacing import default_widths
-from pvfiblets.plotting.halos.defaults import WIDTH_CUE
+from pvfiblets.plotting.halos.settings import WIDTH_CUE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -12,15 +11,15 @@ import pyvista as pv
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
-from pvfiblets.plotting.coloured import Coloured
-from pvfiblets.plotting.mapper import Plotted
-from pvfiblets.plotting.report import added_up
+from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.setting_places import OPTIONS
+from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.tubes.scalars import find_tube_scalars, with_built_in, with_node_values
+from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.tubes.spline_tubes import SplineTubes
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
@@ -37,26 +36,7 @@ class PlottedSplines(Plotted, TubeMapper):
     """
 
 
-class _OfLines:
-    """A setting that only lines have; asking a surface for it says what to use."""
-
-    def __init__(self, instead: str) -> None:
-        self._instead = instead
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, actor: Any, kind: type | None = None) -> Any:
-        return self if actor is None else self._refuse()
-
-    def __set__(self, actor: Any, value: Any) -> None:
-        self._refuse()
-
-    def _refuse(self) -> NoReturn:
-        raise AttributeError(f"{self._name} is for lines, and spline tubes are surfaces; {self._instead}")
-
-
-class TubeActor(Coloured, SurfaceShading, pv.Actor):
+class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
     """Tubes of varying radius around Hermite splines, ray cast to their exact surface.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -69,53 +49,38 @@ class TubeActor(Coloured, SurfaceShading, pv.Actor):
         What to draw.
     scalars : str or array, optional
         As for :attr:`scalars`.
-    settings : ColourSettings, optional
-        Colour map and colours.
-    opacity : float, default: 1.0
-        Of all tubes.
-    lighting : bool, optional
-        Shade the tubes by the scene's lights; the theme's by default.
+    settings : mapping, optional
+        Arguments of ``plotter.add_spline_tubes`` that are settings, by name.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
-    options : TubeOptions, optional
-        How rays are cast.
 
     Notes
     -----
     Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020).
     """
 
-    illuminated = _OfLines("lighting, and prop.specular, shade them")
-    tube_shading = _OfLines("lighting shades them as the round bodies that they are")
-    tube_radius = _OfLines("every node has its radius: set tubes to others")
-    line_width = _OfLines("min_width is the width in pixels that they take at least")
-    halos = _OfLines("silhouette draws a line around them")
-
     def __init__(
         self,
         tubes: SplineTubes,
         *,
         scalars: str | np.ndarray | None = None,
-        settings: ColourSettings | None = None,
-        opacity: float = 1.0,
-        lighting: bool | None = None,
+        settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
-        options: TubeOptions | None = None,
     ) -> None:
         theme = pv.global_theme if theme is None else theme
+        given = Given(TubeSettings, settings)
         self._tubes, scalars = with_node_values(_checked(tubes), scalars)
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
-        self._init_colours(scalars, settings, theme)
+        self._init_colours(scalars, given, theme)
         self._init_shading()
-        mapper = PlottedSplines(self._shown, options=options)
+        mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
         super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._mapper = mapper  # VTK keeps the C++ half only
-        mapper.attach(self)
-        self._init_looks(opacity, lighting)
+        self._finish(mapper, given)
         self._recolour()
+        self._take(given)
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
@@ -174,19 +139,8 @@ class TubeActor(Coloured, SurfaceShading, pv.Actor):
         TubeActor
             Not in any plotter yet.
         """
-        twin = TubeActor(
-            self._tubes,
-            scalars=self._choice,
-            settings=replace(self._settings),
-            theme=self._theme,
-            options=self._mapper.options,
-        )
-        twin.prop = self.prop.copy() if deep else self.prop
-        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
-        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
-        twin.visibility, twin.pickable = self.visibility, self.pickable
-        twin._shade_surface_like(self)
-        twin.silhouette = self.silhouette
+        twin = TubeActor(self._tubes, scalars=self._choice, settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -234,17 +188,10 @@ class TubeActor(Coloured, SurfaceShading, pv.Actor):
         """
         return self._mapper.pick_at(x, y)
 
-    @property
-    def silhouette(self) -> dict[str, Any] | bool:
-        """An outline around tubes: ``True`` for all in white, a dict of what shall differ, or ``False``.
-
-        ``color`` (``"white"``); ``width`` (2.0): pixels, 1 to 16; ``tubes`` (``None``): numbers of
-        those around which it goes, or a mask ``(n_tubes,)``; all where it is ``None``.
-        """
+    def _read_silhouette(self) -> dict[str, Any] | bool:
         return self._shades.get("silhouette", False)
 
-    @silhouette.setter
-    def silhouette(self, wanted: Mapping[str, Any] | bool | None) -> None:
+    def _write_silhouette(self, wanted: Mapping[str, Any] | bool | None) -> None:
         if wanted is None or wanted is False:
             self._shades.pop("silhouette", None)
             self._mapper.set_extra("silhouette", None)
@@ -268,77 +215,11 @@ class TubeActor(Coloured, SurfaceShading, pv.Actor):
         self._mapper.set_extra("silhouette", Silhouette(chosen, color, settings["width"]))
         self._shades["silhouette"] = settings
 
-    # How it is drawn ----------------------------------------------------------------------------
-
-    @property
-    def silhouettes(self) -> str:
-        """What covers the pixels whose rays are tried.
-
-        ``"auto"``, ``"rectangles"``, ``"boxes"`` or ``"pulled-boxes"``; the picture is the same.
-        """
-        return self._mapper.options.silhouettes
-
-    @silhouettes.setter
-    def silhouettes(self, silhouettes: str) -> None:
-        self._change(silhouettes=silhouettes)
-
-    @property
-    def solver(self) -> str:
-        """How roots are searched: ``"auto"``, ``"bisection"``, ``"illinois"``, ``"itp"`` or ``"newton"``."""
-        return self._mapper.options.solver
-
-    @solver.setter
-    def solver(self, solver: str) -> None:
-        self._change(solver=solver)
-
-    @property
-    def iterations(self) -> int | None:
-        """Steps of one search at most; ``None`` for the solver's own number."""
-        return self._mapper.options.iterations
-
-    @iterations.setter
-    def iterations(self, iterations: int | None) -> None:
-        self._change(iterations=iterations)
-
-    @property
-    def min_width(self) -> float:
-        """Pixels that a tube takes at least, however thin and far it is; 0 leaves thin ones as they are."""
-        return self._mapper.options.min_width
-
-    @min_width.setter
-    def min_width(self, min_width: float) -> None:
-        self._change(min_width=min_width)
-
-    @property
-    def culling(self) -> str | None:
-        """How segments behind others are found out: ``"two-phase"``, or ``None``; the picture is the same."""
-        return self._mapper.options.culling
-
-    @culling.setter
-    def culling(self, culling: str | None) -> None:
-        self._change(culling=culling)
-
-    # What a component asks ----------------------------------------------------------------------
-
-    def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
-
-    def raise_pending(self) -> None:
-        """Raise what drawing stored, once."""
-        self._mapper.raise_pending()
-
-    def release(self, window: Any = None) -> None:
-        """Give back the GPU memory that the actor has in a window, or in all."""
-        self._mapper.release(window)
-
     # Inside -------------------------------------------------------------------------------------
 
     @property
     def _drawn(self) -> SplineTubes:
         return self._shown
-
-    def _change(self, **options: Any) -> None:
-        self._mapper.options = replace(self._mapper.options, **options)
 
     def _draw(self, tubes: SplineTubes, shown: SplineTubes) -> None:
         """Give the mapper other tubes, ``shown``; colours for another number of tubes go first."""

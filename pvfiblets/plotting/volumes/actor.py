@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -13,21 +12,24 @@ import pyvista as pv
 
 from pvfiblets.mappers.volumes import VolumeMapper
 from pvfiblets.plotting.clipping import Clipping
+from pvfiblets.plotting.coloured import Plotted, added_up
 from pvfiblets.plotting.fiblets.scalars import Scalars
-from pvfiblets.plotting.mapper import Plotted
-from pvfiblets.plotting.report import added_up
+from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.shading import SurfaceShading
+from pvfiblets.plotting.volumes.casting import SURFACE, RaySettings
 from pvfiblets.plotting.volumes.opacity import is_number
-from pvfiblets.plotting.volumes.settings import RAYS, SURFACE, RaySettings
-from pvfiblets.plotting.volumes.shading import VolumeShading
+from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.volumes import RaycastVolume, smoothed
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
 
 if TYPE_CHECKING:
     from pvfiblets.mappers import RayHit
-    from pvfiblets.plotting.colours import ColourSettings
     from pvfiblets.regions import Region
 
 __all__ = ["VolumeActor"]
+
+OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
+"""Light and peaks have nothing that could stand over anything: they keep these for when a surface shows again."""
 
 
 class PlottedRaycast(Plotted, VolumeMapper):
@@ -42,26 +44,22 @@ class PlottedRaycast(Plotted, VolumeMapper):
     """
 
 
-class VolumeActor(RaySettings, VolumeShading, Clipping, pv.Actor):
+class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     """A volume that rays are cast through: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
     ``pickable``, ``prop`` with its ``specular`` and so on, of surfaces). The properties below may be
     set at any time and take effect at the next render.
 
+    ``ambient_occlusion`` and ``ray_occlusion`` are of ``mode="isosurface"``: in the other modes they are kept and
+    change nothing. ``depth_cue`` is of all modes: light fades by where it begins, a peak by where it is.
+
     Parameters
     ----------
     volume : RaycastVolume
         What to draw.
-    casting : dict, optional
-        Fields of :class:`pvfiblets.volumes.options.RaycastOptions` that shall differ from their defaults;
-        those that are ``None`` do not.
-    values, thresholds, peak, opacity, opacity_unit_distance, smooth, interactive_quality
-        As for the properties.
-    settings : ColourSettings, optional
-        Colour map and colours.
-    lighting : bool, optional
-        Shade surfaces by the scene's lights; the theme's by default.
+    settings : mapping, optional
+        Arguments of ``plotter.add_raycast_volume`` that are settings, by name.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
@@ -76,43 +74,29 @@ class VolumeActor(RaySettings, VolumeShading, Clipping, pv.Actor):
         self,
         volume: RaycastVolume,
         *,
-        casting: dict[str, Any] | None = None,
-        values: Any = None,
-        thresholds: Any = None,
-        peak: float | None = None,
-        opacity: Any = "linear",
-        opacity_unit_distance: float | None = None,
-        smooth: Any = None,
-        settings: ColourSettings | None = None,
-        interactive_quality: float | dict[str, Any] = 0.5,
-        lighting: bool | None = None,
+        settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
     ) -> None:
-        coarser = InteractiveQuality.of_quality(interactive_quality)
+        given = Given(VolumeSettings, settings)
+        coarser = InteractiveQuality.of_quality(given["interactive_quality"])
         theme = pv.global_theme if theme is None else theme
-        self._source = _checked(volume)
-        self._volume, self._smooth = _smoothed(volume, smooth), smooth
-        self._lit = theme.lighting if lighting is None else bool(lighting)
-        self._init_colours(None, settings, theme)
+        self._source, self._smooth = _checked(volume), given["smooth"]
+        self._volume = _smoothed(volume, self._smooth)
+        self._lit = theme.lighting if given["lighting"] is None else given["lighting"]
+        self._init_colours(None, given, theme)
         self._init_shading()
+        self._of_surfaces: dict[str, Any] = {}
         self._clips: dict[str, Region] = {}
         self._see_through = 1.0
         self._scalars = _scalars(self._volume)
-        made, colouring = self._init_rays(
-            casting or {},
-            values=values,
-            thresholds=thresholds,
-            peak=peak,
-            opacity=opacity,
-            unit=opacity_unit_distance,
-        )
+        made, colouring = self._init_rays(given)
         mapper = PlottedRaycast(self._volume, made, colouring=colouring)
         super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._mapper = mapper  # VTK keeps the C++ half only
-        mapper.attach(self)
-        self._quality, mapper.coarser = interactive_quality, coarser
+        self._finish(mapper, given)
+        self._quality, mapper.coarser = given["interactive_quality"], coarser
         self._look()
+        self._take(given)
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, self._volume.shape))
@@ -129,39 +113,24 @@ class VolumeActor(RaySettings, VolumeShading, Clipping, pv.Actor):
     def volume(self, volume: RaycastVolume) -> None:
         self._hold(_checked(volume), self._smooth)
 
-    @property
-    def smooth(self) -> Any:
-        """Standard deviation of a Gaussian that the volume is smoothed with first, voxels; ``None`` for none."""
+    def _read_smooth(self) -> Any:
         return self._smooth
 
-    @smooth.setter
-    def smooth(self, sigma: Any) -> None:
+    def _write_smooth(self, sigma: Any) -> None:
         self._hold(self._source, sigma)
 
-    @property
-    def interactive_quality(self) -> float | dict[str, Any]:
-        """How well the volume is drawn while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.
-
-        1: as at rest. 0.5: steps twice as long, and a ray for every second pixel at first; light
-        whose steps are integrated beforehand keeps its step. As soon as the camera rests, there is
-        one more picture, with all as it is set. What counts is that the window wants the rate of
-        an interactor that is being used.
-        """
+    def _read_interactive_quality(self) -> float | dict[str, Any]:
         return self._quality
 
-    @interactive_quality.setter
-    def interactive_quality(self, quality: float | dict[str, Any]) -> None:
+    def _write_interactive_quality(self, quality: float | dict[str, Any]) -> None:
         self._mapper.coarser = InteractiveQuality.of_quality(quality)
         self._quality = quality
 
-    @property
-    def lighting(self) -> bool:
-        """Whether the scene's lights shade surfaces; light and peaks are not shaded."""
+    def _read_lighting(self) -> bool:
         return self._lit
 
-    @lighting.setter
-    def lighting(self, lighting: bool) -> None:
-        self._lit = bool(lighting)
+    def _write_lighting(self, lighting: bool) -> None:
+        self._lit = lighting
         self._look()
 
     # Questions ----------------------------------------------------------------------------------
@@ -224,41 +193,10 @@ class VolumeActor(RaySettings, VolumeShading, Clipping, pv.Actor):
         VolumeActor
             Not in any plotter yet.
         """
-        own = {name: getattr(self._casting, name) for name in ("mode", *RAYS)}
-        twin = VolumeActor(
-            self._source,
-            casting=own,
-            values=self._values,
-            thresholds=self._thresholds,
-            peak=self._peak,
-            opacity=self._opacity_choice,
-            opacity_unit_distance=self._unit,
-            smooth=self._smooth,
-            settings=replace(self._settings),
-            interactive_quality=self._quality,
-            lighting=self._lit,
-            theme=self._theme,
-        )
-        twin.prop = self.prop.copy() if deep else self.prop
-        twin.position, twin.scale, twin.origin = self.position, self.scale, self.origin
-        twin.orientation, twin.user_matrix = self.orientation, self.user_matrix
-        twin.visibility, twin.pickable = self.visibility, self.pickable
-        twin._shade_surface_like(self)
+        twin = VolumeActor(self._source, settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)
         twin._cut(self._clips)
         return twin
-
-    # What a component asks ----------------------------------------------------------------------
-
-    def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
-
-    def raise_pending(self) -> None:
-        """Raise what drawing stored, once."""
-        self._mapper.raise_pending()
-
-    def release(self, window: Any = None) -> None:
-        """Give back the GPU memory that the actor has in a window, or in all."""
-        self._mapper.release(window)
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -290,12 +228,19 @@ class VolumeActor(RaySettings, VolumeShading, Clipping, pv.Actor):
         self._casting = made
         self._bar()
 
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        super()._shade(name, kind, wanted)
+        if name in OF_SURFACES:
+            self._of_surfaces[name] = self._mapper.extras.get(name)
+            self._look()
+
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
         surface = self.mode == SURFACE
-        self._shade_surfaces(surface)
+        for name, extra in self._of_surfaces.items():
+            self._mapper.set_extra(name, extra if surface else None)
         self.prop.lighting = self._lit and surface
-        opacity = float(self._opacity_choice) if surface and is_number(self._opacity_choice) else 1.0
+        opacity = float(self.opacity) if surface and is_number(self.opacity) else 1.0
         if opacity != self._see_through:  # what was set of the property itself stays
             self._see_through = self.prop.opacity = opacity
         self.prop.color = "white" if self._settings.color is None else self._settings.color

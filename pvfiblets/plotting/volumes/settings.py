@@ -1,289 +1,262 @@
-"""How rays through a volume are cast and coloured: an actor's settings, live, and what they make together."""
+"""What can be set of volumes: properties of the actor, arguments of ``add_raycast_volume``, rows of the page."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any
 
-import numpy as np
-import pyvista as pv
+from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.setting_places import OWN, Effect, Own, Place
+from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings
 
-from pvfiblets.plotting.coloured import Coloured
-from pvfiblets.plotting.colours import make_colouring, update_table
-from pvfiblets.plotting.volumes.opacity import number, opacities, surface_values, value_limits
-from pvfiblets.volumes import Transfer
-from pvfiblets.volumes.options import RaycastOptions
-from pvfiblets.volumes.transfer import LARGEST_PREINTEGRATED
-
-if TYPE_CHECKING:
-    from pvfiblets.mappers import Colouring
-    from pvfiblets.plotting.fiblets.scalars import Scalars
-    from pvfiblets.volumes import RaycastVolume
-
-__all__ = ["RAYS", "SURFACE", "RaySettings"]
-
-SURFACE, LIGHT = "isosurface", "composite"
+_MISSING = "volumes that rays are cast through have no {name}: "
+_CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigmoid_5", "sigmoid_7", "sigmoid_10",
+           "sigmoid_20", "foreground")  # fmt: skip
 
 
-class _Setting:
-    """How rays are cast, as far as it is a field of `RaycastOptions` and nothing else."""
+class _Casting(Place):
+    """A field of the actor's `RaycastOptions`, which check it."""
 
-    def __init__(self, doc: str) -> None:
-        self.__doc__ = doc
+    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+        return getattr(actor.casting, setting.field)
 
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, actor: Any, kind: type | None = None) -> Any:
-        return self if actor is None else getattr(actor.casting, self._name)
-
-    def __set__(self, actor: Any, value: Any) -> None:
-        actor._cast({self._name: value})  # noqa: SLF001 - of the class that it is part of
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        actor._cast({setting.field: value})  # noqa: SLF001 - of the class that it is part of
 
 
-class _OfOthers:
-    """A setting that colours of volumes do not have."""
+class _Chosen(Own):
+    """What the casting is made from: kept as given, read as what it amounts to."""
 
-    def __init__(self, why: str) -> None:
-        self._why = why
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        actor._choose(setting.field, value)  # noqa: SLF001
 
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, actor: Any, kind: type | None = None) -> Any:
-        return self if actor is None else self._refuse()
-
-    def __set__(self, actor: Any, value: Any) -> None:
-        self._refuse()
-
-    def _refuse(self) -> NoReturn:
-        raise AttributeError(f"volumes that rays are cast through have no {self._name}: {self._why}")
+    def kept(self, actor: Any, one: Argument) -> Any:
+        return actor._choices[one.field]  # noqa: SLF001
 
 
-class RaySettings(Coloured):
-    """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that says what a ray shows.
+CASTING, CHOSEN = _Casting(), _Chosen()
 
-    Every setting may be changed at any time; a value that is refused leaves all as it was. The actor
-    brings ``_volume`` and `_look`.
-    """
 
-    _volume: RaycastVolume
+def _mode(*modes: str) -> Any:
+    return lambda settings: settings["mode"] in modes
 
-    log_scale = _OfOthers("colours lie evenly; take the logarithm of the values first")
-    nan_color = _OfOthers("missing voxels count as the least value")
-    below_color = _OfOthers("opacity=[0, ...] or thresholds hide values below others")
-    above_color = _OfOthers("opacity=[..., 0] or thresholds hide values above others")
 
-    step = _Setting("Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it.")
-    filter = _Setting("Reconstruction between voxels: ``'nearest'``, ``'trilinear'`` or ``'tricubic'``.")
-    refine = _Setting("How a surface is refined: ``'regula-falsi'``, ``'newton'`` or ``'none'``.")
-    iterations = _Setting("Steps of that refinement, 1 to 64.")
-    integrator = _Setting(
-        "How light is added up: ``'adaptive'``, ``'preintegrated'``, ``'exponential'``, ``'riemann'``, ``'simpson'``, "
-        "``'romberg'`` or ``'rk4'``."
+def _values_span(actor: Any) -> tuple[float, float]:
+    return actor.volume.value_range
+
+
+def _unit_limits(volume: Any) -> tuple[float, float]:
+    size = shared.bounds_size(volume)
+    return 1e-4 * size, 10.0 * size
+
+
+class VolumeSettings(Settings):
+    """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that is set, in the order of the page."""
+
+    log_scale = NoSetting(_MISSING + "colours lie evenly; take the logarithm of the values first")
+    nan_color = NoSetting(_MISSING + "missing voxels count as the least value")
+    below_color = NoSetting(_MISSING + "opacity=[0, ...] or thresholds hide values below others")
+    above_color = NoSetting(_MISSING + "opacity=[..., 0] or thresholds hide values above others")
+
+    mode: Setting[str] = Setting(
+        "composite",
+        "What a ray shows.\n\n"
+        '``"isosurface"``: the first of the surfaces of ``values``. ``"composite"``: the light of all\n'
+        'that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
+        "least ``peak``, or the greatest value where there is none.",
+        kind="str",
+        choices=("composite", "isosurface", "mip", "local-mip"),
+        where=CASTING,
+        row=Row("Mode", "What a ray through the volume shows.", default="isosurface",
+                choices=[("composite", "light"), ("isosurface", "surface"), ("mip", "greatest value"),
+                         ("local-mip", "first peak")]),
+    )  # fmt: skip
+    values: Setting[Any] = Setting(
+        None,
+        "Where surfaces are, up to eight; ``None`` sets the middle of the volume's values.",
+        kind="float | Any",
+        header="float or list of float, optional",
+        where=CHOSEN,
+        row=Row("Surface at", "Values of surfaces; empty: the middle.", type="numbers", optional=True,
+                read=lambda actor: list(actor.values), span=_values_span, matters=_mode("isosurface")),
+    )  # fmt: skip
+    color: Setting[Any] = Setting(
+        None,
+        "One colour for all in place of the map; ``None`` for the map.",
+        header="color-like, optional",
+        where=OWN,
+        row=Row("Colour", "One for all, in place of the map.", type="colour", optional=True),
     )
-    jitter = _Setting("Whether each ray starts at a place of its own in its first step: noise instead of rings.")
-    octree = _Setting("Whether parts with nothing to see are skipped; the picture is the same.")
-    homogeneous = _Setting("Difference of values up to which parts of the volume are taken as their mean; 0 for none.")
-    recon = _Setting("Whether parts in which colour and opacity are the same for all values are taken as one.")
-    sparse = _Setting("Pixels along each axis for which there is one ray at first: 1, 2 or 4.")
-    sparse_threshold = _Setting("Difference between those rays from which on pixels between have their own, 0 to 1.")
-    stop = _Setting("Opacity at which a ray ends, up to 1.")
-    box = _Setting("(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; ``None`` for all.")
-
-    def _init_rays(
-        self, wanted: dict[str, Any], *, values: Any, thresholds: Any, peak: Any, opacity: Any, unit: Any
-    ) -> tuple[RaycastOptions, Colouring | None]:
-        """Take the settings, and return what they make of the volume; fields that are None have their defaults."""
-        self._values, self._thresholds, self._peak = values, thresholds, peak
-        self._opacity_choice, self._unit = opacity, unit
-        self._casting = RaycastOptions(SURFACE, (0.0,))
-        given = {field: value for field, value in wanted.items() if value is not None}
-        made = self._made({"mode": LIGHT, **given})
-        self._casting = made[0]
-        return made
-
-    def _look(self) -> None:
-        """Set what the actor's property knows."""
-        raise NotImplementedError
-
-    # What a ray shows ---------------------------------------------------------------------------
-
-    @property
-    def casting(self) -> RaycastOptions:
-        """All settings of the rays as they are drawn."""
-        return self._casting
-
-    @property
-    def mode(self) -> str:
-        """What a ray shows.
-
-        ``"isosurface"``: the first of the surfaces of ``values``. ``"composite"``: the light of all
-        that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at
-        least ``peak``, or the greatest value where there is none.
-        """
-        return self._casting.mode
-
-    @mode.setter
-    def mode(self, mode: str) -> None:
-        self._cast({"mode": mode})
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Where surfaces are, up to eight; ``None`` sets the middle of the volume's values."""
-        return surface_values(self._values, self._volume.value_range)
-
-    @values.setter
-    def values(self, values: Any) -> None:
-        self._set_own("_values", values)
-
-    @property
-    def thresholds(self) -> Any:
-        """(low, high): values that are there, in all modes but ``"isosurface"``; either may be ``None``."""
-        return self._thresholds
-
-    @thresholds.setter
-    def thresholds(self, thresholds: Any) -> None:
-        self._set_own("_thresholds", thresholds)
-
-    @property
-    def peak(self) -> float:
-        """The least value of a peak, for ``"local-mip"``; ``None`` sets the middle of the volume's values."""
-        if self._peak is None:
-            return surface_values(None, self._volume.value_range)[0]
-        return number("peak", self._peak, "the least value of a peak")
-
-    @peak.setter
-    def peak(self, peak: float | None) -> None:
-        self._set_own("_peak", peak)
-
-    # Colours ------------------------------------------------------------------------------------
-
-    @property
-    def opacity(self) -> Any:
-        """How opaque values are, from the low end of ``clim`` to the high one.
-
-        A name as for :meth:`pyvista.Plotter.add_volume` (``"linear"``, ``"sigmoid"``, ...), numbers
-        from 0 to 1, or one number for all. Of light it is the opacity of ``opacity_unit_distance``
-        mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not
-        touch them.
-        """
-        return self._opacity_choice
-
-    @opacity.setter
-    def opacity(self, opacity: Any) -> None:
-        self._set_own("_opacity_choice", opacity)
-
-    @property
-    def opacity_unit_distance(self) -> float:
-        """Length, mm, of which ``opacity`` says how opaque it is; ``None`` sets the volume's mean spacing."""
-        if self._unit is None:
-            return float(self._volume.spacing.mean())
-        return number("opacity_unit_distance", self._unit, "a length above 0, mm")
-
-    @opacity_unit_distance.setter
-    def opacity_unit_distance(self, mm: float | None) -> None:
-        self._set_own("_unit", mm)
-
-    @property
-    def color(self) -> pv.Color | None:
-        """One colour for all in place of the map; ``None`` for the map."""
-        return None if self._settings.color is None else pv.Color(self._settings.color)
-
-    @color.setter
-    def color(self, color: Any) -> None:
-        self._set("color", None if color is None else pv.Color(color))
-        self._bar()
-
-    @property
-    def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` where there is one colour."""
-        return None if self._settings.color is not None or self._scalars is None else self._scalars.title
-
-    # Inside -------------------------------------------------------------------------------------
-
-    def _cast(self, wanted: dict[str, Any]) -> None:
-        """Change fields of the casting; a refused one leaves all as it was."""
-        try:
-            self._apply(wanted)
-        except Exception:
-            self._made({})  # brings the table back
-            raise
-
-    def _set(self, setting: str, value: Any) -> None:
-        """Change one setting of the colours; a refused value leaves all as it was."""
-        self._set_own(setting, value, self._settings)
-
-    def _set_own(self, name: str, value: Any, owner: Any = None) -> None:
-        """Change what the casting is made from; a refused value leaves all as it was."""
-        owner = self if owner is None else owner
-        before = getattr(owner, name)
-        setattr(owner, name, value)
-        try:
-            self._apply({})
-        except Exception:
-            setattr(owner, name, before)
-            self._made({})
-            raise
-
-    def _apply(self, wanted: dict[str, Any]) -> None:
-        """Have the mapper draw by the present settings, with some fields of the casting changed."""
-        made, colouring = self._made(wanted)
-        self._mapper.show(made, colouring)
-        self._casting = made
-        self._look()
-
-    def _show(self, scalars: Scalars | None) -> None:
-        """Hand the mapper its colours."""
-        self._scalars = scalars
-        self._cast({})
-
-    def _made(self, wanted: dict[str, Any]) -> tuple[RaycastOptions, Colouring | None]:
-        """Return casting and colours of the present settings with some fields changed, and bring the table in step."""
-        assert self._scalars is not None
-        settings, mode = self._settings, wanted.get("mode", self._casting.mode)
-        low, high = value_limits(self._thresholds)
-        own = {"values": self.values, "threshold": self.peak, "low": low, "high": high, **wanted}
-        update_table(self._table, settings, self._scalars, self._theme, None)
-        if mode != SURFACE:
-            _widen(self._table, max(int(settings.n_colors), 2))
-        alpha = opacities(self._opacity_choice, self._table.n_values)
-        if settings.color is not None:
-            self._table.values[:, :3] = pv.Color(settings.color).int_rgb
-        self._table.values[:, 3] = 255 if mode == SURFACE else np.round(255.0 * alpha)
-        if mode == LIGHT:
-            own["transfer"] = self._transfer(alpha)
-        casting = replace(self._casting, **own)
-        if mode == LIGHT:
-            if casting.integrator in ("adaptive", "preintegrated") and len(alpha) > LARGEST_PREINTEGRATED:
-                raise ValueError(
-                    f"n_colors is {len(alpha)}; light that is integrated beforehand has {LARGEST_PREINTEGRATED} "
-                    "colours at most: give fewer, or integrator='exponential'"
-                )
-            return casting, None
-        solid = mode == SURFACE and settings.color is not None
-        return casting, make_colouring(settings, None if solid else self._scalars, self._table, self._theme)
-
-    def _transfer(self, alpha: np.ndarray) -> Transfer:
-        """Return the table as a transfer function, the one that there is if it says the same."""
-        table = np.column_stack([np.asarray(self._table.values, np.float32)[:, :3] / 255.0, alpha]).astype(np.float32)
-        clim, unit = tuple(self._table.scalar_range), self.opacity_unit_distance
-        held = self._casting.transfer
-        if held is not None and (held.clim, held.unit) == (clim, unit) and np.array_equal(held.table, table):
-            return held
-        return Transfer(table, clim, unit)
-
-    def _bar(self) -> None:
-        if self._bar_changed is not None:
-            self._bar_changed(self)
-
-
-RAYS = tuple(name for name, value in vars(RaySettings).items() if isinstance(value, _Setting))
-"""Fields of `RaycastOptions` that are the actor's settings as they are."""
-
-
-def _widen(table: pv.LookupTable, count: int) -> None:
-    """Give a table so many entries at least, of the same colours: opacities want more than a list of a few colours."""
-    before = table.n_values
-    if before < count:
-        table.values = np.array(table.values)[np.arange(count) * before // count]
+    cmap = shared.CMAP.but(
+        argument_doc="Colour map; the theme's by default. Surfaces have the colour of their value.",
+        row=Row("Map", "Colours from the low end of the range to the high one.", type="choice", default="gray",
+                choices=shared.MAPS, matters=lambda s: s["color"] is None),
+    )  # fmt: skip
+    clim = shared.CLIM.but(
+        row=replace(shared.CLIM_ROW, span=_values_span, matters=None)
+    )
+    n_colors = shared.N_COLORS.but(argument_doc="Number of colours in the map, between which light is linear.")
+    flip_scalars = shared.FLIP_SCALARS
+    opacity: Setting[Any] = Setting(
+        "linear",
+        "How opaque values are, from the low end of ``clim`` to the high one.\n\n"
+        'A name as for :meth:`pyvista.Plotter.add_volume` (``"linear"``, ``"sigmoid"``, ...), numbers\n'
+        "from 0 to 1, or one number for all. Of light it is the opacity of ``opacity_unit_distance``\n"
+        "mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not\n"
+        "touch them.",
+        kind="str | float | Any",
+        header='str, float or list of float, default: "linear"',
+        where=CHOSEN,
+        row=Row("Opacity", "How opaque values are, from the low end of the range to the high one.", type="choice",
+                choices=[(name, name.replace("_", " ")) for name in _CURVES],
+                matters=_mode("composite", "mip", "local-mip")),
+    )  # fmt: skip
+    opacity_unit_distance: Setting[float] = Setting(
+        None,
+        "Length, mm, of which ``opacity`` says how opaque it is; ``None`` sets the volume's mean spacing.",
+        kind="float | None",
+        where=CHOSEN,
+        row=Row("Opaque over", "mm of which the opacity is; empty: a voxel.", optional=True, limits=_unit_limits,
+                read=lambda actor: actor.opacity_unit_distance, matters=_mode("composite")),
+    )  # fmt: skip
+    thresholds: Setting[Any] = Setting(
+        None,
+        '(low, high): values that are there, in all modes but ``"isosurface"``; either may be ``None``.',
+        header="(float, float), optional",
+        where=CHOSEN,
+        row=Row("Only values", "Values that are there; empty: all.", type="range", optional=True, span=_values_span,
+                matters=_mode("composite", "mip", "local-mip")),
+    )  # fmt: skip
+    peak: Setting[float] = Setting(
+        None,
+        'The least value of a peak, for ``"local-mip"``; ``None`` sets the middle of the volume\'s values.',
+        kind="float | None",
+        where=CHOSEN,
+        row=Row("Peaks from", "The least value of a peak; empty: the middle.", optional=True,
+                read=lambda actor: actor.peak, matters=_mode("local-mip")),
+    )  # fmt: skip
+    smooth: Setting[Any] = Setting(
+        None,
+        "Standard deviation of a Gaussian that the volume is smoothed with first, voxels; ``None`` for none.",
+        kind="float | Any",
+        header="float or (float, float, float), optional",
+        where=OWN,
+        row=Row("Smooth", "Standard deviation of a Gaussian, voxels; empty: none.", "Rays", "number", optional=True,
+                limits=(0.1, 8.0)),
+    )  # fmt: skip
+    step: Setting[float] = Setting(
+        0.5,
+        "Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it.",
+        kind="float",
+        where=CASTING,
+        row=Row("Step", "Between two looks at the volume, voxels.", "Rays", limits=(0.05, 8.0)),
+    )
+    filter: Setting[str] = Setting(
+        "trilinear",
+        "Reconstruction between voxels.",
+        kind="str",
+        choices=("nearest", "trilinear", "tricubic"),
+        where=CASTING,
+        row=Row("Between voxels", "Reconstruction between voxels.", "Rays"),
+    )
+    refine: Setting[str] = Setting(
+        "regula-falsi",
+        "How the place of a surface on its ray is refined.",
+        kind="str",
+        choices=("regula-falsi", "newton", "none"),
+        where=CASTING,
+        row=Row("Refine surfaces", "How a surface's place is found.", "Rays", matters=_mode("isosurface")),
+    )
+    iterations: Setting[int] = Setting(
+        5, "Steps of that refinement, 1 to 64.", kind="int", where=CASTING
+    )
+    integrator: Setting[str] = Setting(
+        "adaptive",
+        'How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
+        'light however dense and steep opacities are: it is ``"preintegrated"`` where that suffices, takes steps in '
+        "parts at edges from voxel to voxel, and is several times as slow where opacities are steep.",
+        kind="str",
+        choices=("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4"),
+        where=CASTING,
+        row=Row("Integrator", "How light is added up over a step.", "Rays", matters=_mode("composite")),
+    )
+    jitter: Setting[bool] = Setting(
+        False,
+        "Whether each ray starts at a place of its own in its first step: noise instead of rings.",
+        kind="bool",
+        where=CASTING,
+        row=Row("Jitter", "Noise in place of rings.", "Rays"),
+    )
+    octree: Setting[bool] = Setting(
+        True,
+        "Whether parts with nothing to see are skipped; the picture is the same.",
+        kind="bool",
+        where=CASTING,
+    )
+    homogeneous: Setting[float] = Setting(
+        0.0,
+        "Difference of values up to which parts of the volume are taken as their mean; 0 for none.",
+        kind="float",
+        where=CASTING,
+    )
+    recon: Setting[bool] = Setting(
+        False,
+        "Whether parts in which colour and opacity are the same for all values are taken as one.",
+        kind="bool",
+        where=CASTING,
+    )
+    sparse: Setting[int] = Setting(
+        1,
+        "Pixels along each axis for which there is one ray at first. Those between have rays only where what "
+        "the first ones found differs, so that thinner things may be missed.",
+        kind="int",
+        choices=(1, 2, 4),
+        where=CASTING,
+    )
+    sparse_threshold: Setting[float] = Setting(
+        0.05,
+        "Difference between those rays from which on pixels between have their own, 0 to 1.",
+        kind="float",
+        where=CASTING,
+    )
+    stop: Setting[float] = Setting(
+        0.999,
+        "Opacity at which a ray ends, up to 1.",
+        kind="float",
+        where=CASTING,
+    )
+    interactive_quality: Setting[float | dict[str, Any]] = Setting(
+        0.5,
+        'How well the volume is drawn while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.\n\n'
+        "1: as at rest. 0.5: steps twice as long, and a ray for every second pixel at first; light\n"
+        "whose steps are integrated beforehand keeps its step. As soon as the camera rests, there is\n"
+        "one more picture, with all as it is set. What counts is that the window wants the rate of\n"
+        "an interactor that is being used.",
+        kind="float | dict[str, Any]",
+        header="float or dict, default: 0.5",
+        where=OWN,
+    )
+    box: Setting[Any] = Setting(
+        None,
+        "(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; ``None`` for all.",
+        header="(float, float, float, float, float, float), optional",
+        where=CASTING,
+    )
+    lighting = shared.lighting("Shade surfaces by the scene's lights; the theme's by default.", None).but(
+        __doc__="Whether the scene's lights shade surfaces; light and peaks are not shaded.", where=OWN
+    )
+    ambient_occlusion = shared.AMBIENT_OCCLUSION
+    depth_cue = shared.DEPTH_CUE
+    ray_occlusion: Setting[dict[str, Any] | bool] = Setting(
+        False,
+        "Darkness where the volume stands over its own surfaces, by rays through it (Lesar 2015, equation 10).\n\n"
+        "Unlike ``ambient_occlusion``, which knows the pixels alone, it sees what is hidden or beside\n"
+        "the picture, and does not change as the camera turns; it costs ``samples`` rays a pixel.\n\n"
+        "``samples`` (32): rays of each pixel, 1 to 2048. ``radius`` (mm): what is farther does not\n"
+        "darken; ``None``, the default, is a 20th of the data's diagonal. ``strength`` (1.0): 0 to 1.\n"
+        "``seed`` (0): the same picture with the same seed is the same to the last bit. ``smooth``\n"
+        "(``True``): mean over neighbouring pixels of the same piece of surface, in place of grain.",
+        kind="bool | dict[str, Any]",
+        header="bool or dict, default: False",
+        where=Effect("pvfiblets.mappers.ray_occlusion:RayOcclusion"),
+    )

@@ -1,0 +1,49 @@
+"""An effect of the resolve that is one number: a piece of ``shaders/resolve`` with one ``uniform float``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers.shader_effects import Draw
+
+__all__ = ["UniformEffect"]
+
+
+@dataclass(frozen=True)
+class UniformEffect:
+    """An `pvfiblets.mappers.shader_effects.Extra` that sets one number of one piece.
+
+    Parameters
+    ----------
+    piece : str
+        Name of the file in ``shaders/resolve``.
+    uniform : str
+        Name of the number there.
+    value : float
+        The number.
+    """
+
+    piece: str
+    uniform: str
+    value: float
+    style: ClassVar[Mapping[str, Any]] = {}
+
+    @property
+    def features(self) -> frozenset[str]:
+        """The piece."""
+        return frozenset({self.piece})
+
+    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all extras
+        """Keep nothing on the GPU."""
+        return
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+        """Have no textures."""
+        return {}
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+        """Set the number."""
+        program.SetUniformf(self.uniform, self.value)

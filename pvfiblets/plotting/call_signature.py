@@ -1,0 +1,87 @@
+"""Arguments and docs of ``add`` and ``plotter.add_...``, put together of what is declared.
+
+A component's ``_make`` has the arguments that are about the data, and a docstring; settings follow them, and then what
+all drawables have in common. The result is what ``help``, ``inspect``, Sphinx and ``plotter.pyi`` show.
+"""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+import weakref
+from typing import TYPE_CHECKING, Any
+
+import pyvista as pv
+
+from pvfiblets.plotting.settings import arguments
+from pvfiblets.plotting.shared_settings import Common
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.actor_registry import ActorRegistry
+    from pvfiblets.plotting.settings import Argument
+
+__all__ = ["document", "plotter_method"]
+
+_WIDEST = 100
+
+
+def document(component: type[ActorRegistry[Any]]) -> None:
+    """Give a component an ``add`` of its own whose signature and doc say all arguments."""
+    made = inspect.signature(component._make)
+    skipped = ("self", "settings")
+    own = [one for name, one in made.parameters.items() if name not in skipped]
+    last = [one for one in own if one.kind is one.VAR_KEYWORD]
+    component.OWN = frozenset(one.name for one in own if one.kind is one.KEYWORD_ONLY)
+    declared = {**arguments(component._SETTINGS), **Common.DECLARED}  # noqa: SLF001
+    settings = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=one.default, annotation=one.kind)
+        for name, one in declared.items()
+    ]
+    first = inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    kept = [one for one in own if one.kind is not one.VAR_KEYWORD]
+    inherited = component.add
+
+    def add(self: Any, /, source: Any, **arguments: Any) -> Any:
+        return inherited(self, source, **arguments)
+
+    add.__module__, add.__qualname__ = component.__module__, f"{component.__name__}.add"
+    add.__doc__ = _with_parameters(inspect.cleandoc(component._make.__doc__ or ""), declared)
+    add.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # inspect looks for it
+        [first, *kept, *settings, *last], return_annotation=made.return_annotation
+    )
+    component.add = add  # type: ignore[method-assign]
+
+
+def plotter_method(component: type[ActorRegistry[Any]]) -> Any:
+    """Register a component's ``add`` as a method of plotters, and return the class that makes it callable."""
+    target = component.add
+
+    class Adder:
+        def __init__(self, plotter: pv.BasePlotter) -> None:
+            self._plotter: Any = weakref.proxy(plotter)
+
+        def __call__(self, source: Any, **arguments: Any) -> Any:
+            return getattr(self._plotter, component.NAME).add(source, **arguments)
+
+    Adder.__name__ = Adder.__qualname__ = "".join(part.title() for part in component.ADD.split("_"))
+    Adder.__module__ = component.__module__
+    Adder.__doc__ = f"What makes ``plotter.{component.ADD}`` callable; the same as ``plotter.{component.NAME}.add``."
+    Adder.__call__.__doc__ = target.__doc__
+    Adder.__call__.__signature__ = inspect.signature(target)  # type: ignore[attr-defined]
+    return pv.register_plotter_component(component.ADD)(Adder)
+
+
+def _with_parameters(doc: str, declared: dict[str, Argument]) -> str:
+    """Return a docstring with declared arguments at the end of its section ``Parameters``."""
+    end = doc.index("\n\nReturns\n")
+    entries = [_entry(name, one) for name, one in declared.items()]
+    # What takes all other arguments comes last.
+    rest = doc.find("\n**", 0, end)
+    place = end if rest < 0 else rest
+    return doc[:place] + "\n" + "\n".join(entries) + doc[place:]
+
+
+def _entry(name: str, one: Argument) -> str:
+    paragraphs = [" ".join(part.split()) for part in one.argument_doc.split("\n\n")]
+    wrapped = [textwrap.fill(part, _WIDEST, break_long_words=False, break_on_hyphens=False) for part in paragraphs]
+    return f"{name} : {one.header}\n" + textwrap.indent("\n\n".join(wrapped), "    ")

@@ -1,0 +1,159 @@
+"""What can be set of fiblets: properties of the actor, arguments of ``add_fiblets``, rows of the page."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effect, Switch
+from pvfiblets.plotting.settings import Row, Setting, Settings, truth
+
+STYLES = ("surface", "halo")
+"""What :attr:`FibletSettings.style` may be."""
+
+
+def _radii(data: Any) -> tuple[float, float]:
+    size = shared.bounds_size(data)
+    return 1e-5 * size, 0.1 * size
+
+
+def _clim_span(actor: Any) -> tuple[float, float]:
+    scalars = actor.active_scalars
+    return scalars.range if scalars is not None and scalars.mapped else actor.clim
+
+
+def _line_width(name: str, width: Any) -> float:
+    if not 0.0 < float(width) <= 64.0:
+        raise ValueError(f"{name} is {width!r}; give pixels above 0 and up to 64")
+    return float(width)
+
+
+class FibletSettings(Settings):
+    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that is set, in the order of the page."""
+
+    color = shared.color("One colour for all. ``scalars`` go before it.")
+    cmap = shared.CMAP
+    clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_clim_span))
+    n_colors = shared.N_COLORS
+    log_scale = shared.LOG_SCALE
+    nan_color = shared.NAN_COLOR
+    below_color = shared.BELOW_COLOR
+    above_color = shared.ABOVE_COLOR
+    flip_scalars = shared.FLIP_SCALARS
+    categories: Setting[bool] = Setting(
+        False,
+        "Whether there are as many colours as different values, instead of ``n_colors``.",
+        kind="bool",
+        where=COLOURS,
+        check=truth,
+    )
+    opacity = shared.opacity("Of all streamlines.")
+    transparency: Setting[str | int | None] = Setting(
+        None,
+        "How many layers of lines an ``opacity`` below 1 shows, one through the other.\n\n"
+        "``None``: the nearest alone, through which one sees the rest of the scene. ``\"layers\"``:\n"
+        "four, each with its own colour, light and depth, blended in order. A number from 2 to 64:\n"
+        "as many. What lies behind the last does not show. A layer costs a drawing of all\n"
+        "streamlines in view, and 44 bytes of GPU memory a pixel; opaque actors pay for none.",
+        kind="str | int | None",
+        header='{None, "layers"} or int, optional',
+        where=LATER,
+        row=Row("Seen through", "What shows behind the nearest line, with opacity below 1.", type="choice",
+                choices=[(None, "what is behind all lines"), ("layers", "the next lines")],
+                matters=lambda s: s["opacity"] < 1.0),
+    )  # fmt: skip
+    line_width: Setting[float] = Setting(
+        None,
+        "Width in pixels.",
+        kind="float | None",
+        where=OWN,
+        check=_line_width,
+        row=Row("Line width", "Pixels.", "Lines", "number", 1.0, limits=(0.25, 64.0),
+                matters=lambda s: s["tube_radius"] is None),
+    )  # fmt: skip
+    style: Setting[str] = Setting(
+        STYLES[0],
+        "``'surface'``, lines in their colours, or ``'halo'``, black lines in white halos.\n\n"
+        "``'halo'`` is a drawing in ink (Everts et al. 2009), best on white: it draws all\n"
+        "lines black and without light, and sets default halos where none are. Colours and\n"
+        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.",
+        argument=False,
+        choices=STYLES,
+        where=LATER,
+        row=Row("Style", "Halo: black lines in white halos, best on a white background.", "Lines",
+                choices=[("surface", "coloured lines"), ("halo", "ink and halos")]),
+    )  # fmt: skip
+    tube_radius: Setting[float | None] = Setting(
+        None,
+        "Radius (mm) of tubes in place of lines of ``line_width`` pixels; ``None``, the default, for lines.\n\n"
+        "Tubes are exact bodies: each pixel shows the point of the surface that it sees, they cut into\n"
+        "each other and into meshes, and ends are round. Those thinner than a pixel are a pixel wide.",
+        argument=False,
+        where=LATER,
+        row=Row("Tube radius", "mm; empty: lines.", "Lines", "number", optional=True, limits=_radii),
+    )
+    tube_shading: Setting[bool] = Setting(
+        False,
+        "Whether light falls on lines wider than a pixel as on round tubes.\n\n"
+        "Only the light changes: their depth stays that of flat lines. ``illuminated`` goes before it.\n"
+        "Nothing to be seen without ``lighting``.",
+        argument=False,
+        where=Switch("pvfiblets.mappers.line_tubes:TubeShading"),
+        row=Row("Round lines", "Light lines wider than a pixel as round tubes.", "Lines",
+                matters=lambda s: s["line_width"] > 1.0 and s["tube_radius"] is None),
+    )  # fmt: skip
+    lighting = shared.lighting("Shade the lines by the scene's lights; ``None`` for the theme's.", True)
+    illuminated: Setting[bool] = Setting(
+        False,
+        "Whether each light is reflected as by a thin cylinder, whichever side it comes from.\n\n"
+        "Off, a line has the one normal that faces the viewer, so that only light from there counts\n"
+        "fully (Zöckler et al. 1996; Mallo et al. 2005). Nothing to be seen without ``lighting``.",
+        argument=False,
+        where=Switch("pvfiblets.mappers.shading:Illuminated"),
+        row=Row("Cylinders", "Reflect lights as thin cylinders do, from whichever side.", "Shading",
+                matters=lambda s: s["lighting"]),
+    )  # fmt: skip
+    ambient_occlusion = shared.AMBIENT_OCCLUSION
+    depth_cue = shared.DEPTH_CUE
+    halos: Setting[dict[str, Any] | bool] = Setting(
+        False,
+        "Gaps that lines cut into what is behind them, the wider the farther it is behind.\n\n"
+        "Depth-dependent halos of Everts et al. 2009.\n\n"
+        "``width`` (mm): from a line's edge to its halo's, at most 24 pixels; ``None``, the default,\n"
+        "is a 250th of the data's diagonal, or 2.5 pixels if they are more. ``depth`` (mm): by how\n"
+        "much the halo's edge lies behind its line; lines side by side whose depths differ by less do\n"
+        "not cut each other. ``None``, the default, is a 20th of the diagonal. ``color``\n"
+        "(``'white'``): ``'background'`` for the renderer's.",
+        argument=False,
+        where=Effect("pvfiblets.mappers.shading:Halos"),
+        row=Row("Halos", "Gaps around lines, the wider the farther behind things are.", "Shading",
+                matters=lambda s: s["style"] == STYLES[0]),
+    )  # fmt: skip
+    pipeline: Setting[str] = Setting(
+        "auto",
+        'How fiblets become pixels; ``"auto"`` takes the fastest that the plotter\'s OpenGL has, and '
+        "``plotter.fiblets.pipelines()`` lists all.",
+        kind="str",
+        where=OPTIONS,
+    )
+    culling: Setting[str | None] = Setting(
+        "two-phase",
+        'How fiblets behind others are found out. ``"two-phase"`` changes no pixel; ``"coverage"`` may lose '
+        "some for a frame after the camera jumped; ``None`` draws all that the camera may see.",
+        kind="str | None",
+        choices=("two-phase", "coverage", None),
+        where=OPTIONS,
+        row=Row("Culling", "How hidden lines are left out. Two-phase: same picture; coverage: as in the paper.",
+                "Drawing", choices=[("two-phase", "two-phase"), ("coverage", "coverage"), (None, "none")]),
+    )  # fmt: skip
+    fit: Setting[str | None] = Setting(
+        None,
+        "Where the fiblets need more GPU memory than there is: ``None`` refuses, ``\"sample\"`` draws a share "
+        "of the streamlines.",
+        kind="str | None",
+        choices=(None, "sample"),
+        where=OPTIONS,
+        row=Row("Too large", "What to do where GPU memory does not suffice for all.", "Drawing",
+                choices=[(None, "say so"), ("sample", "draw a share")]),
+    )  # fmt: skip

@@ -1,0 +1,177 @@
+"""Settings that several drawables have, each said once; a drawable's own body of settings names those that it has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pvfiblets.plotting.setting_places import COLOURS, OWN, PROPERTY, Effect
+from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
+
+CMAPS = (
+    "viridis", "plasma", "inferno", "magma", "cividis", "turbo", "gray", "bone", "hot", "afmhot", "copper", "pink",
+    "coolwarm", "RdBu", "RdYlBu", "Spectral", "PuOr", "bwr", "seismic", "twilight", "hsv", "rainbow", "jet", "Blues",
+    "Greens", "Reds", "YlOrRd", "YlGnBu", "tab10", "tab20", "Set1", "Set2", "Paired",
+)  # fmt: skip
+"""Colour maps that a page offers; each also reversed, with ``_r``."""
+
+MAPS = [(name, name.replace("_", " ")) for name in (*CMAPS, *(f"{name}_r" for name in CMAPS))]
+
+
+def bounds_size(data: Any) -> float:
+    """Return the diagonal of some data's bounds, mm; 1 where they have none."""
+    b = data.bounds
+    found = float(sum((b[k + 1] - b[k]) ** 2 for k in (0, 2, 4)) ** 0.5)
+    return found if 0.0 < found < float("inf") else 1.0
+
+
+def by_numbers(settings: Any) -> bool:
+    """Whether numbers colour, as the other settings are."""
+    return settings["scalars"] not in (None, "orientation")
+
+
+def color(doc: str) -> Setting[Any]:
+    """Return the one colour of some drawable that numbers may colour, too."""
+    return Setting(
+        None,
+        "One colour for all; setting it puts scalars out of use.",
+        argument=doc,
+        header="color-like, optional",
+        where=OWN,
+        row=Row("Colour", "Of all, where nothing else colours it.", type="colour", default="#ffffff",
+                matters=lambda settings: settings["scalars"] is None),
+    )  # fmt: skip
+
+
+CMAP: Setting[Any] = Setting(
+    None,
+    "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
+    argument="Colour map; the theme's by default.",
+    header="str, list or colormap, optional",
+    where=COLOURS,
+    read=lambda actor: actor._theme.cmap if actor._settings.cmap is None else actor._settings.cmap,  # noqa: SLF001
+    row=Row("Map", "Colours from the low end of the range to the high one.", type="choice",
+            choices=[(None, "usual"), *MAPS], matters=by_numbers),
+)  # fmt: skip
+
+CLIM_ROW = Row(
+    "Range", "Values of the first and the last colour; empty: all of the data's.", type="range", optional=True,
+    read=lambda actor: list(actor.clim), matters=by_numbers,
+)  # fmt: skip
+
+CLIM: Setting[tuple[float, float]] = Setting(
+    None,
+    "Values of the first and the last colour; ``None`` sets the range of the data.\n\n"
+    "Once set it stays, other scalars or not.",
+    argument="Values of the first and the last colour; the range of the data by default.",
+    header="float or (float, float), optional",
+    where=COLOURS,
+    read=lambda actor: tuple(actor.lookup_table.scalar_range),
+    row=CLIM_ROW,
+)
+
+N_COLORS: Setting[int] = Setting(
+    256, "Entries of the look-up table.", argument="Number of colours in the map.", kind="int", where=COLOURS
+)
+
+LOG_SCALE: Setting[bool] = Setting(
+    False,
+    "Whether the colours spread over the logarithm of the values.",
+    argument="Spread the colours over the logarithm of the values.",
+    kind="bool",
+    where=COLOURS,
+    check=truth,
+    row=Row("Logarithmic", "Spread the colours over the logarithm of the values.", matters=by_numbers),
+)
+
+NAN_COLOR: Setting[Any] = Setting(
+    None,
+    "Colour of NaN.",
+    header="color-like, optional",
+    where=COLOURS,
+    read=lambda actor: actor.lookup_table.nan_color,
+    row=Row("Without a value", "Colour of what has no value.", type="colour", optional=True,
+            read=lambda actor: actor.nan_color.hex_rgb, matters=by_numbers),
+)  # fmt: skip
+
+BELOW_COLOR: Setting[Any] = Setting(
+    None,
+    "Colour of values below ``clim``; ``None`` uses the first of the map.",
+    header="color-like, optional",
+    where=COLOURS,
+)
+
+ABOVE_COLOR: Setting[Any] = Setting(
+    None,
+    "Colour of values above ``clim``; ``None`` uses the last of the map.",
+    header="color-like, optional",
+    where=COLOURS,
+)
+
+FLIP_SCALARS = Argument(False, "Reverse the colour map.", kind="bool", where=COLOURS)
+
+
+def opacity(of: str) -> Setting[float]:
+    """Return the opacity of some drawable; ``of`` says what of it."""
+    return Setting(
+        1.0,
+        "From 0, not to be seen, to 1.",
+        argument=of,
+        kind="float",
+        where=PROPERTY,
+        low=0.0,
+        high=1.0,
+        row=Row("Opacity", "From 0, not to be seen, to 1."),
+    )
+
+
+def lighting(what: str, default: bool | None) -> Setting[bool]:
+    """Return the setting of light on some drawable, with which it is made."""
+    kind = "bool" if default is False else "bool | None"
+    return Setting(
+        default,
+        "Whether the scene's lights shade what is drawn.",
+        argument=what,
+        kind=kind,
+        where=PROPERTY,
+        check=truth,
+        row=Row("Light", "Shade by the scene's lights.", "Shading", "bool", True),
+    )
+
+
+AMBIENT_OCCLUSION: Setting[dict[str, Any] | bool] = Setting(
+    False,
+    "Darkness where others stand over a line or tube.\n\n"
+    "``radius`` (mm): what is farther does not darken; ``None``, the default, is a 20th of the\n"
+    "data's diagonal. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.",
+    argument=False,
+    where=Effect("pvfiblets.mappers.shading:AmbientOcclusion"),
+    row=Row("Ambient occlusion", "Darken what others stand over.", "Shading"),
+)
+
+DEPTH_CUE: Setting[dict[str, Any] | bool] = Setting(
+    False,
+    "Fading with the distance from the viewer.\n\n"
+    "``strength`` (0.7): share of the colour at the far end. ``color``: ``None``, the default, is\n"
+    "the background's. ``range``: distances (mm) at which fading begins and ends; ``None``, the\n"
+    "default, are those of the nearest and the farthest part of the data's bounds.",
+    argument=False,
+    where=Effect("pvfiblets.mappers.shading:DepthCue"),
+    row=Row("Depth cue", "Let what is far away fade.", "Shading"),
+)
+
+
+class Common(Settings):
+    """Arguments of every ``add_...``, which say how an actor comes into the plotter."""
+
+    name = Argument(None, "Replaces the actor of the same name.", kind="str | None")
+    label = Argument(None, "For :meth:`pyvista.Plotter.add_legend`.", kind="str | None")
+    show_scalar_bar = Argument(
+        None, "The theme's by default; colours without a colour map never have one.", kind="bool | None"
+    )
+    scalar_bar_args = Argument(
+        None, "For :meth:`pyvista.Plotter.add_scalar_bar`.", kind="dict[str, Any] | None", header="dict, optional"
+    )
+    pickable = Argument(True, "Whether pickers find the actor.", kind="bool")
+    user_matrix = Argument(None, "From data to world coordinates.", header="transform-like, optional")
+    reset_camera = Argument(None, "As for :meth:`pyvista.Plotter.add_mesh`.", kind="bool | None")
+    render = Argument(True, "Render at once if the window is shown already.", kind="bool")

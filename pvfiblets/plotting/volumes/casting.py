@@ -1,0 +1,178 @@
+"""How rays through a volume are cast and coloured: an actor's settings, live, and what they make together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from pvfiblets.plotting.coloured import Coloured
+from pvfiblets.plotting.colours import make_colouring, update_table
+from pvfiblets.plotting.volumes.opacity import number, opacities, surface_values, value_limits
+from pvfiblets.plotting.volumes.settings import CASTING, CHOSEN, VolumeSettings
+from pvfiblets.volumes import Transfer
+from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.transfer import LARGEST_PREINTEGRATED
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers import Colouring
+    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.settings import Given
+    from pvfiblets.volumes import RaycastVolume
+
+__all__ = ["SURFACE", "RaySettings"]
+
+SURFACE, LIGHT = "isosurface", "composite"
+
+
+class RaySettings(VolumeSettings, Coloured):
+    """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that says what a ray shows.
+
+    Every setting may be changed at any time; a value that is refused leaves all as it was. The actor
+    brings ``_volume`` and `_look`.
+    """
+
+    _volume: RaycastVolume
+
+    def _init_rays(self, given: Given) -> tuple[RaycastOptions, Colouring | None]:
+        """Take the settings, and return what they make of the volume; fields that are None have their defaults."""
+        self._choices = given.at(CHOSEN)
+        self._casting = RaycastOptions(SURFACE, (0.0,))
+        fields = {field: value for field, value in given.at(CASTING).items() if value is not None}
+        made = self._made({"mode": LIGHT, **fields})
+        self._casting = made[0]
+        return made
+
+    def _look(self) -> None:
+        """Set what the actor's property knows."""
+        raise NotImplementedError
+
+    # What a ray shows ---------------------------------------------------------------------------
+
+    @property
+    def casting(self) -> RaycastOptions:
+        """All settings of the rays as they are drawn."""
+        return self._casting
+
+    def _read_values(self) -> tuple[float, ...]:
+        return surface_values(self._choices["values"], self._volume.value_range)
+
+    def _read_thresholds(self) -> Any:
+        return self._choices["thresholds"]
+
+    def _read_peak(self) -> float:
+        if self._choices["peak"] is None:
+            return surface_values(None, self._volume.value_range)[0]
+        return number("peak", self._choices["peak"], "the least value of a peak")
+
+    def _read_opacity(self) -> Any:
+        return self._choices["opacity"]
+
+    def _read_opacity_unit_distance(self) -> float:
+        unit = self._choices["opacity_unit_distance"]
+        if unit is None:
+            return float(self._volume.spacing.mean())
+        return number("opacity_unit_distance", unit, "a length above 0, mm")
+
+    # Colours ------------------------------------------------------------------------------------
+
+    def _write_color(self, color: Any) -> None:
+        self._set("color", None if color is None else pv.Color(color))
+        self._bar()
+
+    @property
+    def scalars_title(self) -> str | None:
+        """What a scalar bar says; ``None`` where there is one colour."""
+        return None if self._settings.color is not None or self._scalars is None else self._scalars.title
+
+    # Inside -------------------------------------------------------------------------------------
+
+    def _cast(self, wanted: dict[str, Any]) -> None:
+        """Change fields of the casting; a refused one leaves all as it was."""
+        try:
+            self._apply(wanted)
+        except Exception:
+            self._made({})  # brings the table back
+            raise
+
+    def _set(self, setting: str, value: Any) -> None:
+        """Change one setting of the colours; a refused value leaves all as it was."""
+        before = self._settings
+        self._settings = replace(before, **{setting: value})
+        try:
+            self._apply({})
+        except Exception:
+            self._settings = before
+            self._made({})
+            raise
+
+    def _choose(self, name: str, value: Any) -> None:
+        """Change what the casting is made from; a refused value leaves all as it was."""
+        before = self._choices
+        self._choices = {**before, name: value}
+        try:
+            self._apply({})
+        except Exception:
+            self._choices = before
+            self._made({})
+            raise
+
+    def _apply(self, wanted: dict[str, Any]) -> None:
+        """Have the mapper draw by the present settings, with some fields of the casting changed."""
+        made, colouring = self._made(wanted)
+        self._mapper.show(made, colouring)
+        self._casting = made
+        self._look()
+
+    def _show(self, scalars: Scalars | None) -> None:
+        """Hand the mapper its colours."""
+        self._scalars = scalars
+        self._cast({})
+
+    def _made(self, wanted: dict[str, Any]) -> tuple[RaycastOptions, Colouring | None]:
+        """Return casting and colours of the present settings with some fields changed, and bring the table in step."""
+        assert self._scalars is not None
+        settings, mode = self._settings, wanted.get("mode", self._casting.mode)
+        low, high = value_limits(self.thresholds)
+        own = {"values": self.values, "threshold": self.peak, "low": low, "high": high, **wanted}
+        update_table(self._table, settings, self._scalars, self._theme, None)
+        if mode != SURFACE:
+            _widen(self._table, max(int(settings.n_colors), 2))
+        alpha = opacities(self.opacity, self._table.n_values)
+        if settings.color is not None:
+            self._table.values[:, :3] = pv.Color(settings.color).int_rgb
+        self._table.values[:, 3] = 255 if mode == SURFACE else np.round(255.0 * alpha)
+        if mode == LIGHT:
+            own["transfer"] = self._transfer(alpha)
+        casting = replace(self._casting, **own)
+        if mode == LIGHT:
+            if casting.integrator in ("adaptive", "preintegrated") and len(alpha) > LARGEST_PREINTEGRATED:
+                raise ValueError(
+                    f"n_colors is {len(alpha)}; light that is integrated beforehand has {LARGEST_PREINTEGRATED} "
+                    "colours at most: give fewer, or integrator='exponential'"
+                )
+            return casting, None
+        solid = mode == SURFACE and settings.color is not None
+        return casting, make_colouring(settings, None if solid else self._scalars, self._table, self._theme)
+
+    def _transfer(self, alpha: np.ndarray) -> Transfer:
+        """Return the table as a transfer function, the one that there is if it says the same."""
+        table = np.column_stack([np.asarray(self._table.values, np.float32)[:, :3] / 255.0, alpha]).astype(np.float32)
+        clim, unit = tuple(self._table.scalar_range), self.opacity_unit_distance
+        held = self._casting.transfer
+        if held is not None and (held.clim, held.unit) == (clim, unit) and np.array_equal(held.table, table):
+            return held
+        return Transfer(table, clim, unit)
+
+    def _bar(self) -> None:
+        if self._bar_changed is not None:
+            self._bar_changed(self)
+
+
+def _widen(table: pv.LookupTable, count: int) -> None:
+    """Give a table so many entries at least, of the same colours: opacities want more than a list of a few colours."""
+    before = table.n_values
+    if before < count:
+        table.values = np.array(table.values)[np.arange(count) * before // count]
