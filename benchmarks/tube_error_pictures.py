@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import View
 from pvfiblets.engine.gbuffer import EMPTY
-from pvfiblets.engine.tubes import SOLVERS, TubeRenderer
+from pvfiblets.engine.tubes import SOLVERS, TubeRenderer, TubeStyle
 from pvfiblets.report.cameras import Lens, orbit
 from pvfiblets.report.tubes_rays import GOAL, clearance, radius_at, share, summary
 from pvfiblets.tubes import curves
@@ -194,7 +194,7 @@ def frames(ctx: Any, renderer: Any, lenses: list[Lens], count: int, seconds: flo
     for lens in lenses[:count]:
         view = View(lens.size, lens.matrix)
         begin = time.perf_counter()
-        gbuffer = renderer.render(view, Style())
+        gbuffer = renderer.render(view, TubeStyle())
         ctx.finish()
         took.append(1e3 * (time.perf_counter() - begin))
         if sum(took) > 1e3 * seconds:

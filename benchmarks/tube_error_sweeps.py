@@ -8,8 +8,8 @@ import numpy as np
 from tube_error_pictures import Picture, nearest
 
 from pvfiblets import SplineTubes
-from pvfiblets.engine import Style, View
-from pvfiblets.engine.tubes import TubeRenderer
+from pvfiblets.engine import View
+from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
 from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.report.cameras import Lens, unit
 from pvfiblets.report.tubes_rays import GOAL, clearance, share, summary
@@ -44,9 +44,9 @@ def swept(ctx: Any, way: tuple[str, str, bool, int], options: Any) -> list[dict[
             )
     probe.release()
     for key, ratio, tubes, lens in pictures(options):
-        renderer = TubeRenderer(ctx, tubes, solver=solver, iterations=iterations, min_width=0.0)
+        renderer = TubeRenderer(ctx, tubes, solver=solver, iterations=iterations)
         try:
-            picture = Picture(renderer.render(View(lens.size, lens.matrix), Style()), lens)
+            picture = Picture(renderer.render(View(lens.size, lens.matrix), TubeStyle(min_width=0.0)), lens)
         finally:
             renderer.release()
         rows.append({"sweep": key, "ratio": ratio, "way": name, **judged(tubes, picture)})

@@ -27,12 +27,11 @@ from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import frame_of, others_before, world_planes
-from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms, styled
+from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
-USUAL_DPI = 72  # of a vtkRenderWindow that nobody has changed
 
 
 class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
@@ -279,27 +278,17 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         return None
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window.
-
-        Pictures with fewer dots per inch than usual have thinner lines, as they have smaller letters.
-        """
-        enlarged = max(1.0, viewport[2] / max(1, renderer.GetSize()[0]))
-        enlarged *= min(1.0, renderer.GetRenderWindow().GetDPI() / USUAL_DPI)
-        style = Style(line_width=max(1.0, self._width * enlarged), values=self._colouring.point_source)
-        return styled(style, self._extras.values())
-
-    @property
-    def _width(self) -> float:
-        """Pixels of the window that everything takes at least."""
+        """Return the style, with widths in pixels of the framebuffer (`pixel_scale`) and with what extras want."""
         raise NotImplementedError
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         """Return the engine's renderer of a window, made anew for other data and other options."""
-        if slot.versions.get("drawn") is not self._drawn or slot.versions.get("options") != self._options:
+        options = self._options.changed()
+        if slot.versions.get("drawn") is not self._drawn or slot.versions.get("options") != options:
             slot.drop_renderer()
-            slot.versions |= {"drawn": self._drawn, "options": self._options}
+            slot.versions |= {"drawn": self._drawn, "options": options}
         if slot.renderer is None:
-            slot.renderer = self._factory(context.ctx, self._drawn, **self._options.changed(), **self._made_with)
+            slot.renderer = self._factory(context.ctx, self._drawn, **options, **self._made_with)
         return slot.renderer
 
     # Memory

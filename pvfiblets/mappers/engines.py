@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ClassVar
 
 from pvfiblets.engine.capabilities import AUTO, check_choices
 
 
 @dataclass(frozen=True)
 class Options:
-    """Choices that a renderer is made with."""
+    """Choices about drawing, which a renderer is made with, but for those that are a part of the style."""
+
+    NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
 
     def changed(self) -> dict[str, Any]:
         """Return those that are not the defaults, as keyword arguments of a renderer."""
         return {
             field.name: getattr(self, field.name)
             for field in fields(self)
-            if getattr(self, field.name) != field.default
+            if getattr(self, field.name) != field.default and field.name not in self.NOT_MADE_WITH
         }
 
 

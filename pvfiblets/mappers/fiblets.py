@@ -7,10 +7,12 @@ from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.view import Style
+from pvfiblets.engine.fiblets.style import FibletStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
+from pvfiblets.mappers.scene import pixel_scale
+from pvfiblets.mappers.shader_effects import styled
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
@@ -86,12 +88,18 @@ class FibletMapper(CutMapper):
 
     @line_width.setter
     def line_width(self, pixels: float) -> None:
-        self._line_width = Style(line_width=float(pixels)).line_width
+        self._line_width = FibletStyle(line_width=float(pixels)).line_width
         self._actor_modified()
 
-    @property
-    def _width(self) -> float:
-        return self._line_width
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> FibletStyle:
+        """Return the style, with widths in pixels of the framebuffer."""
+        scale = pixel_scale(renderer, viewport)
+        style = FibletStyle(
+            line_width=max(1.0, self._line_width * scale),
+            values=self._colouring.point_source,
+            min_width=max(1.0, scale),
+        )
+        return styled(style, self._extras.values())
 
     @property
     def options(self) -> EngineOptions:

@@ -21,6 +21,7 @@ from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import shown_by
 from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.scene import pixel_scale
 from pvfiblets.mappers.shader_effects import Draw, styled
 from pvfiblets.mappers.shading import background
 
@@ -280,10 +281,6 @@ class HaloMapper(EngineMapper):
     def _empty(self) -> bool:
         return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
 
-    @property
-    def _width(self) -> float:
-        return max(1.0, self._look.min_width)
-
     def _set_proxy(self) -> None:
         """Give VTK bounds that hold the strips too."""
         super()._set_proxy()
@@ -291,29 +288,12 @@ class HaloMapper(EngineMapper):
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
 
     def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style in pixels of the framebuffer, of which tiles and supersampling have more than the window."""
+        """Return the style, with widths in pixels of the framebuffer."""
         from pvfiblets.engine.halos import HaloStyle
 
-        look = self._look
-        enlarged = _enlarged(renderer, viewport)
-        if enlarged != 1.0:
-            look = replace(look, min_width=look.min_width * enlarged)
-        style = HaloStyle(look=look, line_width=max(1.0, look.min_width), values=self._colouring.point_source)
+        look = replace(self._look, min_width=self._look.min_width * pixel_scale(renderer, viewport))
+        style = HaloStyle(look=look, values=self._colouring.point_source)
         return styled(style, self._extras.values())
-
-
-def _enlarged(renderer: Any, viewport: tuple[int, int, int, int]) -> float:
-    """Return pixels of the whole picture per pixel of the window.
-
-    Supersampling has a framebuffer larger than the window. ``vtkWindowToImageFilter`` enlarges by tiles, each as large
-    as the window: while it does, sizes of window and renderer are those of the whole picture.
-    """
-    window = renderer.GetRenderWindow()
-    left, _, right, _ = renderer.GetViewport()
-    first, _, last, _ = window.GetTileViewport()
-    wanted = (min(right, last) - max(left, first)) * window.GetSize()[0]
-    sampled = viewport[2] / wanted if viewport[2] > wanted + 1.0 and wanted > 0.0 else 1.0
-    return float(sampled * window.GetTileScale()[0])
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:

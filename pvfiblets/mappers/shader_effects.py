@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.windows import Slot
 
 __all__ = ["Draw", "Extra", "Kept", "prepare_extras", "set_extra_uniforms", "styled"]
+
+AnyStyle = TypeVar("AnyStyle", bound="Style")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +92,7 @@ class Extra(Protocol):
         ...
 
 
-def styled(style: Style, extras: Iterable[Extra]) -> Style:
+def styled(style: AnyStyle, extras: Iterable[Extra]) -> AnyStyle:
     """Return a style with what extras want of it."""
     for extra in extras:
         if extra.style:

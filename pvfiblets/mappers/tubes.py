@@ -9,20 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.tubes import check_choices
+from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
+from pvfiblets.mappers.scene import pixel_scale
+from pvfiblets.mappers.shader_effects import styled
 
 if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 __all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
+
 
 @dataclass(frozen=True)
 class TubeOptions(Options):
@@ -37,7 +40,7 @@ class TubeOptions(Options):
     iterations : int, optional
         Steps of one search at most; the solver's own number by default.
     min_width : float, default 1.0
-        Pixels that a tube takes at least, 0 to 64, however thin and far it is.
+        Pixels of the window that a tube takes at least, 0 to 64, however thin and far it is.
     culling : {'two-phase', 'none', None}
         How segments behind others are found out.
 
@@ -52,6 +55,9 @@ class TubeOptions(Options):
     iterations: int | None = None
     min_width: float = 1.0
     culling: str | None = "two-phase"
+
+    # It is a part of the style: another one is drawn by the same renderer.
+    NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset({"min_width"})
 
     def __post_init__(self) -> None:
         """Check the values, and let None stand for no culling."""
@@ -166,6 +172,7 @@ class TubeMapper(EngineMapper):
     def _empty(self) -> bool:
         return not self._drawn.n_segments
 
-    @property
-    def _width(self) -> float:
-        return max(1.0, self.options.min_width)
+    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> TubeStyle:
+        """Return the style, with widths in pixels of the framebuffer."""
+        width = self.options.min_width * pixel_scale(renderer, viewport)
+        return styled(TubeStyle(values=self._colouring.point_source, min_width=width), self._extras.values())

@@ -213,10 +213,6 @@ class VolumeMapper(CutMapper):
         return RayHit((voxel[0], voxel[1], voxel[2]), place, float(value))
 
     @property
-    def _width(self) -> float:
-        return 1.0
-
-    @property
     def _translucent(self) -> bool:
         return self._casting.mode != "isosurface" or super()._translucent
 

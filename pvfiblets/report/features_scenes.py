@@ -191,6 +191,7 @@ def brain_subject(fiblets: Any) -> Subject:
     """Return streamlines with what can be done to them; ``fiblets`` hold a per-point array ``'height'``."""
     from pvfiblets import regions
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
+    from pvfiblets.engine.fiblets.style import FibletStyle
 
     box = np.array(fiblets.bounds, np.float64).reshape(3, 2)
     middle, sides = box.mean(axis=1), box[:, 1] - box[:, 0]
@@ -238,7 +239,7 @@ def brain_subject(fiblets: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return FibletRenderer(ctx, fiblets, **options)
 
-    return Subject("streamlines", make, Style(), fiblets.bounds, features)
+    return Subject("streamlines", make, FibletStyle(), fiblets.bounds, features)
 
 
 def by_planes(region: Any) -> dict[str, Any]:
@@ -264,7 +265,7 @@ def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Any
 
 def tube_subject(tubes: Any) -> Subject:
     """Return spline tubes with what can be done to them; ``tubes`` hold values ``'scalars'``."""
-    from pvfiblets.engine.tubes import TubeRenderer
+    from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
 
     box = np.array(tubes.bounds, np.float64).reshape(3, 2)
     diagonal, middle = float(np.linalg.norm(box[:, 1] - box[:, 0])), box.mean(axis=1)
@@ -281,7 +282,7 @@ def tube_subject(tubes: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return TubeRenderer(ctx, tubes, **options)
 
-    return Subject("spline tubes", make, Style(), tubes.bounds, features)
+    return Subject("spline tubes", make, TubeStyle(), tubes.bounds, features)
 
 
 def halo_subject(lines: Any) -> Subject:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, Style, View
+from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.halos import HaloRenderer, HaloStyle
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.halos import HaloLines, HaloPoints
@@ -249,7 +249,7 @@ def test_bad_choices_name_what_there_is(gl, drawn):
 
 def test_a_style_without_a_look(renderer, view):
     with pytest.raises(TypeError, match="a HaloStyle"):
-        renderer.render(view, Style())
+        renderer.render(view, FibletStyle())
 
 
 def test_unknown_values_name_those_there_are(renderer, view):

@@ -16,7 +16,7 @@ from ..opengl import OpenGL
 from ..passes import Passes
 from ..reporting import buffer_sizes, count_fiblets, no_counts
 from ..shaders import Programs
-from ..view import Style, View
+from ..view import View
 from .census import Census
 from .chunks import Chunk
 from .depth_peeling import LayeredBuffer, Layers
@@ -24,6 +24,7 @@ from .filter_textures import Filter
 from .memory_fit import Room
 from .pipelines import CONSTANTS, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
+from .style import FibletStyle
 from .uniform_blocks import SharedBlocks, decoding_features
 from .upload import release_chunks, upload_fitting
 from .visibility import Visibility
@@ -106,8 +107,8 @@ class FibletRenderer:
         self._occlusion: Occlusion | None = None
         self._pipeline: Pipeline | None = None
         self._target: GBuffer | None = None
-        self._drawn: tuple[View, Style] | None = None
-        self._last: tuple[View, Style] | None = None
+        self._drawn: tuple[View, FibletStyle] | None = None
+        self._last: tuple[View, FibletStyle] | None = None
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
         self._generation = 0
@@ -137,14 +138,14 @@ class FibletRenderer:
             raise
 
     def render(
-        self, view: View, style: Style | None = None, *, outside: moderngl.Texture | None = None
+        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
     ) -> GBuffer:
         """Draw, unless the last picture was of the same view and style.
 
         Parameters
         ----------
         view : View
-        style : Style, optional
+        style : FibletStyle, optional
         outside : moderngl.Texture, optional
             Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. What they hide may be
             missing from the picture, which therefore serves this one call only: the next one draws anew. Two-phase
@@ -160,7 +161,7 @@ class FibletRenderer:
         EngineError
             After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
         """
-        style = style or Style()
+        style = style or FibletStyle()
         pipeline = self._alive()[0]
         if self._target is not None and self._drawn == (view, style):
             return self._target
@@ -193,13 +194,13 @@ class FibletRenderer:
         self._last = (view, style)
         return self._target
 
-    def render_layers(self, view: View, style: Style | None = None, count: int = 4) -> LayeredBuffer:
+    def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
         """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
 
         Parameters
         ----------
         view : View
-        style : Style, optional
+        style : FibletStyle, optional
         count : int
             Layers, the picture of :meth:`render` included.
 
@@ -215,7 +216,7 @@ class FibletRenderer:
         ValueError
             If the number of layers is not from 2 to 64.
         """
-        style = style or Style()
+        style = style or FibletStyle()
         nearest = self.render(view, style)
         if self._layers is None:
             self._layers = Layers(self._ctx, self._gl, self._programs, self._make_stage)
@@ -248,7 +249,7 @@ class FibletRenderer:
             self._limits,
         )
 
-    def _job(self, view: View, style: Style, target: GBuffer) -> DrawRequest:
+    def _job(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
         """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
         _, values, kept, shared = self._alive()
         shared.bind()
@@ -274,7 +275,7 @@ class FibletRenderer:
             across=("CROSS_LINE",) if style.relief is not None else (),
         )
 
-    def needs_outside(self, view: View, style: Style) -> bool:
+    def needs_outside(self, view: View, style: FibletStyle) -> bool:
         """Say whether :meth:`render` would gain from the depth of other things in the scene.
 
         Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
@@ -288,7 +289,7 @@ class FibletRenderer:
         Parameters
         ----------
         values : str or VolumeSource
-            As in :class:`Style`. Arc length and curvature are measured on the GPU, once.
+            As in :class:`FibletStyle`. Arc length and curvature are measured on the GPU, once.
 
         Returns
         -------

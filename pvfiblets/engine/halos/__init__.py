@@ -10,7 +10,6 @@ pass over the picture finds all else.
 
 from __future__ import annotations
 
-from .renderer import HaloRenderer
-from .style import HaloStyle
+from .renderer import HaloRenderer, HaloStyle
 
 __all__ = ["HaloRenderer", "HaloStyle"]

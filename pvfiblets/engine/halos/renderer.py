@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -16,20 +17,48 @@ from ..opengl import OpenGL
 from ..passes import Passes
 from ..shaders import Programs
 from ..vertex_pulling import PulledShapes
-from ..view import View
-from .style import HaloStyle
+from ..view import Style, View
 from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import UNITS, Vertices
 
 if TYPE_CHECKING:
-    from ..view import Style
+    from ...halos.style import Look
 
-__all__ = ["CULLING", "HaloRenderer"]
+__all__ = ["CULLING", "HaloRenderer", "HaloStyle"]
 
 CULLING = ("two-phase", None)
 """How what others hide may be found out."""
 
 HITS_UNIT, DEPTHS_UNIT = 10, 11
+
+
+@dataclass(frozen=True)
+class HaloStyle(Style):
+    """How lines or points with halos become pixels.
+
+    Parameters
+    ----------
+    values : str, optional
+        Name of numbers or colours of the points, to write beside each pixel.
+    look : Look
+    """
+
+    look: Look = field(kw_only=True)
+
+    @property
+    def half_width(self) -> float:
+        """Pixels that a line reaches to either side of its axis at least."""
+        return self.look.min_width / 2.0
+
+    @property
+    def reach(self) -> float:
+        """Millimetres from the axis to the edge of a strip."""
+        return 0.5 * self.look.strip_width
+
+    @property
+    def relief(self) -> str:
+        """How much of a pixel is line."""
+        return "ink"
 
 
 class HaloRenderer:

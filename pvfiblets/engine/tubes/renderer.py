@@ -15,10 +15,10 @@ from ..lattice import TOP
 from ..opengl import OpenGL
 from ..passes import Passes
 from ..shaders import Programs
-from ..view import Style, View
+from ..view import View
 from .eye_inside import Inside
 from .nodes import UNITS, Nodes
-from .options import AUTO, SOLVERS, check_choices
+from .options import AUTO, SOLVERS, TubeStyle, check_choices
 from .proxy_geometry import Silhouettes
 from .uniform_blocks import CONSTANTS, TubeBlocks
 
@@ -48,8 +48,6 @@ class TubeRenderer:
         How roots are found, of :data:`.SOLVERS`; ``'auto'`` takes the fastest that is exact.
     iterations : int, optional
         Steps of one search for a root; the solver's own number by default.
-    min_width : float
-        Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
     culling : {'two-phase', None}
         How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
         it (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
@@ -87,17 +85,16 @@ class TubeRenderer:
         silhouettes: str = AUTO,
         solver: str = AUTO,
         iterations: int | None = None,
-        min_width: float = 1.0,
         culling: str | None = "two-phase",
         middle: float = MIDDLE,
         discard: bool = False,
     ) -> None:
-        check_choices(silhouettes, solver, iterations, min_width, culling)
+        check_choices(silhouettes, solver, iterations, culling=culling)
         self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
         self.solver = "illinois" if solver == AUTO else solver
         self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
         self._ctx, self._tubes = ctx, tubes
-        self._min_width, self._middle, self._discard = float(min_width), float(middle), discard
+        self._middle, self._discard = float(middle), discard
         self._gl = OpenGL(ctx)
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, CONSTANTS)
@@ -106,7 +103,7 @@ class TubeRenderer:
         self._silhouettes: Silhouettes | None = None
         self._visibility: Listing | None = None
         self._target: HitTarget | None = None
-        self._drawn: tuple[View, Style] | None = None
+        self._drawn: tuple[View, TubeStyle] | None = None
         self._features: list[str] = []
         self._generation = 0
         try:
@@ -126,7 +123,7 @@ class TubeRenderer:
     def render(
         self,
         view: View,
-        style: Style | None = None,
+        style: TubeStyle | None = None,
         *,
         outside: moderngl.Texture | None = None,  # noqa: ARG002  as other renderers have it
     ) -> GBuffer:
@@ -136,8 +133,7 @@ class TubeRenderer:
         ----------
         view : View
             Its region is not looked at.
-        style : Style, optional
-            Only ``values`` is looked at: the name of an attribute of the nodes.
+        style : TubeStyle, optional
         outside : moderngl.Texture, optional
             Not looked at.
 
@@ -152,7 +148,7 @@ class TubeRenderer:
         EngineError
             After :meth:`release`, if the picture is too large, or if ``style.values`` names no attribute.
         """
-        style = style or Style()
+        style = style or TubeStyle()
         nodes, blocks, silhouettes = self._alive()
         if self._target is not None and self._drawn == (view, style):
             return self._target.buffer
@@ -161,7 +157,7 @@ class TubeRenderer:
         reads = nodes.show(shown)
         # One of our framebuffers must not stay bound when it is released.
         with self._gl.framebuffers_kept(), self._programs.noting() as features:
-            target = self._draw(view, reads, nodes, blocks, silhouettes)
+            target = self._draw(view, style, reads, nodes, blocks, silhouettes)
         self._features = sorted(features)
         self._generation += 1
         target.buffer.generation = self._generation
@@ -169,7 +165,13 @@ class TubeRenderer:
         return target.buffer
 
     def _draw(
-        self, view: View, reads: str | None, nodes: Nodes, blocks: TubeBlocks, silhouettes: Silhouettes
+        self,
+        view: View,
+        style: TubeStyle,
+        reads: str | None,
+        nodes: Nodes,
+        blocks: TubeBlocks,
+        silhouettes: Silhouettes,
     ) -> HitTarget:
         """Draw all, whatever was drawn last."""
         coloured = reads == "TUBE_COLOURS"
@@ -183,11 +185,11 @@ class TubeRenderer:
             view,
             reach=self._inside.reach,
             middle=self._middle,
-            min_width=self._min_width,
+            min_width=style.min_width,
             iterations=self.iterations,
             n_segments=self._tubes.n_segments,
         )
-        hollow = self._inside.touched(view, self._min_width)
+        hollow = self._inside.touched(view, style.min_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
         rounds = self._rounds(common, cut=cut, hollow=hollow)
         self._passes.begin()
@@ -260,7 +262,7 @@ class TubeRenderer:
         for sampler, unit in UNITS.items():
             self._gl.set_sampler(program, sampler, unit)
 
-    def _attribute(self, style: Style) -> NodeValues | None:
+    def _attribute(self, style: TubeStyle) -> NodeValues | None:
         if style.values is None:
             return None
         known = self._tubes.values
@@ -268,7 +270,7 @@ class TubeRenderer:
             return known[style.values]
         raise EngineError(f"no values {style.values!r} at the nodes of these spline tubes; there are {sorted(known)}")
 
-    def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
+    def needs_outside(self, view: View, style: TubeStyle) -> bool:  # noqa: ARG002
         """Say that depths of other things would gain nothing."""
         return False
 

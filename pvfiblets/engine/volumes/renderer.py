@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -11,10 +12,9 @@ from ..gbuffer import GBuffer
 from ..opengl import OpenGL
 from ..passes import Passes
 from ..shaders import BLOCKS, Programs
-from ..view import View
+from ..view import Style, View
 from .nodes import NodeList, takes_means
 from .ray_parts import RayCuts
-from .style import VolumeStyle
 from .tables import Tables
 from .targets import Picture
 from .textures import VolumeTexture
@@ -23,9 +23,8 @@ from .uniform_blocks import CONSTANTS, RayBlock
 if TYPE_CHECKING:
     from ...volumes.options import RaycastOptions
     from ...volumes.volume import RaycastVolume
-    from ..view import Style
 
-__all__ = ["VolumeRenderer"]
+__all__ = ["VolumeRenderer", "VolumeStyle"]
 
 VOXELS_UNIT, OUTSIDE_UNIT, COARSE_UNIT = 10, 14, 16
 
@@ -46,6 +45,25 @@ _OF_INTEGRATOR = {
     "romberg": ["VOLUME_ROMBERG"],
     "rk4": ["VOLUME_RK4"],
 }
+
+
+@dataclass(frozen=True)
+class VolumeStyle(Style):
+    """How a volume becomes pixels.
+
+    Parameters
+    ----------
+    values : str, optional
+        Not looked at: the value of a voxel stands beside each pixel.
+    casting : RaycastOptions
+    """
+
+    casting: RaycastOptions = field(kw_only=True)
+
+    @property
+    def relief(self) -> str | None:
+        """Normals of surfaces."""
+        return "normal" if self.casting.mode == "isosurface" else None
 
 
 class VolumeRenderer:
