@@ -150,7 +150,7 @@ def test_culling_loses_no_pixel(gl, really, fabricate, random_lines, camera, cul
             whole = draw(gl, fiblets, view, style, pipeline=pipeline, culling=None)
             target = renderer.render(view, style)
             if culling == "coverage":  # may lose some for a picture; of the same view none
-                renderer._drawn = None
+                renderer._made = None
                 target = renderer.render(view, style)
             assert_same(read(target), whole)
     renderer.release()

@@ -209,7 +209,7 @@ def test_ties_go_to_the_first_whatever_was_seen(gl, fabricate, random_lines, cam
     marks = np.zeros(seen.size[0] * seen.size[1], np.uint8)
     marks[n : 2 * n] = 1  # as if the copies had been seen and the lines not
     seen.texture.write(marks.tobytes())
-    renderer._drawn = None
+    renderer._made = None
     assert_same(read(renderer.render(view)), first)
     renderer.release()
 

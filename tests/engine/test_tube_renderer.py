@@ -106,7 +106,7 @@ def test_a_scissor_or_culling_left_on_changes_nothing(gl, renderer, view):
         gl.enable_direct(0x0B44)  # culling
         gl.depth_func = "!="
         gl.wireframe = True
-        renderer._drawn = None
+        renderer._made = None
         again = read_splines(renderer.render(view))
         gl.wireframe = False
         gl.disable_direct(0x0B44)
@@ -228,7 +228,7 @@ def test_discarding_shows_nothing_and_takes_silhouettes_alone(gl, tubes, view):
 @pytest.fixture
 def few_are_many(monkeypatch):
     """Have culling begin where tests do not take long."""
-    monkeypatch.setattr("pvfiblets.engine.tubes.renderer.LEAST_SEGMENTS", 3000)
+    monkeypatch.setattr("pvfiblets.engine.hit_target.LEAST_SEGMENTS", 3000)
 
 
 @pytest.mark.usefixtures("few_are_many")

@@ -28,11 +28,11 @@ class Both:
         """Draw one picture with both; they must be the same."""
         style = style or FibletStyle()
         picture, expected = read(self.culled.render(view, style)), read(self.whole.render(view, style))
-        assert not differences(picture, expected), f"picture {self.culled._target.generation}"
+        assert not differences(picture, expected), f"picture {self.culled._buffer.generation}"
         assert (owning(self.culled) == owning(self.whole)).all()
         wanted, left = planned(self.whole), planned(self.culled)
         assert not (left & ~wanted).any()
-        if self.culled._target.generation == 1:
+        if self.culled._buffer.generation == 1:
             return picture  # nothing was seen before, and nothing can be hidden
         self.tested += int(planned(self.whole, seen=False).sum())
         self.hidden += int((wanted & ~left).sum())
