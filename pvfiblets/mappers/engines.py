@@ -14,6 +14,15 @@ class Options:
 
     NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
 
+    def __post_init__(self) -> None:
+        """Let None stand for no culling, and check the values."""
+        if getattr(self, "culling", None) == "none":
+            object.__setattr__(self, "culling", None)
+        self._check()
+
+    def _check(self) -> None:
+        """Raise where a value is unknown."""
+
     def changed(self) -> dict[str, Any]:
         """Return those that are not the defaults, as keyword arguments of a renderer."""
         return {
@@ -47,11 +56,8 @@ class EngineOptions(Options):
     culling: str | None = "two-phase"
     fit: str | None = None
 
-    def __post_init__(self) -> None:
-        """Check the values, and let None stand for no culling."""
+    def _check(self) -> None:
         check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
-        if self.culling == "none":
-            object.__setattr__(self, "culling", None)
 
 
 def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:

@@ -13,20 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import thickened
-from pvfiblets.mappers.picking import shown_by
+from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import pixel_scale
-from pvfiblets.mappers.shader_effects import Draw, styled
+from pvfiblets.mappers.shader_effects import Draw, Piece
 from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.view import Style
+    from pvfiblets.engine.halos import HaloStyle
     from pvfiblets.halos import HaloPoints, Look
 
     Drawn = HaloLines | HaloPoints
@@ -56,10 +54,7 @@ class HaloOptions(Options):
 
     culling: str | None = "two-phase"
 
-    def __post_init__(self) -> None:
-        """Check the value, and let None stand for no culling."""
-        if self.culling == "none":
-            object.__setattr__(self, "culling", None)
+    def _check(self) -> None:
         if self.culling not in (None, "two-phase"):
             raise ValueError(f"culling is {self.culling!r}; use 'two-phase' or None")
 
@@ -78,7 +73,7 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Strips:
+class Strips(Piece):
     """An `pvfiblets.mappers.shader_effects.Extra` by which the halos in the G-buffer have a colour.
 
     Parameters
@@ -93,6 +88,7 @@ class Strips:
     """
 
     color: Colour | None = WHITE
+    features = frozenset({"strip"})
 
     def __post_init__(self) -> None:
         if self.color is None:
@@ -101,20 +97,6 @@ class Strips:
         if len(channels) != 3 or not all(0.0 <= channel <= 1.0 for channel in channels):
             raise ValueError(f"color of halos is {self.color!r}; expected 3 numbers between 0 and 1")
         object.__setattr__(self, "color", channels)
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"strip"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """Nothing of the engine."""
-        return {}
-
-    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all extras
-        """Keep nothing: the texture is the G-buffer's."""
-        return
 
     def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
         """Return the engine's texture."""
@@ -127,7 +109,7 @@ class Strips:
         program.SetUniform3f("fibletStripUpper", upper)
 
 
-class HaloMapper(EngineMapper):
+class HaloMapper(EngineMapper[HaloOptions]):
     """Mapper that draws `HaloLines` or `HaloPoints` through VTK's own passes, clipping planes and selection.
 
     Parameters
@@ -220,17 +202,6 @@ class HaloMapper(EngineMapper):
     def halo_color(self, color: Colour | None) -> None:
         self.set_extra("strips", Strips(color))
 
-    @property
-    def options(self) -> HaloOptions:
-        """What does not show; set another `HaloOptions` to change it from the next frame on."""
-        options: HaloOptions = self._options
-        return options
-
-    @options.setter
-    def options(self, options: HaloOptions) -> None:
-        self._options = options
-        self._actor_modified()
-
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | int | None:
@@ -251,31 +222,12 @@ class HaloMapper(EngineMapper):
             Of lines: the line, and the place along it: the index of the point before plus the fraction of the segment.
             Of points: the point. None where there is none. Other actors in front are not looked at.
         """
-        shown = shown_by(self, renderer)
-        if shown is None or tolerance < 0:
+        found = nearest_pixel(self, (x, y), ("owner", "ids", "position"), renderer=renderer, tolerance=tolerance)
+        if found is None:
             return None
-        column, row = (int(place) for place in np.floor(shown.to_viewport((x, y))))
-        reach = int(tolerance * shown.enlarged.max())
-        width, height = shown.drawn.viewport[2:]
-        left, lower = max(column - reach, 0), max(row - reach, 0)
-        area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
-        if min(area[2:]) < 1:
-            return None
-        shown.context.window.MakeCurrent()
-        with shown.context.foreign():
-            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
-            ctx = shown.context.ctx
-            depth, owner = (_read(ctx, texture, area, "u4")[..., 0] for texture in (buffer.depth, buffer.owner))
-            ids, position = _read(ctx, buffer.ids, area, "u4"), _read(ctx, buffer.position, area, "f4")
-        rows, columns = np.nonzero((depth != EMPTY) & (owner != EMPTY))
-        distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
-        if not len(rows) or distance.min() > reach * reach:
-            return None
-        best = np.lexsort((depth[rows, columns], distance))[0]
-        at = rows[best], columns[best]
         if isinstance(self._drawn, HaloLines):
-            return int(ids[(*at, 0)]), float(position[(*at, 0)])
-        return int(owner[at])
+            return int(found.texels["ids"][0]), float(found.texels["position"][0])
+        return int(found.texels["owner"][0])
 
     @property
     def _empty(self) -> bool:
@@ -287,13 +239,10 @@ class HaloMapper(EngineMapper):
         if not self._empty:
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
 
-    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style, with widths in pixels of the framebuffer."""
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> HaloStyle:  # noqa: ARG002
         from pvfiblets.engine.halos import HaloStyle
 
-        look = replace(self._look, min_width=self._look.min_width * pixel_scale(renderer, viewport))
-        style = HaloStyle(look=look, values=self._colouring.point_source)
-        return styled(style, self._extras.values())
+        return HaloStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:
@@ -305,13 +254,3 @@ def _behind(draw: Draw) -> tuple[Colour, Colour]:
     ends = [(np.clip(end, low, high) - low) / max(high - low, 1e-9) for end in (first, last)]
     begin, end = (tuple(float(part) for part in lower + share * (upper - lower)) for share in ends)
     return (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])
-
-
-def _read(ctx: Any, texture: Any, area: tuple[int, int, int, int], dtype: str) -> Any:
-    """Read a rectangle of a texture as (height, width, components)."""
-    framebuffer = ctx.framebuffer([texture])
-    try:
-        data = framebuffer.read(viewport=area, components=texture.components, dtype=dtype, alignment=1)
-    finally:
-        framebuffer.release()
-    return np.frombuffer(data, dtype=dtype).reshape(area[3], area[2], -1)

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.mappers.line_tubes import normals_to_view
 from pvfiblets.mappers.scene import pixel_scale
-from pvfiblets.mappers.shader_effects import Draw
+from pvfiblets.mappers.shader_effects import Draw, Piece
 
 if TYPE_CHECKING:
     from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
@@ -32,25 +32,7 @@ MAX_OUTLINE = 16.0
 """Pixels of the window; an outline's cost grows with the square of its width."""
 
 
-class _Piece:
-    """What extras have in common: a piece of the resolve, and no wishes to the engine."""
-
-    features: ClassVar[frozenset[str]]
-    style: ClassVar[Mapping[str, Any]] = {}
-
-    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all extras
-        """Keep nothing on the GPU."""
-        return None
-
-    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
-        """Have no textures."""
-        return {}
-
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Have no uniforms."""
-
-
-class Illuminated(_Piece):
+class Illuminated(Piece):
     """Every light finds the normal of a line that reflects most of it (Zöckler 1996, Mallo 2005), see `resolve`."""
 
     features = frozenset({"illuminated"})
@@ -67,7 +49,7 @@ class Illuminated(_Piece):
 
 
 @dataclass(frozen=True)
-class Ink(_Piece):
+class Ink(Piece):
     """One colour for all lines whatever they are coloured by, without light.
 
     Parameters
@@ -88,7 +70,7 @@ class Ink(_Piece):
 
 
 @dataclass(frozen=True)
-class AmbientOcclusion(_Piece):
+class AmbientOcclusion(Piece):
     """Lines and surfaces are darker where others stand over them.
 
     Parameters
@@ -147,7 +129,7 @@ class AmbientOcclusion(_Piece):
 
 
 @dataclass(frozen=True)
-class DepthCue(_Piece):
+class DepthCue(Piece):
     """Lines fade towards one colour with their distance from the viewer's plane.
 
     Parameters
@@ -191,7 +173,7 @@ class DepthCue(_Piece):
 
 
 @dataclass(frozen=True)
-class Halos(_Piece):
+class Halos(Piece):
     """Depth-dependent halos: a line cuts a gap into the lines behind it, the wider the farther they are behind.
 
     Everts et al. 2009. A halo is there where no line is, too: it hides what is behind it, and has a depth in the scene.
@@ -258,7 +240,7 @@ class Halos(_Piece):
 
 
 @dataclass(frozen=True, eq=False)
-class Silhouette(_Piece):
+class Silhouette(Piece):
     """An outline around the pixels that show chosen streamlines.
 
     Parameters
