@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from orbit import context
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.halos_pictures import darkness_of, helices, orbit
 
@@ -77,7 +77,7 @@ def make_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
     return halo_set(name, seed)
 
 
-def run(way: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
+def run(way: str, row: Row, drawn: HaloLines | HaloPoints, look: HaloStyle, options: Any) -> dict[str, Any]:
     """Return times and sizes of one way.
 
     Raises
@@ -167,7 +167,7 @@ class _Window:
 class _VTK(_Window):
     """VTK's lines and points."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, camera: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: HaloStyle, options: Any, camera: Camera) -> None:
         super().__init__(row, options)
         common = {"color": "black", "lighting": False, "show_scalar_bar": False}
         if isinstance(drawn, HaloLines):
@@ -187,7 +187,7 @@ class _VTK(_Window):
 class _Plotter(_Window):
     """Halos by this program in a PyVista scene."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, __: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: HaloStyle, options: Any, __: Camera) -> None:
         super().__init__(row, options)
         lines = isinstance(drawn, HaloLines)
         name, widths = ("add_halo_lines", ("line_width", "strip_width")) if lines else (
@@ -208,13 +208,13 @@ class _Plotter(_Window):
 class _Engine:
     """Halos by this program without VTK."""
 
-    def __init__(self, way: str, row: Row, drawn: Any, look: Look, _: Any, __: Camera) -> None:
-        from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+    def __init__(self, way: str, row: Row, drawn: Any, look: HaloStyle, _: Any, __: Camera) -> None:
+        from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 
         if row.anaglyph:
             raise UnmeasuredError("stereo is VTK's")
         self.ctx = context()
-        self.style = HaloStyle(look=look)
+        self.style = HaloDrawStyle(look=look)
         self.renderer = HaloRenderer(self.ctx, drawn, culling=None if way == "engine-unculled" else "two-phase")
 
     def draw(self, camera: Camera) -> None:

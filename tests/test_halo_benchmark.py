@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine.halos import HaloRenderer
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.report.cameras import Camera
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -117,7 +117,7 @@ def across(bench, size=(64, 48)):
     camera = Camera(size, np.array([0.0, -100.0, 0.0]), np.zeros(3), 50.0, 150.0)
     k = camera.pixels / 100.0
     line = HaloLines([[-80.0, 0.0, 0.0], [80.0, 0.0, 0.0]], [0, 2])
-    return line, Look(16.0 / k, 24.0 / k, 1.0, n_tapered=0, smooth=False, min_width=0.0), camera
+    return line, HaloStyle(16.0 / k, 24.0 / k, 1.0, n_tapered=0, smooth=False, min_width=0.0), camera
 
 
 @pytest.mark.parametrize("times", [1, 2, 3])
@@ -133,7 +133,7 @@ def test_a_picture_is_as_dark_as_its_line_is_wide(gl, bench, times):
 
 def test_the_least_width_is_in_pixels_of_the_picture(gl, bench):
     line, look, camera = across(bench)
-    thin = Look(1e-3, 1.0, 1.0, n_tapered=0, smooth=False, min_width=4.0)
+    thin = HaloStyle(1e-3, 1.0, 1.0, n_tapered=0, smooth=False, min_width=4.0)
     renderer = HaloRenderer(gl, line)
     for times in (1, 4):
         assert bench.errors.picture(renderer, camera, thin, times).sum() == 64 * 4

@@ -24,8 +24,8 @@ from pvfiblets.mappers.shader_effects import Draw, Piece
 from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.halos import HaloStyle
-    from pvfiblets.halos import HaloPoints, Look
+    from pvfiblets.engine.halos import HaloDrawStyle
+    from pvfiblets.halos import HaloPoints, HaloStyle
 
     Drawn = HaloLines | HaloPoints
 
@@ -116,7 +116,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     ----------
     drawn : HaloLines or HaloPoints
         What to draw.
-    look : Look
+    look : HaloStyle
         Widths and depths, and what else shows.
     colouring : Colouring, optional
         Of lines and points; black when left out.
@@ -140,7 +140,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     def __init__(
         self,
         drawn: Drawn,
-        look: Look,
+        look: HaloStyle,
         *,
         colouring: Colouring | None = None,
         halo_color: Colour | None = WHITE,
@@ -162,7 +162,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
         drawn: Drawn = self._drawn
         return drawn
 
-    def set_drawn(self, drawn: Drawn, look: Look | None = None) -> None:
+    def set_drawn(self, drawn: Drawn, look: HaloStyle | None = None) -> None:
         """Draw something else from the next frame on, and differently where a look comes with it.
 
         Raises
@@ -180,12 +180,12 @@ class HaloMapper(EngineMapper[HaloOptions]):
         self._actor_modified()
 
     @property
-    def look(self) -> Look:
-        """Widths and depths, and what else shows; set another `Look` to change them from the next frame on."""
+    def look(self) -> HaloStyle:
+        """Widths and depths, and what else shows; set another `HaloStyle` to change them from the next frame on."""
         return self._look
 
     @look.setter
-    def look(self, look: Look) -> None:
+    def look(self, look: HaloStyle) -> None:
         wider = look.strip_width != self._look.strip_width
         self._look = look
         if wider:
@@ -239,10 +239,10 @@ class HaloMapper(EngineMapper[HaloOptions]):
         if not self._empty:
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
 
-    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> HaloStyle:  # noqa: ARG002
-        from pvfiblets.engine.halos import HaloStyle
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> HaloDrawStyle:  # noqa: ARG002
+        from pvfiblets.engine.halos import HaloDrawStyle
 
-        return HaloStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
+        return HaloDrawStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:

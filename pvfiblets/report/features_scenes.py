@@ -287,12 +287,12 @@ def tube_subject(tubes: Any) -> Subject:
 
 def halo_subject(lines: Any) -> Subject:
     """Return lines with halos, and what can be done to them; ``lines`` hold values ``'filter'``."""
-    from pvfiblets.engine.halos import HaloRenderer, HaloStyle
-    from pvfiblets.halos import Look
+    from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
+    from pvfiblets.halos import HaloStyle
 
     box = np.array(lines.bounds, np.float64).reshape(3, 2)
     diagonal, middle = float(np.linalg.norm(box[:, 1] - box[:, 0])), box.mean(axis=1)
-    look = Look(diagonal / 500.0, diagonal / 100.0, diagonal / 40.0, n_tapered=0)
+    look = HaloStyle(diagonal / 500.0, diagonal / 100.0, diagonal / 40.0, n_tapered=0)
     low, high = np.quantile(lines.values["filter"], (0.25, 0.75)).tolist()
 
     def looking(**changes: Any) -> dict[str, Any]:
@@ -312,7 +312,7 @@ def halo_subject(lines: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return HaloRenderer(ctx, lines, **options)
 
-    return Subject("lines with halos", make, HaloStyle(look=look), lines.bounds, features)
+    return Subject("lines with halos", make, HaloDrawStyle(look=look), lines.bounds, features)
 
 
 def volume_subject(volume: Any) -> Subject:

@@ -12,10 +12,10 @@ from pvfiblets import compress, regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.engine.shaders import Programs, switched_on
 from pvfiblets.engine.tubes import TubeRenderer
-from pvfiblets.halos import Look
+from pvfiblets.halos import HaloStyle
 from pvfiblets.halos.build import as_halo_lines
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.tubes import as_spline_tubes
@@ -142,7 +142,7 @@ def test_of_lines_with_halos(gl, camera, ran, cue):
     """A list of what shows narrows halos only where they are: without a cue the switch is off there, too."""
     lines, _ = as_halo_lines(brain_streamlines(300, step=1.0, seed=2))
     renderer = HaloRenderer(gl, lines)
-    style = HaloStyle(look=Look(line_width=0.4, strip_width=2.0, max_displacement=4.0, width_cue=cue))
+    style = HaloDrawStyle(look=HaloStyle(line_width=0.4, strip_width=2.0, max_displacement=4.0, width_cue=cue))
 
     def draw(turn):
         renderer.render(View(SIZE, camera(SIZE, eye=(3.0 * turn, -260, 60))), style)

@@ -10,7 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.engine.effects.halos import WIDEST
-from pvfiblets.halos import HaloLines, Look
+from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.mappers import FibletMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper
@@ -55,7 +55,7 @@ def tubes(width=WIDTH):
 
 
 def halos(width=WIDTH):
-    look = Look(line_width=THIN, strip_width=2 * THIN, max_displacement=1.0, min_width=width, smooth=False, n_tapered=0)
+    look = HaloStyle(THIN, 2 * THIN, 1.0, min_width=width, smooth=False, n_tapered=0)
     return HaloMapper(HaloLines(ENDS, [0, 3]), look, colouring=WHITE, halo_color=(1.0, 1.0, 1.0))
 
 

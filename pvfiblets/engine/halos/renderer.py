@@ -17,26 +17,26 @@ from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import UNITS, Vertices
 
 if TYPE_CHECKING:
-    from ...halos.style import Look
+    from ...halos.style import HaloStyle
     from ..culling.listing import Listing
 
-__all__ = ["HaloRenderer", "HaloStyle"]
+__all__ = ["HaloDrawStyle", "HaloRenderer"]
 
 HITS_UNIT, DEPTHS_UNIT = 10, 11
 
 
 @dataclass(frozen=True)
-class HaloStyle(Style):
+class HaloDrawStyle(Style):
     """How lines or points with halos become pixels.
 
     Parameters
     ----------
     values : str, optional
         Name of numbers or colours of the points, to write beside each pixel.
-    look : Look
+    look : HaloStyle
     """
 
-    look: Look = field(kw_only=True)
+    look: HaloStyle = field(kw_only=True)
 
     @property
     def half_width(self) -> float:
@@ -54,7 +54,7 @@ class HaloStyle(Style):
         return "ink"
 
 
-class HaloRenderer(HitDrawable[HaloStyle]):
+class HaloRenderer(HitDrawable[HaloDrawStyle]):
     """Draws one set of lines or points with halos; a view's region is not looked at.
 
     In its `GBuffer` ``owner`` holds segments, each by its first point, or points, and nothing where a halo shows;
@@ -89,7 +89,7 @@ class HaloRenderer(HitDrawable[HaloStyle]):
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
     """
 
-    STYLE = HaloStyle
+    STYLE = HaloDrawStyle
     SAMPLERS = UNITS
     RELIEF = "ink"
 
@@ -116,7 +116,7 @@ class HaloRenderer(HitDrawable[HaloStyle]):
         """Items of a list, of several quads each."""
         return -(-self._n >> ITEM_SHIFT)
 
-    def _draw(self, view: View, style: HaloStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
+    def _draw(self, view: View, style: HaloDrawStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         look, vertices = style.look, self._vertices
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
