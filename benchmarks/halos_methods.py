@@ -14,7 +14,7 @@ import numpy as np
 from common import Window, data_bytes, percentiles
 
 from pvfiblets.engine.standalone import bare_context
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.halos_pictures import darkness_of, helices, orbit
 
@@ -75,7 +75,7 @@ def make_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
     return halo_set(name, seed)
 
 
-def run(method: str, row: Row, drawn: HaloLines | HaloPoints, look: Look, options: Any) -> dict[str, Any]:
+def run(method: str, row: Row, drawn: HaloLines | HaloPoints, look: HaloStyle, options: Any) -> dict[str, Any]:
     """Return times and sizes of one method.
 
     Raises
@@ -150,7 +150,7 @@ class _Window(Window):
 class _VTK(_Window):
     """VTK's lines and points."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, camera: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: HaloStyle, options: Any, camera: Camera) -> None:
         super().__init__(row, options)
         common = {"color": "black", "lighting": False, "show_scalar_bar": False}
         if isinstance(drawn, HaloLines):
@@ -170,7 +170,7 @@ class _VTK(_Window):
 class _Plotter(_Window):
     """Halos by this program in a PyVista scene."""
 
-    def __init__(self, _: str, row: Row, drawn: Any, look: Look, options: Any, __: Camera) -> None:
+    def __init__(self, _: str, row: Row, drawn: Any, look: HaloStyle, options: Any, __: Camera) -> None:
         super().__init__(row, options)
         lines = isinstance(drawn, HaloLines)
         name, widths = ("add_halo_lines", ("line_width", "strip_width")) if lines else (
@@ -188,13 +188,13 @@ class _Plotter(_Window):
 class _Engine:
     """Halos by this program without VTK."""
 
-    def __init__(self, method: str, row: Row, drawn: Any, look: Look, _: Any, __: Camera) -> None:
-        from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+    def __init__(self, method: str, row: Row, drawn: Any, look: HaloStyle, _: Any, __: Camera) -> None:
+        from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 
         if row.anaglyph:
             raise AbsentError("stereo is VTK's")
         self.ctx = bare_context()
-        self.style = HaloStyle(look=look)
+        self.style = HaloDrawStyle(look=look)
         self.renderer = HaloRenderer(self.ctx, drawn, culling=None if method == "engine-unculled" else "two-phase")
 
     def draw(self, camera: Camera) -> None:

@@ -204,12 +204,14 @@ class _Engine:
     """Spline tubes by this program without VTK."""
 
     def __init__(self, method: str, tubes: Any, options: Any) -> None:
-        from pvfiblets.engine.tubes import TubeRenderer
+        from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
 
         self.ctx = bare_context()
         self.made: list[Any] = []
         more = {"engine-exact": {"min_width": 0.0}, "engine-unculled": {"culling": None}}.get(method, {})
-        self.make = functools.partial(TubeRenderer, self.ctx, tubes, **{**_choices(options), **more})
+        choices = _choices(options) | more
+        self.style = TubeStyle(min_width=choices.pop("min_width", 1.0))
+        self.make = functools.partial(TubeRenderer, self.ctx, tubes, **choices)
         self.renderer = self._add()
 
     def _add(self, **more: Any) -> Any:
@@ -220,9 +222,9 @@ class _Engine:
         self._draw(self.renderer, camera)
 
     def _draw(self, renderer: Any, camera: Camera) -> None:
-        from pvfiblets.engine import Style, View
+        from pvfiblets.engine import View
 
-        self.gbuffer = renderer.render(View(camera.size, camera.model_view_projection), Style())
+        self.gbuffer = renderer.render(View(camera.size, camera.model_view_projection), self.style)
         self.ctx.finish()
 
     def facts(self, _: list[Camera]) -> dict[str, Any]:

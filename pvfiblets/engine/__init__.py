@@ -1,7 +1,7 @@
 """Everything that speaks OpenGL: fiblets in, a G-buffer out, on a moderngl context. No VTK, no PyVista.
 
 >>> renderer = FibletRenderer(ctx, fiblets)                                             # doctest: +SKIP
->>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), Style())       # doctest: +SKIP
+>>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), FibletStyle())       # doctest: +SKIP
 
 Life cycle: a renderer copies the fiblets to the GPU when made and holds them until :meth:`FibletRenderer.release`;
 :meth:`FibletRenderer.render` redraws only when the view or the style changed, and returns the G-buffer, which the
@@ -17,17 +17,18 @@ from ..lazy_imports import names_from
 if TYPE_CHECKING:
     from .errors import EngineError
     from .fiblets.renderer import FibletRenderer
+    from .fiblets.style import FibletStyle
     from .gbuffer import GBuffer
-    from .view import Style, View
+    from .view import View
 
 
-__all__ = ["EngineError", "FibletRenderer", "GBuffer", "Style", "View"]
+__all__ = ["EngineError", "FibletRenderer", "FibletStyle", "GBuffer", "View"]
 
 _HOME = {
     "EngineError": "errors",
     "FibletRenderer": "fiblets.renderer",
+    "FibletStyle": "fiblets.style",
     "GBuffer": "gbuffer",
-    "Style": "view",
     "View": "view",
 }
 

@@ -110,7 +110,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     ----------
     view : View
     style : Style
-        Its line width and tolerance.
+        Its widths and its detail.
     origin, scale, top
         As in :func:`reference_anchor`.
 
@@ -133,7 +133,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     # Three products and their sum in float32 err by no more than this share of the largest of them.
     planes[:, 3] += 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]))
     slack = 4.0 * np.finfo(np.float32).eps * (np.linalg.norm(top * scale) + np.abs(planes[:, 3]).max())
-    planes[:, 3] += style.radius or 0.0
+    planes[:, 3] += style.thickness
     window = np.array([width / 2 * (x + w), height / 2 * (y + w), (z + w) / 2, w])
 
     block: npt.NDArray[Any] = np.zeros(
@@ -153,7 +153,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     block["viewport"] = width, height, half, 0.0
     block["guard"][0] = half * _length_per_pixel(local, view.size)
     block["guard"][2] = 2.0 * slack
-    block["detail"] = (*_pixels_per_length(window, view.size), style.tolerance, FAR_SIZE)
+    block["detail"] = (*_pixels_per_length(window, view.size), style.detail, FAR_SIZE)
     # Distances to the planes are least at a corner of the anchors' box.
     corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
     least = float((corners @ planes[:, :3].T + planes[:, 3]).min())

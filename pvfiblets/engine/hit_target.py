@@ -1,19 +1,24 @@
 """What is drawn in two passes: hits with their depth first, then the G-buffer that is made of them.
 
-Spline tubes and lines with halos are drawn into it.
+Spline tubes and lines with halos are drawn into it; `HitDrawable` is what their renderers share.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
+
 import moderngl
 
+from .culling.listing import LEAST_SEGMENTS, Listing, supports_listing
 from .depth_texture import depth_texture
+from .drawable import AnyStyle, Drawable
 from .errors import EngineError
 from .gbuffer import EMPTY, GBuffer
 from .opengl import OpenGL
 from .shaders import Programs
 
-__all__ = ["KEYS_UNIT", "HitTarget"]
+__all__ = ["KEYS_UNIT", "HitDrawable", "HitTarget"]
 
 KEYS_UNIT = 12
 
@@ -104,3 +109,124 @@ class HitTarget:
             thing.release()
         self._things.clear()
         self.buffer.release()
+
+
+class HitDrawable(Drawable[AnyStyle]):
+    """A `Drawable` that finds hits and their depths first, and all else in one pass over the picture."""
+
+    CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)
+    """How what others hide may be found out."""
+
+    RELIEF: ClassVar[str] = "normal"
+    """What ``GBuffer.across`` holds."""
+
+    SAMPLERS: ClassVar[Mapping[str, int]]
+    """Texture units of the data, by the names of their samplers."""
+
+    _listing: Listing | None = None
+    _listed = False  # whether the last picture was drawn from lists
+
+    @classmethod
+    def _check_culling(cls, culling: str | None) -> None:
+        if culling not in cls.CULLING:
+            raise ValueError(f"culling is {culling!r}; choose one of {cls.CULLING}")
+
+    def _make_listing(self, culling: str | None, n: int, n_items: int, **how: Any) -> None:
+        """Have what others hide left out, where that is wanted, possible, and worth it for ``n`` segments."""
+        if culling is not None and n >= LEAST_SEGMENTS and supports_listing(self._ctx):
+            self._listing = self._keep(Listing(self._ctx, self._gl, self._programs, n_items, **how))
+
+    def _hit_target(self, size: tuple[int, int], *, coloured: bool) -> HitTarget:
+        """Return what the next picture is drawn into."""
+        key = size, coloured
+        return self._fitting("gbuffer", key, lambda: HitTarget(self._ctx, self._gl, size, coloured, self.RELIEF))
+
+    def _draw_hits(
+        self,
+        target: HitTarget,
+        render: Callable[[moderngl.Buffer | None], None],
+        *,
+        name: str,
+        n_items: int,
+        shown: moderngl.Texture,
+        listing: Listing | None,
+        cleared: Sequence[int] = (),
+    ) -> None:
+        """Draw what the depth buffer keeps.
+
+        Parameters
+        ----------
+        target : HitTarget
+        render : callable
+            Draws all items, or those that are listed, by the calls in a buffer.
+        name : str
+            Of the pass.
+        n_items : int
+        shown : moderngl.Texture
+            Says of the last picture which item each pixel shows, as `Listing.before` wants it.
+        listing : Listing, optional
+            Lists what may show.
+        cleared : sequence of int, optional
+            What hits are where nothing is, if anybody looks there.
+        """
+        self._listed = listing is not None
+        if listing is not None:
+            with self._passes.timed("last picture"):
+                listing.before(target, shown)
+        with self._passes.timed("clear"):
+            target.clear()
+            if cleared:
+                self._gl.clear_integers(target.hits_buffer, tuple(cleared), 0)
+        if listing is not None:
+            listing.draw(target, self._passes, self._prepare_listing, render)
+        elif n_items:
+            with self._passes.timed(name):
+                render(None)
+
+    def _find_attributes(
+        self,
+        target: HitTarget,
+        fragment: str,
+        features: Sequence[str],
+        whole: Callable[[moderngl.Program], moderngl.VertexArray],
+        textures: Sequence[tuple[str, moderngl.Texture, int]],
+        **uniforms: Any,
+    ) -> None:
+        """Find all else of the pixels that show something.
+
+        Parameters
+        ----------
+        target : HitTarget
+        fragment : str
+            The stage that finds it.
+        features : sequence of str
+        whole : callable
+            Returns what draws a program over the whole picture.
+        textures : sequence
+            Name of the sampler, texture and unit of what the first pass left.
+        **uniforms
+            Set where the program looks at them.
+        """
+        with self._passes.timed("attributes"):
+            program = self._programs.render({"vertex": "screen/near.vert", "fragment": fragment}, features)
+            self._prepare(program)
+            for name, texture, unit in textures:
+                texture.use(unit)
+                program[name] = unit
+            for name, value in uniforms.items():
+                if name in program:
+                    program[name] = value
+            target.attributes.use()
+            self._ctx.enable_only(moderngl.DEPTH_TEST)
+            self._ctx.depth_func = "<"
+            whole(program).render(moderngl.TRIANGLES, vertices=3)
+            self._ctx.depth_func = "<="
+
+    def _prepare(self, program: moderngl.Program | moderngl.ComputeShader) -> None:
+        """Tell a program where the data are."""
+        for sampler, unit in self.SAMPLERS.items():
+            self._gl.set_sampler(program, sampler, unit)
+
+    def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
+        """Tell a program that lists items all that it needs of them."""
+        self._prepare(program)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..query.shapes import Region
     from .fiblets.sampled_volume import VolumeSource
 
-__all__ = ["MAX_CLIP_PLANES", "Style", "View"]
+__all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
 
 MAX_CLIP_PLANES = 8
 """As many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six."""
@@ -81,62 +81,49 @@ class View:
 
 @dataclass(frozen=True)
 class Style:
-    """How fiblets become pixels.
+    """How a drawable becomes pixels: what the styles of all drawables share.
 
     Parameters
     ----------
-    line_width : float
-        Pixels, at least 1. Exactly 1 draws thin lines as OpenGL does; more draws round brushes of that diameter.
     values : str or VolumeSource, optional
-        The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
-        streamline's first point), the name of an array in ``FibletSet.per_point``, or a volume to be sampled at the
-        points (:mod:`pvfiblets.engine.fiblets.sampled_volume`). None costs nothing.
-    tolerance : float
-        Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
-        one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
-    across : bool
-        Whether to write where across a line each pixel lies, for shading it as if it were round (``GBuffer.across``).
-        Thin lines have nothing to write.
-    radius : float, optional
-        Millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each
-        pixel shows the nearest point of their surface. Where they are thinner than a pixel they are drawn a pixel wide.
-        ``line_width`` is then not looked at.
-
-    Raises
-    ------
-    ValueError
-        If the line width is below 1, the tolerance below 0, the radius not positive, or any of them not finite.
+        The value to write beside each pixel, of those that the drawable has. None costs nothing.
     """
 
-    line_width: float = 1.0
-    values: str | VolumeSource | None = None
-    tolerance: float = 0.5
-    across: bool = False
-    radius: float | None = None
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.line_width) and self.line_width >= 1.0):
-            raise ValueError(f"line_width is {self.line_width}; give a finite number of pixels, 1 or more")
-        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
-            raise ValueError(f"tolerance is {self.tolerance}; give a finite number of pixels, 0 or more")
-        if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 0.0):
-            raise ValueError(f"radius is {self.radius}; give a finite number of millimetres above 0, or None for lines")
+    values: str | VolumeSource | None = field(default=None, kw_only=True)
 
     @property
     def half_width(self) -> float:
         """Pixels that a line reaches to either side of its axis at least; 0 for thin lines."""
-        if self.radius is not None:
-            return 0.5
-        return 0.0 if self.line_width == 1.0 else self.line_width / 2.0
+        return 0.0
 
     @property
     def reach(self) -> float:
-        """Millimetres that a line reaches to either side of its axis, beside what pixels add."""
-        return 0.0 if self.radius is None else self.radius
+        """Millimetres that the drawable reaches beyond its bounds on the screen, beside what pixels add."""
+        return 0.0
+
+    @property
+    def thickness(self) -> float:
+        """Millimetres that the drawable reaches beyond its bounds towards the viewer."""
+        return 0.0
+
+    @property
+    def detail(self) -> float:
+        """Pixels by which the drawable may be simplified; 0 for not at all."""
+        return 0.0
 
     @property
     def relief(self) -> str | None:
-        """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
-        if not self.across or self.half_width == 0.0:
-            return None
-        return "across" if self.radius is None else "normal"
+        """What ``GBuffer.across`` holds (:meth:`.GBuffer.want_relief`), or None for nothing."""
+        return None
+
+
+def check_at_least(name: str, value: float, least: float, unit: str) -> None:
+    """Raise where a number of a style is not finite or too small.
+
+    Raises
+    ------
+    ValueError
+        Naming the value and what is expected.
+    """
+    if not (math.isfinite(value) and value >= least):
+        raise ValueError(f"{name} is {value}; give a finite number of {unit}, {least:g} or more")

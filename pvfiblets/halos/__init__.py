@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from .geometry import HaloLines, HaloPoints
-from .style import Look
+from .style import HaloStyle
 
-__all__ = ["HaloLines", "HaloPoints", "Look"]
+__all__ = ["HaloLines", "HaloPoints", "HaloStyle"]

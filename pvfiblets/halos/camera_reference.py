@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .style import Look
+from .style import HaloStyle
 
 __all__ = ["Array", "Camera", "Fragments", "Ints", "between", "box", "kept"]
 
@@ -31,7 +31,7 @@ class Camera:
         Width and height of the picture, pixels.
     bounds : sequence of float
         ``(xmin, xmax, ymin, ymax, zmin, zmax)`` of the data, mm: depth cueing goes by them.
-    look : Look
+    look : HaloStyle
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Camera:
         ``s``: pixels times W of 1 mm.
     """
 
-    def __init__(self, matrix: Array, size: tuple[int, int], bounds: tuple[float, ...], look: Look) -> None:
+    def __init__(self, matrix: Array, size: tuple[int, int], bounds: tuple[float, ...], look: HaloStyle) -> None:
         self.matrix, self.size, self._look = matrix, size, look
         x, y, z, w = matrix[:, :3]
         self._perspective = bool(w.any())

@@ -20,7 +20,7 @@ _ROUNDING = 1e-9
 
 
 def as_displacement(given: Displacement) -> str | tuple[float, ...]:
-    """Bring a displacement function into the form that :class:`.Look` takes.
+    """Bring a displacement function into the form that :class:`.HaloStyle` takes.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from .camera_reference import Array, Camera, Fragments, Ints, box
 from .displacement import displaced
 from .geometry import HaloLines, HaloPoints
 from .strips_reference import strips
-from .style import Look
+from .style import HaloStyle
 
 __all__ = ["HALO", "LINE", "NOTHING", "Picture", "picture"]
 
@@ -72,7 +72,7 @@ class Picture:
 
 def picture(
     drawn: HaloLines | HaloPoints,
-    look: Look,
+    look: HaloStyle,
     matrix: npt.ArrayLike,
     size: tuple[int, int],
     *,
@@ -83,7 +83,7 @@ def picture(
     Parameters
     ----------
     drawn : HaloLines or HaloPoints
-    look : Look
+    look : HaloStyle
     matrix : array_like
         ``(4, 4)``: data coordinates in mm to OpenGL's clip coordinates. What of an axis is not between its near and
         far planes is not there; halos that reach behind the far plane stay on it.
@@ -134,7 +134,7 @@ def _depths(clip: Array) -> Array:
 
 
 def _discs(
-    camera: Camera, look: Look, points: Array, clip: Array, heights: Array, numbers: Array | None
+    camera: Camera, look: HaloStyle, points: Array, clip: Array, heights: Array, numbers: Array | None
 ) -> Iterator[Fragments]:
     there = (heights >= 0.0).all(axis=1) & (clip[:, 3] > 0.0)
     if numbers is not None:
@@ -151,7 +151,7 @@ def _discs(
         yield Fragments(pixel, owner, t, foot, away / half, inside, nowhere, nowhere, inked, np.abs(inked))
 
 
-def _nearest(fragments: list[Fragments], camera: Camera, look: Look) -> Picture:
+def _nearest(fragments: list[Fragments], camera: Camera, look: HaloStyle) -> Picture:
     """Choose the nearest fragment of each pixel, and say how far that choice is from another."""
     shape = camera.size[::-1]
     n = shape[0] * shape[1]

@@ -112,7 +112,7 @@ def default_widths(
     Returns
     -------
     tuple of float
-        Line width, strip width and largest displacement, mm, as :class:`.Look` takes them.
+        Line width, strip width and largest displacement, mm, as :class:`.HaloStyle` takes them.
 
     Notes
     -----

@@ -20,7 +20,7 @@ import numpy as np
 
 from .camera_reference import Array, Camera, Fragments, Ints, between, box, kept
 from .geometry import HaloLines
-from .style import Look
+from .style import HaloStyle
 
 __all__ = ["mask", "places_along", "rates", "strips"]
 
@@ -96,7 +96,7 @@ def rates(points: Array, offsets: Ints, numbers: Array) -> Array:
 
 
 def strips(
-    camera: Camera, look: Look, lines: HaloLines, clip: Array, heights: Array, numbers: Array | None
+    camera: Camera, look: HaloStyle, lines: HaloLines, clip: Array, heights: Array, numbers: Array | None
 ) -> Iterator[Fragments]:
     """Yield the fragments of all segments.
 
@@ -142,7 +142,7 @@ def _firsts(offsets: Ints) -> Ints:
 # ------------------------------------------------------------------------------------------------------------- bends
 
 
-def _bend(camera: Camera, look: Look, clip: Array, vertex: int, neighbour: int, own: int) -> Array:
+def _bend(camera: Camera, look: HaloStyle, clip: Array, vertex: int, neighbour: int, own: int) -> Array:
     """Return the unit normal, along the line, of the bisector at a vertex between two segments; 0, 0 for none."""
     ways = [clip[i + 1] - clip[i] for i in (neighbour, own)]
     motions = [camera.motion(clip[vertex], way) for way in ways]
@@ -167,7 +167,7 @@ class _Varying:
     """What varies along one segment, by its two ends."""
 
     camera: Camera
-    look: Look
+    look: HaloStyle
     clip: Array
     cue: Array
     u: Array

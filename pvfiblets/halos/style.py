@@ -1,4 +1,4 @@
-"""`Look`: how lines and points with halos are drawn, as one small value that a redraw is decided on."""
+"""`HaloStyle`: how lines and points with halos are drawn, as one small value that a redraw is decided on."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["DISPLACEMENTS", "TABLE_SIZE", "Look"]
+__all__ = ["DISPLACEMENTS", "TABLE_SIZE", "HaloStyle"]
 
 DISPLACEMENTS = ("linear", "square", "square root")
 """Displacement functions by name (paper: figure 17)."""
@@ -18,7 +18,7 @@ MAX_TAPERED = 1000
 
 
 @dataclass(frozen=True)
-class Look:
+class HaloStyle:
     """How lines, or points, with halos are drawn.
 
     Parameters

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .displacement import Displacement, as_displacement, displaced, table_places
-from .style import Look
+from .style import HaloStyle
 
 __all__ = ["halo_width"]
 
@@ -78,7 +78,7 @@ def halo_width(
     [0.0, 0.0, 1.0, 1.5, 1.5]
     """
     form = as_displacement(displacement)
-    Look(line_width, strip_width, max_displacement, form)
+    HaloStyle(line_width, strip_width, max_displacement, form)
     ahead = np.asarray(dz, np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(ahead > 0.0, ahead / max_displacement, 0.0)

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import moderngl
 
 from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
+from pvfiblets.mappers.shader_effects import Piece
 
 _BESIDE = {
     "colour_point_value": "layers_value",
@@ -76,7 +77,7 @@ class _Held:
 
 
 @dataclass(frozen=True)
-class Layers:
+class Layers(Piece):
     """Where the actor is translucent, several layers show.
 
     Parameters
@@ -93,7 +94,6 @@ class Layers:
 
     count: int = 4
     features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered"})
-    style: ClassVar[Mapping[str, Any]] = {}
 
     def __post_init__(self) -> None:
         if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:

@@ -9,7 +9,8 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, cast
+from dataclasses import replace
+from typing import Any, ClassVar, Generic, TypeVar, cast
 
 import numpy as np
 from vtkmodules.util.misc import calldata_type
@@ -22,20 +23,22 @@ from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import layers_of, with_layers
+from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import frame_of, others_before, world_planes
+from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, world_planes
 from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms, styled
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
-USUAL_DPI = 72  # of a vtkRenderWindow that nobody has changed
+
+AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
+class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
 
     Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
@@ -68,7 +71,13 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
     _NAME: ClassVar[str]
 
     def __init__(
-        self, drawn: Any, *, colouring: Colouring, options: Any, renderer_factory: Callable[..., Any], **made_with: Any
+        self,
+        drawn: Any,
+        *,
+        colouring: Colouring,
+        options: AnyOptions,
+        renderer_factory: Callable[..., Any],
+        **made_with: Any,
     ) -> None:
         self._factory = renderer_factory
         self._options = options
@@ -80,7 +89,6 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         self._installed: tuple[resolve.Replacement, ...] = ()
         self._extras: dict[str, Extra] = {}
         self._error: BaseException | None = None
-        self._last_drawn: str | None = None
         self._colouring = colouring
         self.SetScalarVisibility(False)
         self._put(drawn)
@@ -105,6 +113,16 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         self._thickness = thickness_of(self._extras.values())
         bounds = None if self._empty else thickened(self._drawn.bounds, self._thickness)
         self.SetInputData(proxy_polydata(bounds, self._layers))
+
+    @property
+    def options(self) -> AnyOptions:
+        """What can be chosen about drawing; set others to change it from the next frame on."""
+        return self._options
+
+    @options.setter
+    def options(self, options: AnyOptions) -> None:
+        self._options = options
+        self._actor_modified()
 
     @property
     def colouring(self) -> Colouring:
@@ -243,7 +261,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
         view = View(
             viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
         )
-        style = self._style(renderer, viewport)
+        style = self._whole_style(renderer, viewport)
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
@@ -261,9 +279,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_extra_uniforms(slot, self._extras, program, draw)
-        self._last_drawn = renderer.GetAddressAsString("")
-        slot.drawn.pop(self._last_drawn, None)
-        slot.drawn[self._last_drawn] = Drawn(weak(renderer), viewport, view, style)
+        address = renderer.GetAddressAsString("")
+        slot.drawn.pop(address, None)  # the last one stands last
+        slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
 
     def _cuts(self) -> tuple[Any, Any]:
         """Return what cuts in world mm: planes, and the region that is not planes."""
@@ -278,28 +296,23 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 
-    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style in pixels of the framebuffer, which supersampling makes larger than the window.
-
-        Pictures with fewer dots per inch than usual have thinner lines, as they have smaller letters.
-        """
-        enlarged = max(1.0, viewport[2] / max(1, renderer.GetSize()[0]))
-        enlarged *= min(1.0, renderer.GetRenderWindow().GetDPI() / USUAL_DPI)
-        style = Style(line_width=max(1.0, self._width * enlarged), values=self._colouring.point_source)
-        return styled(style, self._extras.values())
-
-    @property
-    def _width(self) -> float:
-        """Pixels of the window that everything takes at least."""
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> Style:
+        """Return the style without values; a width is as many pixels times ``pixel_scale`` wide."""
         raise NotImplementedError
+
+    def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
+        """Return the style, with the values that the colours need and what extras want."""
+        style = self._style(renderer, pixel_scale(renderer, viewport))
+        return styled(replace(style, values=self._colouring.point_source), self._extras.values())
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         """Return the engine's renderer of a window, made anew for other data and other options."""
-        if slot.versions.get("drawn") is not self._drawn or slot.versions.get("options") != self._options:
+        options = self._options.changed()
+        if slot.versions.get("drawn") is not self._drawn or slot.versions.get("options") != options:
             slot.drop_renderer()
-            slot.versions |= {"drawn": self._drawn, "options": self._options}
+            slot.versions |= {"drawn": self._drawn, "options": options}
         if slot.renderer is None:
-            slot.renderer = self._factory(context.ctx, self._drawn, **self._options.changed(), **self._made_with)
+            slot.renderer = self._factory(context.ctx, self._drawn, **options, **self._made_with)
         return slot.renderer
 
     # Memory
@@ -318,7 +331,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper):
                 context.release(self)
 
 
-class CutMapper(EngineMapper):
+class CutMapper(EngineMapper[AnyOptions]):
     """Mapper of what a region can cut."""
 
     _region: Any = None
@@ -345,7 +358,7 @@ class CutMapper(EngineMapper):
 
 
 @calldata_type(VTK_OBJECT)
-def _update_shader(mapper: EngineMapper, _event: str, program: Any) -> None:
+def _update_shader(mapper: EngineMapper[Any], _event: str, program: Any) -> None:
     mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
 
 

@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ClassVar
 
 from pvfiblets.engine.capabilities import AUTO, check_choices
 
 
 @dataclass(frozen=True)
 class Options:
-    """Choices that a renderer is made with."""
+    """Choices about drawing, which a renderer is made with, but for those that are a part of the style."""
+
+    NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
+
+    def __post_init__(self) -> None:
+        """Let None stand for no culling, and check the values."""
+        if getattr(self, "culling", None) == "none":
+            object.__setattr__(self, "culling", None)
+        self._check()
+
+    def _check(self) -> None:
+        """Raise where a value is unknown."""
 
     def changed(self) -> dict[str, Any]:
         """Return those that are not the defaults, as keyword arguments of a renderer."""
         return {
             field.name: getattr(self, field.name)
             for field in fields(self)
-            if getattr(self, field.name) != field.default
+            if getattr(self, field.name) != field.default and field.name not in self.NOT_MADE_WITH
         }
 
 
@@ -45,11 +56,8 @@ class EngineOptions(Options):
     culling: str | None = "two-phase"
     fit: str | None = None
 
-    def __post_init__(self) -> None:
-        """Check the values, and let None stand for no culling."""
+    def _check(self) -> None:
         check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
-        if self.culling == "none":
-            object.__setattr__(self, "culling", None)
 
 
 def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:

@@ -7,14 +7,15 @@ from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.view import Style
+from pvfiblets.engine.fiblets.style import FibletStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
+from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
-class FibletMapper(CutMapper):
+class FibletMapper(CutMapper[EngineOptions]):
     """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
 
     Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
@@ -86,23 +87,11 @@ class FibletMapper(CutMapper):
 
     @line_width.setter
     def line_width(self, pixels: float) -> None:
-        self._line_width = Style(line_width=float(pixels)).line_width
+        self._line_width = FibletStyle(line_width=float(pixels)).line_width
         self._actor_modified()
 
-    @property
-    def _width(self) -> float:
-        return self._line_width
-
-    @property
-    def options(self) -> EngineOptions:
-        """Pipeline and culling; set another `EngineOptions` to change them from the next frame on."""
-        options: EngineOptions = self._options
-        return options
-
-    @options.setter
-    def options(self, options: EngineOptions) -> None:
-        self._options = options
-        self._actor_modified()
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
+        return FibletStyle(line_width=max(1.0, self._line_width * pixel_scale), min_width=max(1.0, pixel_scale))
 
     @property
     def filtering(self) -> Any:
@@ -143,7 +132,8 @@ class FibletMapper(CutMapper):
             Streamline id and position along it: the index of the point before, plus the fraction of
             the segment. None where there is no fiblet. Other actors in front are not looked at.
         """
-        return self._pick(x, y, renderer=renderer, tolerance=tolerance, what="ids")
+        found = nearest_pixel(self, (x, y), ("ids", "position"), renderer=renderer, tolerance=tolerance)
+        return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 
     def region_flags(self, region: Any, sampling: float | None = None) -> Any:
         """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.

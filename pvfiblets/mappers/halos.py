@@ -13,20 +13,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import thickened
-from pvfiblets.mappers.picking import shown_by
+from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.shader_effects import Draw, styled
+from pvfiblets.mappers.shader_effects import Draw, Piece
 from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.view import Style
-    from pvfiblets.halos import HaloPoints, Look
+    from pvfiblets.engine.halos import HaloDrawStyle
+    from pvfiblets.halos import HaloPoints, HaloStyle
 
     Drawn = HaloLines | HaloPoints
 
@@ -55,10 +54,7 @@ class HaloOptions(Options):
 
     culling: str | None = "two-phase"
 
-    def __post_init__(self) -> None:
-        """Check the value, and let None stand for no culling."""
-        if self.culling == "none":
-            object.__setattr__(self, "culling", None)
+    def _check(self) -> None:
         if self.culling not in (None, "two-phase"):
             raise ValueError(f"culling is {self.culling!r}; use 'two-phase' or None")
 
@@ -77,7 +73,7 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Strips:
+class Strips(Piece):
     """An `pvfiblets.mappers.shader_effects.Extra` by which the halos in the G-buffer have a colour.
 
     Parameters
@@ -92,6 +88,7 @@ class Strips:
     """
 
     color: Colour | None = WHITE
+    features = frozenset({"strip"})
 
     def __post_init__(self) -> None:
         if self.color is None:
@@ -100,20 +97,6 @@ class Strips:
         if len(channels) != 3 or not all(0.0 <= channel <= 1.0 for channel in channels):
             raise ValueError(f"color of halos is {self.color!r}; expected 3 numbers between 0 and 1")
         object.__setattr__(self, "color", channels)
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"strip"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """Nothing of the engine."""
-        return {}
-
-    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all extras
-        """Keep nothing: the texture is the G-buffer's."""
-        return
 
     def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
         """Return the engine's texture."""
@@ -126,14 +109,14 @@ class Strips:
         program.SetUniform3f("fibletStripUpper", upper)
 
 
-class HaloMapper(EngineMapper):
+class HaloMapper(EngineMapper[HaloOptions]):
     """Mapper that draws `HaloLines` or `HaloPoints` through VTK's own passes, clipping planes and selection.
 
     Parameters
     ----------
     drawn : HaloLines or HaloPoints
         What to draw.
-    look : Look
+    look : HaloStyle
         Widths and depths, and what else shows.
     colouring : Colouring, optional
         Of lines and points; black when left out.
@@ -157,7 +140,7 @@ class HaloMapper(EngineMapper):
     def __init__(
         self,
         drawn: Drawn,
-        look: Look,
+        look: HaloStyle,
         *,
         colouring: Colouring | None = None,
         halo_color: Colour | None = WHITE,
@@ -179,7 +162,7 @@ class HaloMapper(EngineMapper):
         drawn: Drawn = self._drawn
         return drawn
 
-    def set_drawn(self, drawn: Drawn, look: Look | None = None) -> None:
+    def set_drawn(self, drawn: Drawn, look: HaloStyle | None = None) -> None:
         """Draw something else from the next frame on, and differently where a look comes with it.
 
         Raises
@@ -197,12 +180,12 @@ class HaloMapper(EngineMapper):
         self._actor_modified()
 
     @property
-    def look(self) -> Look:
-        """Widths and depths, and what else shows; set another `Look` to change them from the next frame on."""
+    def look(self) -> HaloStyle:
+        """Widths and depths, and what else shows; set another `HaloStyle` to change them from the next frame on."""
         return self._look
 
     @look.setter
-    def look(self, look: Look) -> None:
+    def look(self, look: HaloStyle) -> None:
         wider = look.strip_width != self._look.strip_width
         self._look = look
         if wider:
@@ -218,17 +201,6 @@ class HaloMapper(EngineMapper):
     @halo_color.setter
     def halo_color(self, color: Colour | None) -> None:
         self.set_extra("strips", Strips(color))
-
-    @property
-    def options(self) -> HaloOptions:
-        """What does not show; set another `HaloOptions` to change it from the next frame on."""
-        options: HaloOptions = self._options
-        return options
-
-    @options.setter
-    def options(self, options: HaloOptions) -> None:
-        self._options = options
-        self._actor_modified()
 
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
@@ -250,39 +222,16 @@ class HaloMapper(EngineMapper):
             Of lines: the line, and the place along it: the index of the point before plus the fraction of the segment.
             Of points: the point. None where there is none. Other actors in front are not looked at.
         """
-        shown = shown_by(self, renderer)
-        if shown is None or tolerance < 0:
+        found = nearest_pixel(self, (x, y), ("owner", "ids", "position"), renderer=renderer, tolerance=tolerance)
+        if found is None:
             return None
-        column, row = (int(place) for place in np.floor(shown.to_viewport((x, y))))
-        reach = int(tolerance * shown.enlarged.max())
-        width, height = shown.drawn.viewport[2:]
-        left, lower = max(column - reach, 0), max(row - reach, 0)
-        area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
-        if min(area[2:]) < 1:
-            return None
-        shown.context.window.MakeCurrent()
-        with shown.context.foreign():
-            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
-            ctx = shown.context.ctx
-            depth, owner = (_read(ctx, texture, area, "u4")[..., 0] for texture in (buffer.depth, buffer.owner))
-            ids, position = _read(ctx, buffer.ids, area, "u4"), _read(ctx, buffer.position, area, "f4")
-        rows, columns = np.nonzero((depth != EMPTY) & (owner != EMPTY))
-        distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
-        if not len(rows) or distance.min() > reach * reach:
-            return None
-        best = np.lexsort((depth[rows, columns], distance))[0]
-        at = rows[best], columns[best]
         if isinstance(self._drawn, HaloLines):
-            return int(ids[(*at, 0)]), float(position[(*at, 0)])
-        return int(owner[at])
+            return int(found.texels["ids"][0]), float(found.texels["position"][0])
+        return int(found.texels["owner"][0])
 
     @property
     def _empty(self) -> bool:
         return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
-
-    @property
-    def _width(self) -> float:
-        return max(1.0, self._look.min_width)
 
     def _set_proxy(self) -> None:
         """Give VTK bounds that hold the strips too."""
@@ -290,30 +239,10 @@ class HaloMapper(EngineMapper):
         if not self._empty:
             self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
 
-    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style in pixels of the framebuffer, of which tiles and supersampling have more than the window."""
-        from pvfiblets.engine.halos import HaloStyle
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> HaloDrawStyle:  # noqa: ARG002
+        from pvfiblets.engine.halos import HaloDrawStyle
 
-        look = self._look
-        enlarged = _enlarged(renderer, viewport)
-        if enlarged != 1.0:
-            look = replace(look, min_width=look.min_width * enlarged)
-        style = HaloStyle(look=look, line_width=max(1.0, look.min_width), values=self._colouring.point_source)
-        return styled(style, self._extras.values())
-
-
-def _enlarged(renderer: Any, viewport: tuple[int, int, int, int]) -> float:
-    """Return pixels of the whole picture per pixel of the window.
-
-    Supersampling has a framebuffer larger than the window. ``vtkWindowToImageFilter`` enlarges by tiles, each as large
-    as the window: while it does, sizes of window and renderer are those of the whole picture.
-    """
-    window = renderer.GetRenderWindow()
-    left, _, right, _ = renderer.GetViewport()
-    first, _, last, _ = window.GetTileViewport()
-    wanted = (min(right, last) - max(left, first)) * window.GetSize()[0]
-    sampled = viewport[2] / wanted if viewport[2] > wanted + 1.0 and wanted > 0.0 else 1.0
-    return float(sampled * window.GetTileScale()[0])
+        return HaloDrawStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:
@@ -325,13 +254,3 @@ def _behind(draw: Draw) -> tuple[Colour, Colour]:
     ends = [(np.clip(end, low, high) - low) / max(high - low, 1e-9) for end in (first, last)]
     begin, end = (tuple(float(part) for part in lower + share * (upper - lower)) for share in ends)
     return (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])
-
-
-def _read(ctx: Any, texture: Any, area: tuple[int, int, int, int], dtype: str) -> Any:
-    """Read a rectangle of a texture as (height, width, components)."""
-    framebuffer = ctx.framebuffer([texture])
-    try:
-        data = framebuffer.read(viewport=area, components=texture.components, dtype=dtype, alignment=1)
-    finally:
-        framebuffer.release()
-    return np.frombuffer(data, dtype=dtype).reshape(area[3], area[2], -1)

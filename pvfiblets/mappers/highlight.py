@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.mappers.shader_effects import Piece
 from pvfiblets.mappers.windows import MAX_ROW
 
 __all__ = ["Highlight"]
@@ -55,7 +56,7 @@ class _Bits:
 
 
 @dataclass(frozen=True, eq=False)
-class Highlight:
+class Highlight(Piece):
     """Selected streamlines in a colour of their own, all others faded.
 
     It costs a bit per streamline, 1 MB for 8 million, which is all that another selection writes.
@@ -81,6 +82,7 @@ class Highlight:
     color: tuple[float, ...] | None = None
     dim: float = 0.8
     faded: tuple[float, ...] | None = None
+    features = frozenset({"highlight"})
 
     def __post_init__(self) -> None:
         if self.selected.ndim != 1 or self.selected.dtype != np.bool_:
@@ -88,16 +90,6 @@ class Highlight:
             raise ValueError(f"selected is {found}; give one bool for each streamline")
         if not 0.0 <= self.dim <= 1.0:
             raise ValueError(f"dim is {self.dim}; give a number from 0 to 1")
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"highlight"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """Nothing of the engine."""
-        return {}
 
     def make(self, ctx: Any) -> _Bits:
         """Make room for a window's texture."""

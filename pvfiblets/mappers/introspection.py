@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from vtkmodules.vtkRenderingCore import vtkRenderer
-
-from pvfiblets.mappers.picking import pick
 from pvfiblets.mappers.windows import contexts_with
 
 
 class Questions:
     """The part of `pvfiblets.mappers.engine_mapper.EngineMapper` that answers."""
-
-    _last_drawn: str | None
 
     @property
     def features(self) -> frozenset[str]:
@@ -24,20 +19,6 @@ class Questions:
     def _address(self) -> str:
         """What windows know the mapper by."""
         return str(cast("Any", self).GetAddressAsString(""))
-
-    def _pick(
-        self, x: float, y: float, *, renderer: vtkRenderer | None, tolerance: int, what: str
-    ) -> tuple[int, float] | None:
-        """Return what the textures `what` and ``position`` say near a pixel, None where nothing was drawn."""
-        key = self._last_drawn if renderer is None else renderer.GetAddressAsString("")
-        for context in contexts_with(self):
-            slot = context.slots[self._address]
-            drawn = slot.drawn.get(key or "")
-            if drawn is not None and slot.renderer is not None and context.alive:
-                context.window.MakeCurrent()
-                with context.foreign():
-                    return pick(context.ctx, slot.renderer, drawn, (x, y), tolerance, what)
-        return None
 
     @property
     def pipeline_in_use(self) -> str | None:

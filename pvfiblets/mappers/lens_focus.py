@@ -12,7 +12,7 @@ from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
 from pvfiblets.engine.effects.lens import Lens
 from pvfiblets.engine.effects.picture import PictureEffects
 from pvfiblets.engine.effects.tone import is_number
-from pvfiblets.mappers.scene import to_array
+from pvfiblets.mappers.scene import pixel_scale, samples_per_pixel, to_array
 
 __all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
 
@@ -120,19 +120,21 @@ class Focusing:
         lens : Lens
             Of the picture.
         """
-        enlarged = _enlarged(renderer, lens.size[1])
+        viewport = (0, 0, *lens.size)
+        samples = samples_per_pixel(renderer, viewport)
         place = wanted.focal_distance
         if isinstance(place, str):
-            self._follow(_seen_at(place, renderer, effects, lens, enlarged), wanted.smooth)
+            self._follow(_seen_at(place, renderer, effects, lens, samples), wanted.smooth)
         elif place is not None:
             self.distance = float(place)
         if place is None or self.distance is None:  # nothing has been seen there so far
             self.distance = float(renderer.GetActiveCamera().GetDistance())
         aperture = wanted.aperture
         if aperture is None:
-            height = renderer.GetSize()[1] / renderer.GetRenderWindow().GetTileScale()[1] * enlarged
+            height = renderer.GetSize()[1] * samples
             aperture = APERTURE * height / lens.pixels_per_mm(self.distance)
-        return Focus(self.distance, float(aperture), float(wanted.max_blur) * enlarged, float(wanted.darkening))
+        blur = float(wanted.max_blur) * pixel_scale(renderer, viewport)
+        return Focus(self.distance, float(aperture), blur, float(wanted.darkening))
 
     def _follow(self, seen: float | None, smooth: float) -> None:
         """Move the distance in focus towards what is seen now; None leaves it on its way to the last."""
@@ -158,14 +160,7 @@ def lens_of(renderer: Any, size: tuple[int, int]) -> Lens:
     return Lens(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
 
 
-def _enlarged(renderer: Any, rows: int) -> float:
-    """Return how many pixels of the framebuffer a pixel of the window is: more when it is enlarged or supersampled."""
-    width, height = [0], [0]
-    renderer.GetTiledSize(width, height)
-    return float(renderer.GetRenderWindow().GetTileScale()[1] * rows / max(height[0], 1))
-
-
-def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Lens, enlarged: float) -> float | None:
+def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Lens, samples: float) -> float | None:
     """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles."""
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) != (1, 1):
@@ -177,10 +172,10 @@ def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Lens, enl
         if interactor is None:
             return None
         mouse, origin = interactor.GetEventPosition(), renderer.GetOrigin()
-        x, y = (int((at - start + 0.5) * enlarged) for at, start in zip(mouse, origin, strict=True))
+        x, y = (int((at - start + 0.5) * samples) for at, start in zip(mouse, origin, strict=True))
         if not (0 <= x < lens.size[0] and 0 <= y < lens.size[1]):
             return None
-    around = int(NEAR_CURSOR * enlarged)
+    around = int(NEAR_CURSOR * samples)
     depths = effects.depths((x - around, y - around, 2 * around + 1, 2 * around + 1))
     nearest = float(depths.min(initial=1.0))
     return distance_of(lens, nearest) if nearest < 1.0 else None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.mappers.shader_effects import Draw, Extra
+from pvfiblets.mappers.shader_effects import Draw, Extra, Piece
 
 __all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
 
@@ -68,17 +68,14 @@ class _Blank:
 
 
 @dataclass(frozen=True)
-class TubeShading:
+class TubeShading(Piece):
     """An `pvfiblets.mappers.shader_effects.Extra` by which lights fall on wide lines as on round tubes.
 
     Only the light changes: depths stay those of flat lines, which face the viewer. Lines one pixel wide look as they
     did, and tubes have their own normals. It costs two bytes for each pixel.
     """
 
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"tube_shading"})
+    features = frozenset({"tube_shading"})
 
     @property
     def style(self) -> Mapping[str, Any]:
@@ -94,27 +91,12 @@ class TubeShading:
         flat = draw.style.relief == "across" and draw.buffer.across is not None
         return {"fibletAcrossMap": draw.buffer.across if flat else kept.texture}
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Do nothing: the texture says all."""
-
 
 @dataclass(frozen=True)
-class SurfaceNormals:
+class SurfaceNormals(Piece):
     """An `pvfiblets.mappers.shader_effects.Extra` by which lights fall on the surface normals in ``GBuffer.across``."""
 
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve."""
-        return frozenset({"tube_normal"})
-
-    @property
-    def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
-        return {}
-
-    def make(self, ctx: Any) -> None:  # noqa: ARG002
-        """Keep nothing: the texture is the G-buffer's."""
-        return
+    features = frozenset({"tube_normal"})
 
     def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002
         """Return the engine's texture."""

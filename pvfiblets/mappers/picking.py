@@ -42,45 +42,6 @@ class Drawn:
     style: Any
 
 
-def pick(
-    ctx: Any, engine: Any, drawn: Drawn, pixel: tuple[float, float], tolerance: int, what: str = "ids"
-) -> tuple[int, float] | None:
-    """Return (number, position along it) near a pixel of the window, or None.
-
-    The number is a streamline's, or with ``'owner'`` for `what` that of the part of it that the pixel belongs to. Of
-    several lines within `tolerance` pixels the nearest on the screen wins, and of those as near
-    the one in front. The G-buffer is drawn again if it shows another view by now.
-    """
-    renderer = drawn.renderer.Get()
-    if renderer is None:
-        return None
-    (left, bottom), size = renderer.GetOrigin(), renderer.GetSize()
-    width, height = drawn.viewport[2:]
-    if min(size) < 1 or tolerance < 0:
-        return None
-    column = int((pixel[0] - left + 0.5) * width / size[0])
-    row = int((pixel[1] - bottom + 0.5) * height / size[1])
-    reach = int(tolerance * max(width / size[0], height / size[1]))
-    x0, x1 = max(column - reach, 0), min(column + reach + 1, width)
-    y0, y1 = max(row - reach, 0), min(row + reach + 1, height)
-    if x0 >= x1 or y0 >= y1:
-        return None
-    buffer = engine.render(drawn.view, drawn.style)
-    region = (x0, y0, x1 - x0, y1 - y0)
-    depth = _read(ctx, buffer.depth, region, "u4", 1)[..., 0].astype(np.int64)
-    rows, columns = np.nonzero(depth != EMPTY)
-    if len(rows) == 0:
-        return None
-    distance = (rows + y0 - row) ** 2 + (columns + x0 - column) ** 2
-    nearest = np.lexsort((depth[rows, columns], distance))[0]
-    if distance[nearest] > reach * reach:
-        return None
-    at = rows[nearest], columns[nearest]
-    numbers = _read(ctx, getattr(buffer, what), region, "u4", {"ids": 2, "owner": 1}[what])
-    position = _read(ctx, buffer.position, region, "f4", 2)
-    return int(numbers[(*at, 0)]), float(position[(*at, 0)])
-
-
 @dataclass(frozen=True, eq=False)
 class Layer:
     """A mapper whose picture is looked into.
@@ -160,6 +121,13 @@ class Shown:
         moved: npt.NDArray[np.float64] = np.asarray(places) / self.enlarged + self.renderer.GetOrigin() - 0.5
         return moved
 
+    def read(self, names: Sequence[str], area: tuple[int, int, int, int]) -> dict[str, npt.NDArray[Any]]:
+        """Return textures of the G-buffer by their names, as (height, width, components) of a rectangle."""
+        self.context.window.MakeCurrent()
+        with self.context.foreign():
+            buffer = self.slot.renderer.render(self.drawn.view, self.drawn.style)
+            return {name: _texels(self.context.ctx, getattr(buffer, name), area) for name in names}
+
 
 def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
     """Return a mapper's last picture.
@@ -185,6 +153,72 @@ def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
         if found is not None and min(found.GetSize()) > 0:
             return Shown(context, slot, drawn, found)
     return None
+
+
+@dataclass(frozen=True, eq=False)
+class PixelHit:
+    """What the G-buffer says of the pixel nearest to a place.
+
+    Attributes
+    ----------
+    shown : Shown
+        The picture.
+    pixel : tuple of 2 ints
+        Column and row in the viewport.
+    key : int
+        Its depth.
+    texels : dict
+        Components of the textures that were read, by their names.
+    """
+
+    shown: Shown
+    pixel: tuple[int, int]
+    key: int
+    texels: dict[str, npt.NDArray[Any]]
+
+
+def nearest_pixel(
+    mapper: Any, place: tuple[float, float], read: Sequence[str], *, renderer: Any = None, tolerance: int = 0
+) -> PixelHit | None:
+    """Return the pixel nearest to a place that shows something.
+
+    Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
+
+    Parameters
+    ----------
+    mapper : EngineMapper
+    place : tuple of 2 floats
+        Pixel of the window.
+    read : sequence of str
+        Textures of the G-buffer. With ``'owner'``, pixels that belong to nobody show nothing.
+    renderer : vtkRenderer, optional
+        Whose picture; by default the one that was drawn last.
+    tolerance : int
+        How many pixels of the window away it may be.
+    """
+    shown = shown_by(mapper, renderer)
+    if shown is None or tolerance < 0:
+        return None
+    column, row = (int(at) for at in np.floor(shown.to_viewport(place)))
+    reach = int(tolerance * shown.enlarged.max())
+    width, height = shown.drawn.viewport[2:]
+    left, lower = max(column - reach, 0), max(row - reach, 0)
+    area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
+    if min(area[2:]) < 1:
+        return None
+    texels = shown.read(("depth", *read), area)
+    keys = texels["depth"][..., 0]
+    there = keys != EMPTY
+    if "owner" in texels:
+        there &= texels["owner"][..., 0] != EMPTY
+    rows, columns = np.nonzero(there)
+    distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
+    if not len(rows) or distance.min() > reach * reach:
+        return None
+    best = np.lexsort((keys[rows, columns], distance))[0]
+    at = rows[best], columns[best]
+    pixel = int(columns[best]) + left, int(rows[best]) + lower
+    return PixelHit(shown, pixel, int(keys[at]), {name: texels[name][at] for name in read})
 
 
 def pick_area(
@@ -254,16 +288,13 @@ def _nearest(seen: Sequence[tuple[Shown, Layer]], box: tuple[int, int, int, int]
     for shown, layer in seen:
         if shown.drawn.viewport != size:
             continue  # drawn at another time, when the window had another size
-        ctx = shown.context.ctx
-        shown.context.window.MakeCurrent()
-        with shown.context.foreign():
-            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
-            key = _read(ctx, buffer.depth, box, "u4", 1)[..., 0]
-            ids = _read(ctx, buffer.ids, box, "u4", 2)[..., 0].astype(np.int64)
-            position = _read(ctx, buffer.position, box, "f4", 2).astype(np.float64)
-            if layer.starts is not None:
-                segment = _read(ctx, buffer.owner, box, "u4", 1)[..., 0]
-                position[key != EMPTY, 0] += layer.starts[segment[key != EMPTY]]
+        names = ["depth", "ids", "position", *(["owner"] if layer.starts is not None else [])]
+        texels = shown.read(names, box)
+        key, ids = texels["depth"][..., 0], texels["ids"][..., 0].astype(np.int64)
+        position = texels["position"].astype(np.float64)
+        if layer.starts is not None:
+            segment = texels["owner"][..., 0]
+            position[key != EMPTY, 0] += layer.starts[segment[key != EMPTY]]
         depth = np.where(key == EMPTY, 3.0, key / float(EMPTY))
         nearer = depth <= raster[..., 1]
         own = ids[nearer]
@@ -301,11 +332,11 @@ def _hidden(shown: Shown, pixels: npt.NDArray[np.float64], depths: npt.NDArray[n
     return hidden
 
 
-def _read(ctx: Any, texture: Any, region: tuple[int, int, int, int], dtype: str, components: int) -> Any:
-    """Read a rectangle of a texture as (height, width, components)."""
+def _texels(ctx: Any, texture: Any, area: tuple[int, int, int, int]) -> npt.NDArray[Any]:
+    """Read a rectangle of a texture of integers or floats as (height, width, components)."""
     framebuffer = ctx.framebuffer([texture])
     try:
-        data = framebuffer.read(viewport=region, components=components, dtype=dtype, alignment=1)
+        data = framebuffer.read(viewport=area, components=texture.components, dtype=texture.dtype, alignment=1)
     finally:
         framebuffer.release()
-    return np.frombuffer(data, dtype=dtype).reshape(region[3], region[2], components)
+    return np.frombuffer(data, texture.dtype).reshape(area[3], area[2], texture.components)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from pvfiblets.mappers.shader_effects import Piece
 from pvfiblets.mappers.shading import extent, positive, share
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ _WHAT = "of ray occlusion"
 
 
 @dataclass(frozen=True)
-class RayOcclusion:
+class RayOcclusion(Piece):
     """Surfaces of a volume are darker where the volume itself stands over them, seen or not.
 
     From every pixel's point of a surface rays are cast into the hemisphere around its normal, the more the steeper. The
@@ -57,7 +58,6 @@ class RayOcclusion:
     seed: int = 0
     smooth: bool = True
     features: ClassVar[frozenset[str]] = frozenset({"ray_occlusion"})
-    style: ClassVar[Mapping[str, Any]] = {}
 
     def __post_init__(self) -> None:
         from pvfiblets.engine.volumes.occlusion import MAX_SAMPLES

@@ -1,4 +1,4 @@
-"""Which renderer is drawing, and from where it looks: VTK's matrices in float64."""
+"""Which renderer is drawing, from where it looks (VTK's matrices in float64), and how large its pixels are."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
 
 Matrix = npt.NDArray[np.float64]
+
+USUAL_DPI = 72
+"""Dots per inch of a vtkRenderWindow that nobody has changed."""
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
@@ -121,6 +124,33 @@ def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, i
 def to_array(matrix: vtkMatrix4x4) -> Matrix:
     """Return a VTK matrix as (4, 4) float64."""
     return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+
+
+def pixel_scale(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> float:
+    """Return the pixels to draw for each pixel in which users give a width.
+
+    A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the same
+    share of the picture whether it is drawn as it is, in an enlarged picture (``screenshot(scale=3)``), from many
+    samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+    viewport : tuple of 4 ints
+        x, y, width, height in pixels of the bound framebuffer: in a tile, of the tile.
+    """
+    window = renderer.GetRenderWindow()
+    fewer_dots = min(1.0, window.GetDPI() / USUAL_DPI)
+    return float(samples_per_pixel(renderer, viewport) * window.GetTileScale()[0] * fewer_dots)
+
+
+def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> float:
+    """Return pixels of the framebuffer for a pixel of the picture along one side; supersampling has more than one."""
+    width, height = [0], [0]
+    renderer.GetTiledSize(width, height)
+    drawn, shown = max(zip(viewport[2:], (width[0], height[0]), strict=True))
+    # A pixel more or less is rounding, and must not make thin lines wide.
+    return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
 def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:

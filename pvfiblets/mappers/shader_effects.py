@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from pvfiblets.engine.view import Style
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
 
-__all__ = ["Draw", "Extra", "Kept", "prepare_extras", "set_extra_uniforms", "styled"]
+__all__ = ["Draw", "Extra", "Kept", "Piece", "prepare_extras", "set_extra_uniforms", "styled"]
+
+AnyStyle = TypeVar("AnyStyle", bound="Style")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +92,29 @@ class Extra(Protocol):
         ...
 
 
-def styled(style: Style, extras: Iterable[Extra]) -> Style:
+class Piece:
+    """What most extras have in common: nothing of their own on the GPU, and no wishes to the engine."""
+
+    features: ClassVar[frozenset[str]]
+
+    @property
+    def style(self) -> Mapping[str, Any]:
+        """Nothing of the engine."""
+        return {}
+
+    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all extras
+        """Keep nothing on the GPU."""
+        return None
+
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+        """Have no textures."""
+        return {}
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
+        """Have no uniforms."""
+
+
+def styled(style: AnyStyle, extras: Iterable[Extra]) -> AnyStyle:
     """Return a style with what extras want of it."""
     for extra in extras:
         if extra.style:

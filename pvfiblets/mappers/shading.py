@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.mappers.line_tubes import normals_to_view
-from pvfiblets.mappers.shader_effects import Draw
+from pvfiblets.mappers.scene import pixel_scale
+from pvfiblets.mappers.shader_effects import Draw, Piece
 
 if TYPE_CHECKING:
     from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
@@ -31,25 +32,7 @@ MAX_OUTLINE = 16.0
 """Pixels of the window; an outline's cost grows with the square of its width."""
 
 
-class _Piece:
-    """What extras have in common: a piece of the resolve, and no wishes to the engine."""
-
-    features: ClassVar[frozenset[str]]
-    style: ClassVar[Mapping[str, Any]] = {}
-
-    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all extras
-        """Keep nothing on the GPU."""
-        return None
-
-    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
-        """Have no textures."""
-        return {}
-
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Have no uniforms."""
-
-
-class Illuminated(_Piece):
+class Illuminated(Piece):
     """Every light finds the normal of a line that reflects most of it (Zöckler 1996, Mallo 2005), see `resolve`."""
 
     features = frozenset({"illuminated"})
@@ -66,7 +49,7 @@ class Illuminated(_Piece):
 
 
 @dataclass(frozen=True)
-class Ink(_Piece):
+class Ink(Piece):
     """One colour for all lines whatever they are coloured by, without light.
 
     Parameters
@@ -87,7 +70,7 @@ class Ink(_Piece):
 
 
 @dataclass(frozen=True)
-class AmbientOcclusion(_Piece):
+class AmbientOcclusion(Piece):
     """Lines and surfaces are darker where others stand over them.
 
     Parameters
@@ -146,7 +129,7 @@ class AmbientOcclusion(_Piece):
 
 
 @dataclass(frozen=True)
-class DepthCue(_Piece):
+class DepthCue(Piece):
     """Lines fade towards one colour with their distance from the viewer's plane.
 
     Parameters
@@ -190,7 +173,7 @@ class DepthCue(_Piece):
 
 
 @dataclass(frozen=True)
-class Halos(_Piece):
+class Halos(Piece):
     """Depth-dependent halos: a line cuts a gap into the lines behind it, the wider the farther they are behind.
 
     Everts et al. 2009. A halo is there where no line is, too: it hides what is behind it, and has a depth in the scene.
@@ -199,7 +182,7 @@ class Halos(_Piece):
     Parameters
     ----------
     width : float, optional
-        mm from a line's edge to its halo's, at most 24 pixels on the screen. By default a 250th of the diagonal of the
+        mm from a line's edge to its halo's, at most 24 pixels of the window. By default a 250th of the diagonal of the
         data's bounds, or what 2.5 pixels of the window take in the middle of the data, if that is more.
     depth : float, optional
         mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each
@@ -236,13 +219,15 @@ class Halos(_Piece):
         """Run them."""
         width, depth = self.sizes(draw)
         nearest = distances(draw)[0]
-        return {"fibletHaloMap": kept.draw(draw.buffer, lens_of(draw), width=width, depth=depth, nearest=nearest)}
+        lens, scale = lens_of(draw), _pixel_scale(draw)
+        texture = kept.draw(draw.buffer, lens, width=width, depth=depth, nearest=nearest, pixel_scale=scale)
+        return {"fibletHaloMap": texture}
 
     def sizes(self, draw: Draw) -> tuple[float, float]:
         """Return width and depth in mm."""
         width = self.width
         if width is None:
-            pixel = _enlarged(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
+            pixel = _pixel_scale(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
             width = max(extent(draw) / 250.0, LEAST_HALO * pixel)
         return width, extent(draw) / 20.0 if self.depth is None else self.depth
 
@@ -255,7 +240,7 @@ class Halos(_Piece):
 
 
 @dataclass(frozen=True, eq=False)
-class Silhouette(_Piece):
+class Silhouette(Piece):
     """An outline around the pixels that show chosen streamlines.
 
     Parameters
@@ -305,7 +290,7 @@ class Silhouette(_Piece):
                 f"a silhouette has {len(self.selected)} values for {draw.fiblets.n_streamlines} streamlines; "
                 "give one per streamline, empty ones included"
             )
-        return {"fibletOutlineMap": kept.draw(draw.buffer, self.selected, width=self.width * _enlarged(draw))}
+        return {"fibletOutlineMap": kept.draw(draw.buffer, self.selected, width=self.width * _pixel_scale(draw))}
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
         """Set the colour, and widen the rectangle in which anything can be."""
@@ -330,7 +315,7 @@ def extent(draw: Draw) -> float:
 def distances(draw: Draw) -> tuple[float, float]:
     """Return the distances in mm of the nearest and the farthest corner of the bounds; not behind the viewer."""
     bounds = np.asarray(draw.fiblets.bounds, np.float64)
-    slack = (draw.fiblets.promise + (draw.style.radius or 0.0)) * np.array([-1.0, 1.0])
+    slack = (draw.fiblets.promise + draw.style.thickness) * np.array([-1.0, 1.0])
     ends = [bounds[axis : axis + 2] + slack for axis in (0, 2, 4)]
     corners = np.array([[x, y, z, 1.0] for x in ends[0] for y in ends[1] for z in ends[2]])
     away = -(corners @ draw.frame.model_view[2])
@@ -347,15 +332,15 @@ def widen(program: Any, draw: Draw) -> None:
     """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
     from pvfiblets.engine.effects.halos import WIDEST
 
-    margin = draw.style.line_width / 2.0 + 2.0 + max(WIDEST, MAX_OUTLINE * _enlarged(draw))
-    slack = draw.fiblets.promise + (draw.style.radius or 0.0)
+    margin = draw.style.half_width + 2.0 + max(WIDEST, MAX_OUTLINE) * _pixel_scale(draw)
+    slack = draw.fiblets.promise + draw.style.reach
     rectangle = draw.frame.rectangle(draw.fiblets.bounds, slack, margin)
     program.SetUniform4f("fibletRectangle", rectangle)
 
 
-def _enlarged(draw: Draw) -> float:
-    """Return pixels of the framebuffer per pixel of the window: supersampling has more."""
-    return max(1.0, draw.view.size[0] / max(1, draw.renderer.GetSize()[0]))
+def _pixel_scale(draw: Draw) -> float:
+    """Return pixels of the framebuffer for a pixel in which users give a width."""
+    return pixel_scale(draw.renderer, draw.frame.viewport)
 
 
 def _colour(value: Any, name: str) -> Colour:

@@ -9,20 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.tubes import check_choices
+from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
+from pvfiblets.mappers.picking import nearest_pixel
 
 if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 __all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
+
 
 @dataclass(frozen=True)
 class TubeOptions(Options):
@@ -37,7 +39,7 @@ class TubeOptions(Options):
     iterations : int, optional
         Steps of one search at most; the solver's own number by default.
     min_width : float, default 1.0
-        Pixels that a tube takes at least, 0 to 64, however thin and far it is.
+        Pixels of the window that a tube takes at least, 0 to 64, however thin and far it is.
     culling : {'two-phase', 'none', None}
         How segments behind others are found out.
 
@@ -53,10 +55,10 @@ class TubeOptions(Options):
     min_width: float = 1.0
     culling: str | None = "two-phase"
 
-    def __post_init__(self) -> None:
-        """Check the values, and let None stand for no culling."""
-        if self.culling == "none":
-            object.__setattr__(self, "culling", None)
+    # It is a part of the style: another one is drawn by the same renderer.
+    NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset({"min_width"})
+
+    def _check(self) -> None:
         check_choices(self.silhouettes, self.solver, self.iterations, self.min_width, self.culling)
 
 
@@ -73,7 +75,7 @@ def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
     return TubeRenderer(ctx, tubes, **options)
 
 
-class TubeMapper(EngineMapper):
+class TubeMapper(EngineMapper[TubeOptions]):
     """Mapper that draws `SplineTubes` through VTK's own lights, passes, clipping planes and selection.
 
     Parameters
@@ -129,17 +131,6 @@ class TubeMapper(EngineMapper):
         """
         self._put(tubes)
 
-    @property
-    def options(self) -> TubeOptions:
-        """How rays are cast; set another `TubeOptions` to change it from the next frame on."""
-        options: TubeOptions = self._options
-        return options
-
-    @options.setter
-    def options(self, options: TubeOptions) -> None:
-        self._options = options
-        self._actor_modified()
-
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
@@ -160,12 +151,12 @@ class TubeMapper(EngineMapper):
             Segment and its parameter, 0 to 1, whose sphere the pixel shows. None where there is no tube. Other
             actors in front are not looked at.
         """
-        return self._pick(x, y, renderer=renderer, tolerance=tolerance, what="owner")
+        found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
+        return None if found is None else (int(found.texels["owner"][0]), float(found.texels["position"][0]))
 
     @property
     def _empty(self) -> bool:
         return not self._drawn.n_segments
 
-    @property
-    def _width(self) -> float:
-        return max(1.0, self.options.min_width)
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> TubeStyle:  # noqa: ARG002
+        return TubeStyle(min_width=self.options.min_width * pixel_scale)

@@ -38,7 +38,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     program.SetUniform2i("fibletSize", (width, height))
     # Decoded points may lie outside the bounds, by as much as the promise.
     slack = fiblets.promise + style.reach
-    rectangle = frame.rectangle(fiblets.bounds, slack, style.line_width / 2.0 + 2.0)
+    rectangle = frame.rectangle(fiblets.bounds, slack, style.half_width + 2.0)
     program.SetUniform4f("fibletRectangle", rectangle)
     # VTK takes matrices column by column here.
     program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())

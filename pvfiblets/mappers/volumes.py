@@ -20,13 +20,12 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
-from pvfiblets.mappers.picking import Shown, shown_by
+from pvfiblets.mappers.picking import PixelHit, nearest_pixel
 from pvfiblets.mappers.scene import others_opaque
-from pvfiblets.mappers.shader_effects import styled
-from pvfiblets.mappers.windows import Slot, WindowContext, gl_viewport
+from pvfiblets.mappers.windows import Slot, WindowContext
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.view import Style
+    from pvfiblets.engine.volumes import VolumeStyle
     from pvfiblets.volumes import RaycastVolume
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
     from pvfiblets.volumes.options import RaycastOptions
@@ -69,7 +68,7 @@ class RayHit:
     value: float
 
 
-class VolumeMapper(CutMapper):
+class VolumeMapper(CutMapper[Options]):
     """Mapper that draws a `RaycastVolume` through VTK's own lights, passes, clipping planes and selection.
 
     Parameters
@@ -184,37 +183,13 @@ class VolumeMapper(CutMapper):
         RayHit or None
             None where nothing of the volume is. Other actors are not looked at.
         """
-        shown = shown_by(self, renderer)
-        if shown is None or tolerance < 0:
+        found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
+        if found is None:
             return None
-        column, row = (int(place) for place in np.floor(shown.to_viewport((x, y))))
-        reach = int(tolerance * shown.enlarged.max())
-        width, height = shown.drawn.viewport[2:]
-        left, lower = max(column - reach, 0), max(row - reach, 0)
-        area = (left, lower, min(column + reach + 1, width) - left, min(row + reach + 1, height) - lower)
-        if min(area[2:]) < 1:
-            return None
-        shown.context.window.MakeCurrent()
-        with shown.context.foreign():
-            buffer = shown.slot.renderer.render(shown.drawn.view, shown.drawn.style)
-            ctx = shown.context.ctx
-            depth, owner = (_read(ctx, texture, area, "u4")[..., 0] for texture in (buffer.depth, buffer.owner))
-            values = _read(ctx, buffer.position, area, "f4")[..., 1]
-        rows, columns = np.nonzero(depth != EMPTY)
-        distance = (rows + lower - row) ** 2 + (columns + left - column) ** 2
-        if not len(rows) or distance.min() > reach * reach:
-            return None
-        best = np.lexsort((depth[rows, columns], distance))[0]
-        at = rows[best], columns[best]
-        voxel = tuple(int(index) for index in np.unravel_index(int(owner[at]), self.volume.shape, order="F"))
-        light = shown.drawn.style.casting.mode == "composite"
-        value = self.volume.values[voxel] if light else values[at]
-        place = _place(shown, (columns[best] + left, rows[best] + lower), int(depth[at]))
-        return RayHit((voxel[0], voxel[1], voxel[2]), place, float(value))
-
-    @property
-    def _width(self) -> float:
-        return 1.0
+        voxel = tuple(int(at) for at in np.unravel_index(int(found.texels["owner"][0]), self.volume.shape, order="F"))
+        light = found.shown.drawn.style.casting.mode == "composite"
+        value = self.volume.values[voxel] if light else found.texels["position"][1]
+        return RayHit((voxel[0], voxel[1], voxel[2]), _place(found), float(value))
 
     @property
     def _translucent(self) -> bool:
@@ -230,22 +205,13 @@ class VolumeMapper(CutMapper):
         found = depth.copy(viewport, moved=True)
         return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
 
-    def _draw(self, program: Any) -> None:
-        """Draw nothing where an enlarged picture, which is drawn tile by tile, has no part of a renderer in a tile."""
-        actor = self.actor
-        if actor is not None and min(gl_viewport(self._active.find(actor).GetRenderWindow())[2:]) < 1:
-            program.SetUniform2i("fibletSize", (0, 0))
-            return
-        super()._draw(program)
-
-    def _style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:  # noqa: ARG002
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> VolumeStyle:  # noqa: ARG002
         from pvfiblets.engine.volumes import VolumeStyle
 
         casting = self._casting
         if self.coarser is not None and _in_motion(renderer):
             casting = self.coarser.of(casting)
-        style = VolumeStyle(casting=casting, values=self._colouring.point_source)
-        return styled(style, self._extras.values())
+        return VolumeStyle(casting=casting)
 
 
 def _in_motion(renderer: vtkRenderer) -> bool:
@@ -275,21 +241,11 @@ def _check(casting: RaycastOptions, colouring: Colouring) -> None:
         raise ValueError(f"the colouring of mode {casting.mode!r} is {colouring.mode!r}; {instead}")
 
 
-def _place(shown: Shown, pixel: tuple[int, int], key: int) -> npt.NDArray[np.float64]:
+def _place(found: PixelHit) -> npt.NDArray[np.float64]:
     """Return where the depth of a pixel lies, mm."""
-    view = shown.drawn.view
-    x, y = (2.0 * (np.asarray(pixel) + 0.5) / view.size - 1.0).tolist()
-    far = (EMPTY - key) / 2.0**32
+    view = found.shown.drawn.view
+    x, y = (2.0 * (np.asarray(found.pixel) + 0.5) / view.size - 1.0).tolist()
+    far = (EMPTY - found.key) / 2.0**32
     place = np.linalg.solve(view.model_view_projection, [x, y, 1.0 - 2.0 * far, 1.0])
-    found: npt.NDArray[np.float64] = place[:3] / place[3]
-    return found
-
-
-def _read(ctx: Any, texture: Any, area: tuple[int, int, int, int], dtype: str) -> Any:
-    """Read a rectangle of a texture as (height, width, components)."""
-    framebuffer = ctx.framebuffer([texture])
-    try:
-        data = framebuffer.read(viewport=area, components=texture.components, dtype=dtype, alignment=1)
-    finally:
-        framebuffer.release()
-    return np.frombuffer(data, dtype=dtype).reshape(area[3], area[2], -1)
+    position: npt.NDArray[np.float64] = place[:3] / place[3]
+    return position

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.codec.restrict import restrict
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
 
 from .culling_pictures import Singles, Visible, averaged, colours, difference, errors, views, visible
@@ -42,7 +42,7 @@ FLIGHTS = (("far", STILL), ("far", SLOW), ("far", 10.0), ("far", 60.0), ("close"
 QUICK_FLIGHTS = (("far", SLOW), ("inside", SLOW))
 TOLERANCES = (0.25, 1.0, 2.0, 4.0)  # pixels, besides 0 and the default
 QUICK_TOLERANCES = (2.0,)
-DEFAULT_TOLERANCE = Style().tolerance
+DEFAULT_TOLERANCE = FibletStyle().tolerance
 SHARES = (2, 4)  # every second, every fourth streamline
 FINE = 3  # samples along a pixel's side of the finely sampled picture
 
@@ -119,7 +119,7 @@ class _Basis:
         if tolerance not in self._plain:
             renderer = FibletRenderer(self._ctx, self._scene.fiblets, culling=None)
             try:
-                flight = Flight(self._ctx, renderer, self._scene.path, Style(tolerance=tolerance))
+                flight = Flight(self._ctx, renderer, self._scene.path, FibletStyle(tolerance=tolerance))
                 self._plain[tolerance] = flight.pictures(visible)
             finally:
                 renderer.release()
@@ -129,7 +129,7 @@ class _Basis:
         renderer = FibletRenderer(self._ctx, self._scene.fiblets, culling=None)
         size = (FINE * view.size[0], FINE * view.size[1])
         try:
-            style = Style(tolerance=0.0, line_width=float(FINE))
+            style = FibletStyle(tolerance=0.0, line_width=float(FINE))
             picture = visible(renderer.render(View(size, view.model_view_projection), style))
         finally:
             renderer.release()
@@ -245,7 +245,7 @@ def measured(
         fiblets = restrict(fiblets, np.arange(0, fiblets.n_streamlines, variant.of))
     renderer = FibletRenderer(ctx, fiblets, culling=variant.culling)
     stack.callback(renderer.release)
-    flight = Flight(ctx, renderer, scene.path, Style(tolerance=variant.tolerance))
+    flight = Flight(ctx, renderer, scene.path, FibletStyle(tolerance=variant.tolerance))
     pictures = flight.pictures(visible)
     report: dict[str, Any] = renderer.explain()
     turns.add(flight)

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.engine.view import Style, View
+from pvfiblets.engine.fiblets.style import FibletStyle
+from pvfiblets.engine.view import View
 
 from .cameras import Camera, orbit
 
@@ -62,7 +63,7 @@ class Subject:
     name : str
     make : callable
         Takes a context and the feature's options; returns the engine's renderer.
-    style : Style
+    style : FibletStyle
         The plain one.
     bounds : sequence of float
         ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
@@ -72,7 +73,7 @@ class Subject:
 
     name: str
     make: Callable[..., Any]
-    style: Style
+    style: FibletStyle
     bounds: Sequence[float]
     features: list[Feature]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
+from pvfiblets.engine.view import MAX_CLIP_PLANES, View
 
 from .cameras import Camera
 from .features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture, lens_of
@@ -69,6 +69,7 @@ def brain_subject(fiblets: Any) -> Subject:
     """Return streamlines with what can be done to them; ``fiblets`` hold a per-point array ``'height'``."""
     from pvfiblets import regions
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
+    from pvfiblets.engine.fiblets.style import FibletStyle
 
     box = np.array(fiblets.bounds, np.float64).reshape(3, 2)
     middle, sides = box.mean(axis=1), box[:, 1] - box[:, 0]
@@ -116,7 +117,7 @@ def brain_subject(fiblets: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return FibletRenderer(ctx, fiblets, **options)
 
-    return Subject("streamlines", make, Style(), fiblets.bounds, features)
+    return Subject("streamlines", make, FibletStyle(), fiblets.bounds, features)
 
 
 def by_planes(region: Any) -> dict[str, Any]:
@@ -142,7 +143,7 @@ def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Any
 
 def tube_subject(tubes: Any) -> Subject:
     """Return spline tubes with what can be done to them; ``tubes`` hold values ``'scalars'``."""
-    from pvfiblets.engine.tubes import TubeRenderer
+    from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
 
     box = np.array(tubes.bounds, np.float64).reshape(3, 2)
     diagonal, middle = float(np.linalg.norm(box[:, 1] - box[:, 0])), box.mean(axis=1)
@@ -159,17 +160,17 @@ def tube_subject(tubes: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return TubeRenderer(ctx, tubes, **options)
 
-    return Subject("spline tubes", make, Style(), tubes.bounds, features)
+    return Subject("spline tubes", make, TubeStyle(), tubes.bounds, features)
 
 
 def halo_subject(lines: Any) -> Subject:
     """Return lines with halos, and what can be done to them; ``lines`` hold values ``'filter'``."""
-    from pvfiblets.engine.halos import HaloRenderer, HaloStyle
-    from pvfiblets.halos import Look
+    from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
+    from pvfiblets.halos import HaloStyle
 
     box = np.array(lines.bounds, np.float64).reshape(3, 2)
     diagonal, middle = float(np.linalg.norm(box[:, 1] - box[:, 0])), box.mean(axis=1)
-    look = Look(diagonal / 500.0, diagonal / 100.0, diagonal / 40.0, n_tapered=0)
+    look = HaloStyle(diagonal / 500.0, diagonal / 100.0, diagonal / 40.0, n_tapered=0)
     low, high = np.quantile(lines.values["filter"], (0.25, 0.75)).tolist()
 
     def looking(**changes: Any) -> dict[str, Any]:
@@ -189,7 +190,7 @@ def halo_subject(lines: Any) -> Subject:
     def make(ctx: Any, **options: Any) -> Any:
         return HaloRenderer(ctx, lines, **options)
 
-    return Subject("lines with halos", make, HaloStyle(look=look), lines.bounds, features)
+    return Subject("lines with halos", make, HaloDrawStyle(look=look), lines.bounds, features)
 
 
 def volume_subject(volume: Any) -> Subject:

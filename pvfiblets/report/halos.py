@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
 from .data import DataSet, file_sets, synthetic_tracking
@@ -60,7 +60,7 @@ class Variant:
         """Whether it is what the program does unasked."""
         return self.name == SMOOTH and self.times == 1
 
-    def look(self, look: Look) -> Look:
+    def look(self, look: HaloStyle) -> HaloStyle:
         """Return a look as this variant has it."""
         return replace(look, smooth=self.name != HARD)
 
@@ -94,7 +94,7 @@ class Scene:
     name: str
     group: str
     drawn: HaloLines | HaloPoints
-    look: Look
+    look: HaloStyle
     path: list[Camera]
     tractogram: DataSet | None = None
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.effects import HaloPass, Lens
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.engine.halos import HaloRenderer
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 
 from .cameras import Camera
 from .halos_pictures import Singles, Viewpoint, averaged, darkness_of, finer
@@ -31,7 +31,7 @@ PICTURE = (
 class Drawing(Protocol):
     """Something that draws halos, some samples a pixel."""
 
-    def render(self, camera: Any, look: Look) -> Any:
+    def render(self, camera: Any, look: HaloStyle) -> Any:
         """Draw, and return what :meth:`read` takes."""
         ...
 
@@ -67,7 +67,7 @@ class Strips:
         self.renderer = HaloRenderer(ctx, drawn, culling=culling)
         self._times = times
 
-    def render(self, camera: Viewpoint, look: Look) -> Any:
+    def render(self, camera: Viewpoint, look: HaloStyle) -> Any:
         """Draw."""
         return self.renderer.render(_view(camera, self._times), finer(look, self._times))
 
@@ -101,10 +101,10 @@ class FibletHalos:
         self._renderer = FibletRenderer(ctx, fiblets)
         self._halos = HaloPass(ctx)
 
-    def render(self, camera: Camera, look: Look) -> Any:
+    def render(self, camera: Camera, look: HaloStyle) -> Any:
         """Draw."""
         view = _view(camera, self._times)
-        buffer = self._renderer.render(view, Style(radius=0.5 * look.line_width))
+        buffer = self._renderer.render(view, FibletStyle(radius=0.5 * look.line_width))
         lens = Lens(view.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
         width = 0.5 * (look.strip_width - look.line_width)
         return buffer, self._halos.draw(buffer, lens, width=width, depth=look.max_displacement, nearest=camera.near)

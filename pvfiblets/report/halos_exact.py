@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine.gbuffer import EMPTY
-from pvfiblets.halos import HaloLines, Look
+from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, NOTHING, Picture
 from pvfiblets.halos.widths import halo_width
 
@@ -68,7 +68,7 @@ class Crossings:
     Attributes
     ----------
     lines : HaloLines
-    look : Look
+    look : HaloStyle
     size : tuple of int
     model_view_projection : numpy.ndarray
         What is drawn, and how it is seen.
@@ -79,7 +79,7 @@ class Crossings:
     """
 
     lines: HaloLines
-    look: Look
+    look: HaloStyle
     size: tuple[int, int]
     model_view_projection: Floats
     columns: Floats
@@ -97,7 +97,7 @@ def crossings() -> Crossings:
     ahead = [[[PIXEL * x, 0.0, 0.0], [PIXEL * x, height, 0.0]] for x in columns]
     behind = [[[0.0, PIXEL * y, -depth], [width, PIXEL * y, -depth]] for y, depth in zip(rows, DEPTHS, strict=True)]
     points = np.array(ahead + behind, np.float64).reshape(-1, 3)
-    look = Look(LINE_WIDTH, STRIP_WIDTH, DEEPEST, n_tapered=0, min_width=0.0)
+    look = HaloStyle(LINE_WIDTH, STRIP_WIDTH, DEEPEST, n_tapered=0, min_width=0.0)
     matrix = np.diag([2.0 / width, 2.0 / height, -1.0 / 20.0, 1.0])
     matrix[:2, 3] = -1.0
     truth = halo_width(DEPTHS, LINE_WIDTH, STRIP_WIDTH, DEEPEST) / PIXEL

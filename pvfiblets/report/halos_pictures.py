@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from pvfiblets.engine import View
 from pvfiblets.engine.gbuffer import EMPTY
-from pvfiblets.engine.halos import HaloStyle
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.engine.halos import HaloDrawStyle
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.spacing import default_widths
 
 from .cameras import ELEVATION, VERTICAL_ANGLE, Camera
@@ -62,12 +62,12 @@ def helices(count: int, vertices: int = 40) -> HaloLines:
     return HaloLines(points.reshape(-1, 3), vertices * np.arange(count + 1))
 
 
-def look_of(drawn: HaloLines | HaloPoints, **more: Any) -> Look:
+def look_of(drawn: HaloLines | HaloPoints, **more: Any) -> HaloStyle:
     """Return the look that the plotter gives data by default."""
     line, strip, displacement = default_widths(drawn)
     if isinstance(drawn, HaloPoints):
         more["n_tapered"] = 0
-    return Look(line, strip, displacement, **{"width_cue": WIDTH_CUE, **more})
+    return HaloStyle(line, strip, displacement, **{"width_cue": WIDTH_CUE, **more})
 
 
 def orbit(
@@ -120,9 +120,9 @@ def orbit(
     return [cameras[i : i + frames + 1] for i in range(0, len(cameras), frames + 1)]
 
 
-def finer(look: Look, times: int) -> HaloStyle:
+def finer(look: HaloStyle, times: int) -> HaloDrawStyle:
     """Return the style of so many samples along a pixel's side: the least width is in pixels of the picture."""
-    return HaloStyle(look=dataclasses.replace(look, min_width=look.min_width * times))
+    return HaloDrawStyle(look=dataclasses.replace(look, min_width=look.min_width * times))
 
 
 def averaged(samples: Singles, times: int) -> Singles:
@@ -139,7 +139,7 @@ def darkness_of(gbuffer: Any) -> Singles:
     return np.where(keys != EMPTY, ink, np.float16(0.0)).astype(np.float32)
 
 
-def picture(renderer: Any, camera: Viewpoint, look: Look, times: int, most: int = MOST_PIXELS) -> Singles:
+def picture(renderer: Any, camera: Viewpoint, look: HaloStyle, times: int, most: int = MOST_PIXELS) -> Singles:
     """Return a picture of so many samples along a pixel's side, averaged.
 
     Parameters
@@ -147,7 +147,7 @@ def picture(renderer: Any, camera: Viewpoint, look: Look, times: int, most: int 
     renderer : HaloRenderer
     camera : Camera
         Of the picture's size.
-    look : Look
+    look : HaloStyle
         Its least width is in pixels of the picture, however many samples these have.
     times : int
         Samples along a pixel's side.

@@ -52,7 +52,7 @@ class CastTubes:
     def __init__(self, ctx: Any, tubes: SplineTubes, solver: str = "auto") -> None:
         from pvfiblets.engine.tubes import TubeRenderer
 
-        self._ctx, self._renderer = ctx, TubeRenderer(ctx, tubes, solver=solver, min_width=0.0)
+        self._ctx, self._renderer = ctx, TubeRenderer(ctx, tubes, solver=solver)
         self.setting = self._renderer.solver
         self.ours = self.setting != "bisection"
         self.default = solver == "auto"
@@ -61,9 +61,10 @@ class CastTubes:
 
     def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
-        from pvfiblets.engine import Style, View
+        from pvfiblets.engine import View
+        from pvfiblets.engine.tubes import TubeStyle
 
-        self._gbuffer = self._renderer.render(View(camera.size, camera.model_view_projection), Style())
+        self._gbuffer = self._renderer.render(View(camera.size, camera.model_view_projection), TubeStyle(min_width=0.0))
         self._ctx.finish()
 
     def visible(self, lens: Lens) -> VisibleDepths:

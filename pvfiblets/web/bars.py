@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from pvfiblets.mappers.engine_mapper import USUAL_DPI
+from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.web.bar_places import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.document import Layer
 

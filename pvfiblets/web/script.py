@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.mappers.engine_mapper import USUAL_DPI
+from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
 
 from .pictures import EMPTY, unpacked_tangent
@@ -35,12 +35,12 @@ PLAIN = {"n_tapered": 0, "min_width": 0.0}
 
 def look(**more):
     """A look that suits :func:`wandering`: strips of some pixels, halos that hide some of what is behind them."""
-    return Look(**({"line_width": 1.0, "strip_width": 4.0, "max_displacement": 2.5} | more))
+    return HaloStyle(**({"line_width": 1.0, "strip_width": 4.0, "max_displacement": 2.5} | more))
 
 
 def styled(values=None, **more):
     """The same look with a style around it."""
-    return HaloStyle(look=look(**more), values=values)
+    return HaloDrawStyle(look=look(**more), values=values)
 
 
 # ------------------------------------------------------------------------------------------------------------ scenes
@@ -144,7 +144,7 @@ def draw_halos(gl, drawn, view, look, *, values=None, **options):
     """Draw one picture with a renderer of its own."""
     renderer = HaloRenderer(gl, drawn, **options)
     try:
-        return read_halos(renderer.render(view, HaloStyle(look=look, values=values)))
+        return read_halos(renderer.render(view, HaloDrawStyle(look=look, values=values)))
     finally:
         renderer.release()
 

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvfiblets.engine import FibletRenderer, Style
+from pvfiblets.engine import FibletRenderer, FibletStyle
 
 SIZE = (320, 240)
 EMPTY = 0xFFFFFFFF
 LARGEST_KEY = 0xFFFFFEFF
-EVERY_POINT = Style(tolerance=0.0)
+EVERY_POINT = FibletStyle(tolerance=0.0)
 
 
 class Picture(NamedTuple):

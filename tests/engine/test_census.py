@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets import compress
 from pvfiblets.codec import layout
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.synthetic import brain_streamlines
 
@@ -56,7 +56,7 @@ def test_counts_are_those_of_the_records(gl, brain, camera, name, planes):
     assert made.explain()["fiblets"] == {"total": n, "in_frustum": None, "drawn": None, "visible": None}
     for eye, target in (((0, -260, 40), (0, -10, 20)), ((0, -60, 10), (30, 0, 30)), ((0, -60, 10), (0, -200, 10))):
         view = View(SIZE, camera(SIZE, eye=eye, target=target), planes)
-        picture = read(made.render(view, Style()))
+        picture = read(made.render(view, FibletStyle()))
         counts = made.explain()["fiblets"]
         assert counts["total"] == n
         assert counts["visible"] == len(set(picture.owner[picture.drawn].tolist()))
@@ -92,8 +92,8 @@ def test_counting_changes_nothing(gl, fabricate, random_lines, camera):
     quiet, asked = FibletRenderer(gl, fiblets), FibletRenderer(gl, fiblets, max_buffer_bytes=12 * (16384 + 2))
     for k in range(4):
         view = View(SIZE, camera(SIZE, eye=(40 * k, -250, 60)), PLANES if k == 2 else [])
-        expected = read(quiet.render(view, Style(tolerance=0.0)))
-        picture = read(asked.render(view, Style(tolerance=0.0)))
+        expected = read(quiet.render(view, FibletStyle(tolerance=0.0)))
+        picture = read(asked.render(view, FibletStyle(tolerance=0.0)))
         assert (picture.owner == expected.owner).all()
         for made in (asked, quiet):
             if made is quiet:

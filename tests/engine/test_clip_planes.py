@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.shaders import assemble
 
@@ -143,7 +143,7 @@ def test_plane_through_the_camera_inside_the_data(gl, fabricate, random_lines, c
     matrix = camera(SIZE, eye=eye, target=(3, 10, 1), near=0.05, far=200.0, angle=80.0)
     planes = [(*normal, -float(np.dot(normal, eye)))]
     fiblets = fabricate([line for line in random_lines(150, seed=5) if len(line) > 1], kind=2)
-    for style in (EVERY_POINT, Style(4.0, tolerance=0.0)):
+    for style in (EVERY_POINT, FibletStyle(4.0, tolerance=0.0)):
         picture = draw(gl, fiblets, View(SIZE, matrix, planes), style)
         whole = draw(gl, fiblets, View(SIZE, matrix), style)
         if normal[0] == 0.0:  # all that is in front of the camera is kept; what crosses the plane is clipped once more
@@ -158,7 +158,7 @@ def test_plane_through_the_camera_inside_the_data(gl, fabricate, random_lines, c
 @pytest.mark.parametrize("width", [1.0, 5.0])
 def test_planes_that_leave_nothing(gl, fabricate, random_lines, camera, planes, width):
     fiblets = fabricate(random_lines(40), kind=2)
-    assert not draw(gl, fiblets, View(SIZE, camera(SIZE), planes), Style(width)).drawn.any()
+    assert not draw(gl, fiblets, View(SIZE, camera(SIZE), planes), FibletStyle(width)).drawn.any()
 
 
 def test_one_point_streamlines_are_cut_too(gl, fabricate, camera):
@@ -182,11 +182,11 @@ def test_planes_moved_live(gl, fabricate, random_lines, camera):
         target = renderer.render(view)
         assert target.generation == step
         assert renderer.render(View(SIZE, matrix, [(0, 1, 0, height)])).generation == step
-        fresh = draw(gl, fiblets, view, Style())
+        fresh = draw(gl, fiblets, view, FibletStyle())
         assert_same(read(target), fresh)
         seen.append(fresh)
     assert differences(seen[0], seen[1])
-    assert_same(read(renderer.render(View(SIZE, matrix))), draw(gl, fiblets, View(SIZE, matrix), Style()))
+    assert_same(read(renderer.render(View(SIZE, matrix))), draw(gl, fiblets, View(SIZE, matrix), FibletStyle()))
     renderer.release()
 
 
@@ -197,7 +197,7 @@ def test_wide_lines_show_nothing_beyond_a_plane(gl, fabricate, random_lines, cam
     planes = np.array(CUTS["two that face the viewer"] + [(0, 0, 1, 4)], float)
     fiblets = fabricate(random_lines(150, seed=6), kind=2)
     matrix = camera(SIZE, height=130 if parallel else None)
-    depth, *_ = wide = draw(gl, fiblets, View(SIZE, matrix, planes), Style(width, tolerance=0.0))
+    depth, *_ = wide = draw(gl, fiblets, View(SIZE, matrix, planes), FibletStyle(width, tolerance=0.0))
     thin = draw(gl, fiblets, View(SIZE, matrix, planes))
     assert near(wide.drawn)[thin.drawn].all()
     rows, columns = np.nonzero(depth != EMPTY)
@@ -212,16 +212,19 @@ def test_wide_lines_at_a_cut(gl, fabricate, camera):
     """A cut across a line is a straight edge; a line cut head-on shows its whole brush, however thin the slice."""
     across = fabricate([np.array([[-40.0, 0, 0.1], [40.0, 0, 0.1]])], kind=3)
     matrix = camera((200, 100), eye=(0, -260, 0), height=100.0)
-    drawn = draw(gl, across, View((200, 100), matrix, [(-1, 0, 0, 20)]), Style(9.0)).drawn
+    drawn = draw(gl, across, View((200, 100), matrix, [(-1, 0, 0, 20)]), FibletStyle(9.0)).drawn
     ends = [np.flatnonzero(row)[-1] for row in drawn if row.any()]
     assert len(ends) == 9
     assert set(ends) == {119}
     towards = fabricate([np.array([[0.1, -40.0, 0.1], [0.1, 40.0, 0.1]])], kind=3)
-    disc = draw(gl, towards, View((200, 100), matrix, [(0, 1, 0, 0.1), (0, -1, 0, 0.1)]), Style(9.0)).drawn
+    disc = draw(gl, towards, View((200, 100), matrix, [(0, 1, 0, 0.1), (0, -1, 0, 0.1)]), FibletStyle(9.0)).drawn
     assert disc.sum() == pytest.approx(np.pi * 4.5**2, rel=0.1)
 
 
-@pytest.mark.parametrize("style", [Style(), Style(6.0), Style(1.0, "arc_length"), Style(2.0, "curvature")])
+@pytest.mark.parametrize(
+    "style",
+    [FibletStyle(), FibletStyle(6.0), FibletStyle(values="arc_length"), FibletStyle(2.0, values="curvature")],
+)
 def test_fiblets_apart_from_the_planes_are_drawn_as_ever(gl, fabricate, random_lines, camera, style):
     """Planes far away change no bit; a plane that keeps a part changes nothing in that part's own streamlines."""
     fiblets = fabricate(random_lines(150, seed=3), kind=2, per_fiblet=12)

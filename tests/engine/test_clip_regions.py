@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress, regions
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.synthetic import brain_streamlines
 
 from .likeness import assert_like
@@ -77,7 +77,7 @@ def test_a_picture_shows_what_lies_in_the_region(gl, fabricate, random_lines, ca
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("name", ["ball", "torus", "box without a ball"])
 def test_tubes_are_cut_and_are_else_as_they_were(gl, fabricate, random_lines, camera, name, pipeline):
-    region, style = REGIONS[name], Style(radius=1.5)
+    region, style = REGIONS[name], FibletStyle(radius=1.5)
     fiblets = fabricate(random_lines(60, seed=2), kind=2)
     matrix = camera(SIZE, **FAR)
     view, free = View(SIZE, matrix, (), region), View(SIZE, matrix)
@@ -96,7 +96,7 @@ def test_tubes_are_cut_and_are_else_as_they_were(gl, fabricate, random_lines, ca
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES[1:])
-@pytest.mark.parametrize("style", [Style(), Style(6.0)], ids=["thin", "wide"])
+@pytest.mark.parametrize("style", [FibletStyle(), FibletStyle(6.0)], ids=["thin", "wide"])
 def test_pipelines_agree(gl, fabricate, random_lines, camera, pipeline, style):
     fiblets = fabricate(random_lines(100, seed=4), kind=1, per_fiblet=7)
     for region in (REGIONS["torus"], REGIONS["box without a ball"]):
@@ -108,7 +108,7 @@ def test_pipelines_agree(gl, fabricate, random_lines, camera, pipeline, style):
 def test_wide_lines_are_cut_by_their_pixels(gl, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(100, seed=5), kind=2)
     view = View(SIZE, camera(SIZE, **FAR), (), BALL)
-    picture = draw(gl, fiblets, view, Style(9.0, tolerance=0.0), culling=None)
+    picture = draw(gl, fiblets, view, FibletStyle(9.0, tolerance=0.0), culling=None)
     assert picture.drawn.any()
     assert (sure(BALL, unprojected(view, picture.window_depth))[picture.drawn] >= 0).all()
 

@@ -13,7 +13,7 @@ import pytest
 
 from pvfiblets import synthetic
 from pvfiblets.codec import layout
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.culling.coverage import CoverageBuffer, dilation_radius
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
@@ -260,9 +260,9 @@ def test_radius_is_between_the_thick_and_the_long(brain):
     ("then", "now"),
     [
         ({}, {"size": (400, 300)}),
-        ({"style": Style(line_width=5.0)}, {"style": Style()}),
+        ({"style": FibletStyle(line_width=5.0)}, {"style": FibletStyle()}),
         ({}, {"planes": [[0.0, 1.0, 0.0, 90.0]]}),
-        ({}, {"style": Style(tolerance=0.0)}),
+        ({}, {"style": FibletStyle(tolerance=0.0)}),
     ],
     ids=["size", "width", "planes", "tolerance"],
 )
@@ -270,7 +270,7 @@ def test_another_kind_of_picture_hides_nothing(gl, brain, orbit, then, now):
     renderer = FibletRenderer(gl, brain, culling="coverage")
 
     def draw(angle, *, size=SIZE, style=None, planes=()):
-        renderer.render(View(size, orbit(angle, size=size), planes), style or Style())
+        renderer.render(View(size, orbit(angle, size=size), planes), style or FibletStyle())
         return values_of(renderer._occlusion.texture)
 
     draw(0.0, **then)
@@ -305,7 +305,7 @@ def test_a_flattening_matrix_hides_nothing(gl, fabricate, random_lines):
 OLD_GL = """
 import moderngl, numpy as np
 from types import SimpleNamespace
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.culling.coverage import CoverageBuffer
 from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.opengl import OpenGL
@@ -318,9 +318,9 @@ buffer.radius = 2.0
 target = GBuffer(ctx, (256, 192))
 target.depth.write(np.full(256 * 192, 1 << 30, np.uint32).tobytes())
 view = View((256, 192), np.diag([0.02, 0.02, -0.02, 1.0]))
-buffer.before(target, view, Style())
-buffer.after(target, view, Style())
-buffer.before(target, view, Style())
+buffer.before(target, view, FibletStyle())
+buffer.after(target, view, FibletStyle())
+buffer.before(target, view, FibletStyle())
 values = np.frombuffer(buffer.texture.read(), "<f4").reshape(12, 16)
 assert ctx.error == "GL_NO_ERROR"
 print(ctx.version_code, round(float(values[6, 8]), 3), float(values[0, 0]) < -1e38)
@@ -355,7 +355,7 @@ def test_memory_runs_out_plainly(gl, brain, monkeypatch):
 
     monkeypatch.setattr(buffer, "_ctx", Full())
     with pytest.raises(EngineError, match="no memory for a coverage buffer of 4 x 4"):
-        buffer.before(target, View((64, 64), np.eye(4)), Style())
+        buffer.before(target, View((64, 64), np.eye(4)), FibletStyle())
     target.release()
     buffer.release()
     programs.release()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 
 from .marks import planned
 from .pictures import SIZE, assert_same, read
@@ -23,7 +23,7 @@ def test_culling_never_shows(gl, fabricate, random_lines, camera, monkeypatch, t
         eye = rng.uniform(-60, 60, 3)
         height = 40.0 if i % 3 == 0 else None
         matrix = camera(SIZE, eye=eye, target=eye + rng.normal(0, 1, 3), near=0.5, far=60.0, height=height)
-        cases.append((View(SIZE, matrix), Style(1.0 if i % 2 else 9.0, tolerance=tolerance)))
+        cases.append((View(SIZE, matrix), FibletStyle(1.0 if i % 2 else 9.0, tolerance=tolerance)))
 
     def pictures():
         renderer = FibletRenderer(gl, fiblets, culling=None)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import regions
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.regions.clip_planes import planes_of
 
 from .pictures import SIZE, draw, near
@@ -68,7 +68,7 @@ def test_as_many_planes_as_there_is_room_for():
     assert (len(planes), rest) == (1, BOX), "what does not fit leaves its place to what does"
 
 
-STYLES = {"thin": Style(), "wide": Style(5.0), "tubes": Style(radius=0.8)}
+STYLES = {"thin": FibletStyle(), "wide": FibletStyle(5.0), "tubes": FibletStyle(radius=0.8)}
 
 
 @pytest.mark.parametrize("style", STYLES)

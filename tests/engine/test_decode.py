@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec import layout, reference
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.shaders import assemble
 
@@ -48,7 +48,7 @@ def decoded_by_shader(gl, fiblets, source, threads):
     """(n_fiblets, 64, 3) positions relative to the anchor integers' origin, by one of the two programs."""
     renderer = FibletRenderer(gl, fiblets)
     # A view whose reference is anchor 0, or close: what comes back is then relative to `origin` exactly.
-    renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])), Style(tolerance=0.0))
+    renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])), FibletStyle(tolerance=0.0))
     program = gl.compute_shader(assemble("test", renderer._decoding_features(), source=source))
     out = storage_buffer(gl, np.zeros((fiblets.n_fiblets, 64, 3), np.float32), "points")
     block = np.frombuffer(renderer._shared.buffers["frame"].read(), "<u4").copy()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS, _Stage
 from pvfiblets.engine.fiblets.filter_textures import Filter
 
@@ -55,7 +55,7 @@ def sorted_layers(depths, count):
 def test_layers_are_the_streamlines_in_order(gl, fabricate, camera, pipeline, width, tolerance):
     fiblets = fabricate(bent_lines(25), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
-    view, style = View(SIZE, camera(SIZE, eye=(0, -200, 60))), Style(width, None, tolerance)
+    view, style = View(SIZE, camera(SIZE, eye=(0, -200, 60))), FibletStyle(width, values=None, tolerance=tolerance)
     depths, _ = one_by_one(renderer, fiblets, view, style)
     expected, streamline = sorted_layers(depths, 6)
     depth, ids, position = read_layers(renderer.render_layers(view, style, 6))
@@ -72,7 +72,7 @@ def test_layers_are_the_streamlines_in_order(gl, fabricate, camera, pipeline, wi
 def test_the_first_layer_is_the_picture(gl, fabricate, camera):
     fiblets = fabricate(bent_lines(25), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets)
-    view, style = View(SIZE, camera(SIZE)), Style(3.0, "arc_length")
+    view, style = View(SIZE, camera(SIZE)), FibletStyle(3.0, values="arc_length")
     picture = read(renderer.render(view, style))
     depth, ids, position = read_layers(renderer.render_layers(view, style, 3))
     renderer.release()
@@ -99,7 +99,7 @@ def test_a_wide_line_is_one_surface(gl, fabricate, camera, pipeline):
     fiblets = fabricate([aslant, away], kind=2)
     renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
     view = View(SIZE, camera(SIZE, eye=(0, -150, 20)))
-    depth, ids, _ = read_layers(renderer.render_layers(view, Style(12.0, tolerance=0.0), 4))
+    depth, ids, _ = read_layers(renderer.render_layers(view, FibletStyle(12.0, tolerance=0.0), 4))
     renderer.release()
     assert (depth[0] != EMPTY).sum() > 2000
     second = depth[1] != EMPTY
@@ -114,7 +114,7 @@ def test_a_line_that_comes_back_is_two_layers(gl, fabricate, camera):
     fiblets = fabricate([coil], kind=2)
     renderer = FibletRenderer(gl, fiblets)
     view = View(SIZE, camera(SIZE, eye=(0, -150, 3)))
-    depth, _, position = read_layers(renderer.render_layers(view, Style(8.0, tolerance=0.0), 3))
+    depth, _, position = read_layers(renderer.render_layers(view, FibletStyle(8.0, tolerance=0.0), 3))
     renderer.release()
     middle = depth[:, :, 120:200]
     both = middle[1] != EMPTY
@@ -132,7 +132,7 @@ def test_the_order_of_streamlines_does_not_matter(gl, fabricate, camera):
         # The same scale and lattice either way
         fiblets = fabricate([lines[i] for i in chosen], kind=2, per_fiblet=20)
         renderer = FibletRenderer(gl, fiblets)
-        depth, ids, _ = read_layers(renderer.render_layers(view, Style(3.0), 4))
+        depth, ids, _ = read_layers(renderer.render_layers(view, FibletStyle(3.0), 4))
         renderer.release()
         found.append((depth, np.where(depth != EMPTY, chosen[np.where(depth != EMPTY, ids[..., 0], 0)], -1)))
     (depth_a, ids_a), (depth_b, ids_b) = found
@@ -144,7 +144,7 @@ def test_the_order_of_streamlines_does_not_matter(gl, fabricate, camera):
 def test_planes_cut_every_layer(gl, fabricate, camera):
     fiblets = fabricate(bent_lines(25), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets)
-    matrix, style = camera(SIZE), Style(1.0)
+    matrix, style = camera(SIZE), FibletStyle(1.0)
     planes = [(1.0, 0.0, 0.0, 0.0)]
     cut = View(SIZE, matrix, planes)
     depths, _ = one_by_one(renderer, fiblets, cut, style)
@@ -159,7 +159,7 @@ def test_planes_cut_every_layer(gl, fabricate, camera):
 def test_nothing_is_done_twice_and_the_next_picture_is_unharmed(gl, fabricate, camera, monkeypatch):
     fiblets = fabricate(bent_lines(25), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets)
-    view, style = View(SIZE, camera(SIZE)), Style(3.0)
+    view, style = View(SIZE, camera(SIZE)), FibletStyle(3.0)
     first = renderer.render_layers(view, style, 3)
     before = read_layers(first)
     calls = []
@@ -197,14 +197,14 @@ def test_nothing_is_done_twice_and_the_next_picture_is_unharmed(gl, fabricate, c
 def test_a_number_of_layers_that_makes_no_sense(gl, fabricate, camera, count):
     renderer = FibletRenderer(gl, fabricate(bent_lines(2), kind=2))
     with pytest.raises(ValueError, match=f"{count} layers"):
-        renderer.render_layers(View(SIZE, camera(SIZE)), Style(), count)
+        renderer.render_layers(View(SIZE, camera(SIZE)), FibletStyle(), count)
     renderer.release()
 
 
 def test_a_picture_of_another_size(gl, fabricate, camera):
     renderer = FibletRenderer(gl, fabricate(bent_lines(12), kind=2))
     for size in (SIZE, (64, 48), SIZE):
-        buffer = renderer.render_layers(View(size, camera(size)), Style(), 3)
+        buffer = renderer.render_layers(View(size, camera(size)), FibletStyle(), 3)
         depth = read_layers(buffer)[0]
         assert buffer.size == size
         assert (near(depth[0] != EMPTY, 0) | (depth[1] == EMPTY)).all(), "a layer where the first has none"
@@ -217,7 +217,7 @@ def test_tubes_are_one_surface_each(gl, fabricate, camera, pipeline):
     fiblets = fabricate(lines, kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
     size = (100, 80)
-    view, style = View(size, camera(size, eye=(0, -200, 60))), Style(radius=4.0, across=True, tolerance=0.0)
+    view, style = View(size, camera(size, eye=(0, -200, 60))), FibletStyle(radius=4.0, across=True, tolerance=0.0)
     depths, _ = one_by_one(renderer, fiblets, view, style)
     expected, streamline = sorted_layers(depths, 4)
     buffer = renderer.render_layers(view, style, 4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.synthetic import brain_streamlines
 
 from .cells import thin_lines
@@ -88,7 +88,7 @@ def test_pixels_are_those_of_the_simplified_lines(gl, fabricate, random_lines, c
     single, factor = one_segment(*capsules(fiblets)[:4], matrix, SIZE, tolerance)
     assert (np.abs(factor - 1.0) > 1e-5).all(), "no fiblet may be on the verge"
     lines, index = simplified(fiblets, single)
-    picture = draw(gl, fiblets, View(SIZE, matrix), Style(tolerance=tolerance))
+    picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(tolerance=tolerance))
     expected = thin_lines(lines, matrix, SIZE)
     covered = np.isfinite(expected.depth)
     assert (picture.drawn == covered)[expected.clear].all()
@@ -120,7 +120,7 @@ def test_nothing_leads_far_away(gl, camera, distance):
     fiblets = compress(brain_streamlines(150, step=0.4))
     lines = [line.astype(float) for line in fiblets.decompress().to_list()]
     matrix = camera(SIZE, eye=(0, -distance, 0.3 * distance), near=0.2 * distance, far=5 * distance)
-    picture = draw(gl, fiblets, View(SIZE, matrix), Style())
+    picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle())
     whole = draw(gl, fiblets, View(SIZE, matrix))
     rows, columns = np.nonzero(picture.drawn)
     streamline = picture.ids[rows, columns, 0]
@@ -148,7 +148,7 @@ def test_ends_stay_where_they_are(gl, camera):
     fiblets = compress(Streamlines.from_list(lines), max_error=1e-3)
     lines = fiblets.decompress().to_list()
     matrix = camera(SIZE, eye=(0, -300, 0), height=12.0, near=100.0, far=500.0)  # 20 pixels to the millimetre
-    picture = draw(gl, fiblets, View(SIZE, matrix), Style())
+    picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle())
     rows, columns = np.nonzero(picture.drawn)
     streamline = picture.ids[rows, columns, 0]
     for s in np.unique(streamline):
@@ -163,9 +163,9 @@ def test_curled_fiblets_are_decoded(gl, fabricate, camera):
     ring = np.c_[20 * np.cos(t), 0 * t, 20 * np.sin(t)]
     fiblets = fabricate([ring, np.r_[ring[:-1], ring] + [45.0, 0, 0]], kind=3, per_fiblet=60)
     view = View(SIZE, camera(SIZE, eye=(0, -260, 0)))
-    assert_same(draw(gl, fiblets, view, Style()), draw(gl, fiblets, view))
+    assert_same(draw(gl, fiblets, view, FibletStyle()), draw(gl, fiblets, view))
     far = View(SIZE, camera(SIZE, eye=(0, -26000, 0), near=2e4, far=4e4))
-    assert 1 <= draw(gl, fiblets, far, Style()).drawn.sum() <= 2 * FAR_SIZE
+    assert 1 <= draw(gl, fiblets, far, FibletStyle()).drawn.sum() <= 2 * FAR_SIZE
 
 
 def test_streamlines_of_one_point_and_two(gl, fabricate, camera):
@@ -175,7 +175,7 @@ def test_streamlines_of_one_point_and_two(gl, fabricate, camera):
     fiblets = fabricate(lines, kind=3, per_fiblet=7)
     for distance in (150.0, 600.0, 6000.0):
         matrix = camera(SIZE, eye=(0, -distance, 0), near=distance / 2, far=2 * distance)
-        picture = draw(gl, fiblets, View(SIZE, matrix), Style())
+        picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle())
         cells = to_window(to_clip(np.array([line[-1] for line in fiblets.lines]), matrix), SIZE)[:, :2].astype(int)
         assert near(picture.drawn)[cells[:, 1], cells[:, 0]].all(), "every streamline's last point shows"
         steps = np.array([len(line) - 1 for line in lines])
@@ -197,7 +197,7 @@ def test_values_of_far_fiblets(gl, random_lines, camera, name):
     fiblets = compress(brain, per_point=["fa"])
     lines = [line.astype(float) for line in fiblets.decompress().to_list()]
     matrix = camera(SIZE, eye=(0, -600, 100), near=300.0, far=1000.0, angle=20.0)
-    picture = draw(gl, fiblets, View(SIZE, matrix), Style(1.0, name))
+    picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(1.0, values=name))
     drawn = picture.drawn
     place, value = picture.position[drawn].astype(float).T
     for s in np.unique(picture.ids[drawn][:, 0]):

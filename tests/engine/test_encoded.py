@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets import Streamlines, compress, read
 from pvfiblets.codec import layout
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.synthetic import brain_streamlines
 
 from .gl_lines import gl_lines
@@ -36,7 +36,7 @@ def assert_drawn_as_decompressed(gl, camera, fiblets, **limits):
     assert near(mask)[picture.drawn].mean() >= 0.99
     assert near(picture.drawn)[mask].mean() >= 0.99
     assert_pixels_name_places(picture, [line.astype(float) for line in lines], matrix, SIZE)
-    far = draw(gl, fiblets, View(SIZE, matrix), Style(), **limits)
+    far = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(), **limits)
     assert near(picture.drawn)[far.drawn].mean() >= 0.99
     assert near(far.drawn)[picture.drawn].mean() >= 0.99
 
@@ -90,7 +90,7 @@ def test_real_files(gl, camera, shared_data, name):
 def test_nothing_to_draw(gl, camera):
     fiblets = compress(Streamlines.from_list([]))
     renderer = FibletRenderer(gl, fiblets)
-    for style in (Style(), Style(3.0, "arc_length"), Style(1.0, "curvature")):
+    for style in (FibletStyle(), FibletStyle(3.0, values="arc_length"), FibletStyle(1.0, values="curvature")):
         gbuffer = renderer.render(View(SIZE, camera(SIZE)), style)
         assert (np.frombuffer(gbuffer.depth.read(), "<u4") == EMPTY).all()
     assert renderer.value_range("curvature") == (0.0, 0.0)
@@ -117,7 +117,7 @@ def test_a_camera_on_a_point_looking_along_a_line(gl, camera):
     renderer = FibletRenderer(gl, fiblets)
     for near_plane in (1e-6, 0.1, 5.0):
         matrix = camera(SIZE, eye=(0, 0, 0), target=(1, 0, 0), near=near_plane, far=100.0, angle=60.0)
-        for style in (Style(), Style(5.0, "curvature")):
+        for style in (FibletStyle(), FibletStyle(5.0, values="curvature")):
             gbuffer = renderer.render(View(SIZE, matrix), style)
             drawn = np.frombuffer(gbuffer.depth.read(), "<u4") != EMPTY
             position = np.frombuffer(gbuffer.position.read(), "<f4").reshape(-1, 2)[drawn]

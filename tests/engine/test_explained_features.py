@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress, regions
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.engine.shaders import Programs, switched_on
 from pvfiblets.engine.tubes import TubeRenderer
-from pvfiblets.halos import Look
+from pvfiblets.halos import HaloStyle
 from pvfiblets.halos.build import as_halo_lines
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.tubes import as_spline_tubes
@@ -75,16 +75,16 @@ def told(renderer, ran, draw):
 
 BOX = regions.Box((-30.0, 30.0, -30.0, 30.0, -30.0, 30.0))
 CASES = {
-    "plain": ({}, Style(), {}, {"ONE_SEGMENT", "LEVEL_OF_DETAIL", "CULL_PYRAMID"}),
-    "every point": ({}, Style(tolerance=0.0), {}, {"CULL_PYRAMID"}),
-    "no culling": ({"culling": None}, Style(), {}, {"ONE_SEGMENT"}),
-    "planes": ({}, Style(3.0), {"clip_planes": [(1.0, 0.0, 0.0, 0.0)]}, {"CLIP_PLANES", "WIDE_LINES"}),
-    "region": ({}, Style(), {"region": BOX}, {"CLIP_REGION"}),
-    "values": ({}, Style(values="height"), {}, {"VALUES_STORED"}),
-    "geometry": ({"pipeline": "geometry"}, Style(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
-    "geometry, no culling": ({"pipeline": "geometry", "culling": None}, Style(), {}, {"TEXTURE_DATA"}),
-    "tessellation": ({"pipeline": "tessellation"}, Style(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
-    "tubes": ({}, Style(radius=1.0), {}, {"TUBES", "WIDE_LINES"}),
+    "plain": ({}, FibletStyle(), {}, {"ONE_SEGMENT", "LEVEL_OF_DETAIL", "CULL_PYRAMID"}),
+    "every point": ({}, FibletStyle(tolerance=0.0), {}, {"CULL_PYRAMID"}),
+    "no culling": ({"culling": None}, FibletStyle(), {}, {"ONE_SEGMENT"}),
+    "planes": ({}, FibletStyle(3.0), {"clip_planes": [(1.0, 0.0, 0.0, 0.0)]}, {"CLIP_PLANES", "WIDE_LINES"}),
+    "region": ({}, FibletStyle(), {"region": BOX}, {"CLIP_REGION"}),
+    "values": ({}, FibletStyle(values="height"), {}, {"VALUES_STORED"}),
+    "geometry": ({"pipeline": "geometry"}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
+    "geometry, no culling": ({"pipeline": "geometry", "culling": None}, FibletStyle(), {}, {"TEXTURE_DATA"}),
+    "tessellation": ({"pipeline": "tessellation"}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
+    "tubes": ({}, FibletStyle(radius=1.0), {}, {"TUBES", "WIDE_LINES"}),
 }
 
 
@@ -111,11 +111,11 @@ def test_of_layers_and_filters(gl, fiblets, camera, ran):
     renderer.filtering = Filter(mask, None)
     views = [View(SIZE, camera(SIZE, eye=(x, -260, 60))) for x in (0.0, 3.0)]
     try:
-        seen = told(renderer, ran, lambda turn: renderer.render_layers(views[turn], Style(), 3))
+        seen = told(renderer, ran, lambda turn: renderer.render_layers(views[turn], FibletStyle(), 3))
         assert {"PEEL", "STREAMLINE_MASK"} <= seen
         renderer.drop_layers()
         assert set(renderer.explain()["features"]) == seen - {"PEEL"}, "layers that are gone are not told"
-        assert "PEEL" not in told(renderer, ran, lambda turn: renderer.render(views[1 - turn], Style()))
+        assert "PEEL" not in told(renderer, ran, lambda turn: renderer.render(views[1 - turn], FibletStyle()))
     finally:
         renderer.release()
 
@@ -142,7 +142,7 @@ def test_of_lines_with_halos(gl, camera, ran, cue):
     """A list of what shows narrows halos only where they are: without a cue the switch is off there, too."""
     lines, _ = as_halo_lines(brain_streamlines(300, step=1.0, seed=2))
     renderer = HaloRenderer(gl, lines)
-    style = HaloStyle(look=Look(line_width=0.4, strip_width=2.0, max_displacement=4.0, width_cue=cue))
+    style = HaloDrawStyle(look=HaloStyle(line_width=0.4, strip_width=2.0, max_displacement=4.0, width_cue=cue))
 
     def draw(turn):
         renderer.render(View(SIZE, camera(SIZE, eye=(3.0 * turn, -260, 60))), style)

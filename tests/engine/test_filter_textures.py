@@ -8,7 +8,7 @@ import pytest
 
 from pvfiblets import Streamlines, compress
 from pvfiblets.codec.restrict import restrict
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.filter_textures import Filter, FilterTextures, _stretch
 from pvfiblets.synthetic import brain_streamlines
@@ -16,7 +16,7 @@ from pvfiblets.synthetic import brain_streamlines
 from .pictures import EVERY_POINT, SIZE, assert_same, read
 
 PIPELINES = ["compute", "tessellation", "geometry"]
-STYLES = {"thin": EVERY_POINT, "far detail": Style(), "wide": Style(5.0, tolerance=0.0)}
+STYLES = {"thin": EVERY_POINT, "far detail": FibletStyle(), "wide": FibletStyle(5.0, tolerance=0.0)}
 
 
 def packed(bits):

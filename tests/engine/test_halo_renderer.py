@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, Style, View
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
+from pvfiblets.engine import EngineError, FibletStyle, View
+from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.reference import LINE
 
 from .halos import EYES, PLAIN, SIZE, assert_same, buffers, draw_halos, look, read_halos, scattered, styled, wandering
 
-STYLE = HaloStyle(look=look())
+STYLE = HaloDrawStyle(look=look())
 
 
 @pytest.fixture(scope="module", params=["lines", "points"])
@@ -248,8 +248,8 @@ def test_bad_choices_name_what_there_is(gl, drawn):
 
 
 def test_a_style_without_a_look(renderer, view):
-    with pytest.raises(TypeError, match="a HaloStyle"):
-        renderer.render(view, Style())
+    with pytest.raises(TypeError, match="a HaloDrawStyle"):
+        renderer.render(view, FibletStyle())
 
 
 def test_unknown_values_name_those_there_are(renderer, view):
@@ -300,7 +300,7 @@ def test_ten_million_vertices(gl, camera):
     size = (320, 240)
     view = View(size, camera(size, eye=(0, -300, 60), near=50.0, far=800.0, angle=40.0))
     renderer = HaloRenderer(gl, drawn)
-    style = HaloStyle(look=look(line_width=0.4, strip_width=2.0, max_displacement=4.0), values="n")
+    style = HaloDrawStyle(look=look(line_width=0.4, strip_width=2.0, max_displacement=4.0), values="n")
     picture = read_halos(renderer.render(view, style))
     assert (picture.kind == LINE).sum() > 10_000
     line = picture.kind == LINE

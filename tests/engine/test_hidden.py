@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import Style, View, shaders
+from pvfiblets.engine import FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.frame import frame_block
@@ -178,7 +178,7 @@ def shows(segments, projection, size, keys, half):
 def found_and_seen(gl, camera, size, name, width, rng, count=2000):
     """What hidden() says, and what chords of the capsules show: of all that it calls hidden, and of some others."""
     matrix = camera(size, **VIEWS[name])
-    projection = Projection(View(size, matrix), Style(width))
+    projection = Projection(View(size, matrix), FibletStyle(width))
     keys, level = depth_image(rng, size)
     capsules = random_capsules(rng, count, matrix, size, level)
     local = np.c_[projection.local(capsules[:, :3]), projection.local(capsules[:, 3:6]), capsules[:, 6]]

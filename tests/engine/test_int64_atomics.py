@@ -72,7 +72,7 @@ import sys
 import moderngl
 import numpy as np
 from pvfiblets import compress, synthetic
-from pvfiblets.engine import FibletRenderer, Style, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.fiblets.pipelines import compute
 
 ctx = moderngl.create_context(standalone=True, backend="egl")
@@ -108,7 +108,7 @@ def pictures(culling):
         projection = np.zeros((4, 4))
         projection[0, 0], projection[1, 1], projection[3, 2] = 2.4, 3.2, -1.0
         projection[2, 2:] = -600 / 400, -2 * 500 * 100 / 400
-        gbuffer = renderer.render(View((200, 150), projection @ view, planes), Style(width, values="arc_length"))
+        gbuffer = renderer.render(View((200, 150), projection @ view, planes), FibletStyle(width, values="arc_length"))
         yield [t.read() for t in (gbuffer.depth, gbuffer.owner)], [t.read() for t in (gbuffer.ids, gbuffer.position)]
     names = [p["name"] for p in renderer.explain()["passes"]]
     print(*names)

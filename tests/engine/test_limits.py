@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec import layout
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, passes, shaders
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, passes, shaders
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.engine.fiblets import upload
 from pvfiblets.engine.fiblets.chunks import plan_chunks, storage_buffer
@@ -191,11 +191,11 @@ def test_pictures_do_not_depend_on_limits(gl, several_pages, camera, name, culli
     )
     assert (len(whole._chunks), len(pieces._chunks)) == (1, len(several_pages.pages) - 1)
     for eye, style in (
-        ((0, -260, 60), Style()),
-        ((40, -250, 60), Style()),
-        ((0, -60, 10), Style(tolerance=0.0)),
-        ((0, -60, 10), Style(3.0)),
-        ((0, 160, 10), Style(3.0)),
+        ((0, -260, 60), FibletStyle()),
+        ((40, -250, 60), FibletStyle()),
+        ((0, -60, 10), FibletStyle(tolerance=0.0)),
+        ((0, -60, 10), FibletStyle(3.0)),
+        ((0, 160, 10), FibletStyle(3.0)),
     ):
         view = View(SIZE, camera(SIZE, eye=eye))
         assert_same(read(pieces.render(view, style)), read(whole.render(view, style)))
@@ -222,7 +222,7 @@ def test_streamlines_through_many_chunks_keep_their_places(gl, fabricate, camera
     fiblets = fabricate([line], kind=2, per_fiblet=1)
     assert len(fiblets.pages) == 4
     view = View(SIZE, camera(SIZE))
-    picture = draw(gl, fiblets, view, Style(1.0, "arc_length", 0.0), max_buffer_bytes=ONE_PAGE + 12)
+    picture = draw(gl, fiblets, view, FibletStyle(values="arc_length", tolerance=0.0), max_buffer_bytes=ONE_PAGE + 12)
     rows, columns = np.nonzero(picture.drawn)
     assert len(rows) > 1000
     clip = np.concatenate([fiblets.lines[0], np.ones((len(s), 1))], axis=1) @ view.model_view_projection.T

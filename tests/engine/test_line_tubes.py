@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, compute
 from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.shaders import EXTENDED, assemble
@@ -88,7 +88,7 @@ def pictured(gl, fiblets, view, style, **options):
 def test_every_pixel_shows_where_its_ray_enters(gl, knots, known, really, camera, name, radius, pipeline):
     """Depth, streamline, place and normal against rays and capsules in float64."""
     view = View(TINY, camera(TINY, **VIEWS[name]))
-    style = Style(radius=radius, tolerance=0.0, across=True)
+    style = FibletStyle(radius=radius, tolerance=0.0, across=True)
     picture, packed = pictured(gl, knots, view, style, pipeline=pipeline)
     expected = known(("every", name, radius), knots.lines, radius, view.model_view_projection, TINY)
     hit = np.isfinite(expected.depth)
@@ -120,7 +120,7 @@ def test_planes_cut_tubes_as_solids(gl, few, known, really, camera, name):
     matrix = camera(TINY, **{**VIEWS[name], **CLOSER[name]})
     pictures = {}
     for pipeline in PIPELINES:
-        style = Style(radius=5.0, tolerance=0.0, across=True)
+        style = FibletStyle(radius=5.0, tolerance=0.0, across=True)
         pictures[pipeline], packed = pictured(gl, few, View(TINY, matrix, SLAB), style, pipeline=pipeline)
         expected = known(("planes", name), few.lines, 5.0, matrix, TINY, SLAB)
         hit = np.isfinite(expected.depth)
@@ -146,11 +146,11 @@ def test_culling_loses_no_pixel(gl, really, fabricate, random_lines, camera, cul
     for radius, tolerance in ((0.4, 0.0), (1.5, 0.5)):
         for k, eye in enumerate(eyes):
             view = View(TINY, camera(TINY, eye=eye, target=(0, 0, 0) if k < 4 else (30, 0, 0), near=8.0))
-            style = Style(radius=radius, tolerance=tolerance)
+            style = FibletStyle(radius=radius, tolerance=tolerance)
             whole = draw(gl, fiblets, view, style, pipeline=pipeline, culling=None)
             target = renderer.render(view, style)
             if culling == "coverage":  # may lose some for a picture; of the same view none
-                renderer._drawn = None
+                renderer._made = None
                 target = renderer.render(view, style)
             assert_same(read(target), whole)
     renderer.release()
@@ -164,7 +164,7 @@ def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     renderer = FibletRenderer(gl, fiblets, pipeline="compute")
     counts = []
     for k in range(2):
-        renderer.render(View(SMALL, camera(SMALL, eye=(k, -160, 0))), Style(radius=1.5))
+        renderer.render(View(SMALL, camera(SMALL, eye=(k, -160, 0))), FibletStyle(radius=1.5))
         counts.append(renderer.explain()["fiblets"])
     renderer.release()
     assert counts[1]["drawn"] <= len(wall) + 2
@@ -179,14 +179,14 @@ def test_far_tubes_are_lines_and_never_vanish(gl, really, fabricate, camera, tol
     line = np.cumsum(rng.normal(0, 1, (40, 3)) * [9, 1, 6], axis=0)
     fiblets = fabricate([line - line.mean(0)], kind=3)
     matrix = camera(SIZE)
-    drawn = draw(gl, fiblets, View(SIZE, matrix), Style(radius=0.005, tolerance=tolerance), pipeline=pipeline)
+    drawn = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(radius=0.005, tolerance=tolerance), pipeline=pipeline)
     nearest = distances_to(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)
     assert drawn.drawn[nearest < 0.49].all()
     assert not drawn.drawn[nearest > 0.52].any()
     for eye in (-400.0, -2000.0, -8000.0):
         view = View(SIZE, camera(SIZE, eye=(0, eye, 0), far=9000.0))
-        shown = draw(gl, fiblets, view, Style(radius=0.3, tolerance=tolerance), pipeline=pipeline).drawn
-        thin = draw(gl, fiblets, view, Style(tolerance=tolerance), pipeline=pipeline).drawn
+        shown = draw(gl, fiblets, view, FibletStyle(radius=0.3, tolerance=tolerance), pipeline=pipeline).drawn
+        thin = draw(gl, fiblets, view, FibletStyle(tolerance=tolerance), pipeline=pipeline).drawn
         assert near(shown)[thin].all()
 
 
@@ -196,7 +196,7 @@ def test_a_camera_inside_a_tube_looks_through(gl, really, fabricate, camera, pip
     fiblets = fabricate([np.array([[-50.0, 0, 0], [50.0, 0, 0]]), np.array([[0.0, 30, -40], [0.0, 30, 40]])], kind=3)
     for eye, target in (((0.5, 0.2, 0.1), (0, 30, 0)), ((0.0, 0, 0), (40, 1, 0)), ((-50.0, 0, 0), (0, 0, 0))):
         view = View(TINY, camera(TINY, eye=eye, target=target, near=0.01, far=300.0, angle=70.0))
-        picture, packed = pictured(gl, fiblets, view, Style(radius=2.0, across=True), pipeline=pipeline)
+        picture, packed = pictured(gl, fiblets, view, FibletStyle(radius=2.0, across=True), pipeline=pipeline)
         expected = entries(fiblets.lines, 2.0, view.model_view_projection, TINY)
         hit = np.isfinite(expected.depth)
         assert (hit ^ picture.drawn).sum() <= 2
@@ -215,7 +215,7 @@ def test_any_scale_and_far_from_the_origin(gl, really, fabricate, camera, scale)
     place[:3, 3] = -1e6 / scale
     matrix = camera(SMALL) @ place
     radius = 4.0 * scale
-    picture = draw(gl, fiblets, View(SMALL, matrix), Style(radius=radius, tolerance=0.0))
+    picture = draw(gl, fiblets, View(SMALL, matrix), FibletStyle(radius=radius, tolerance=0.0))
     moved = camera(SMALL)
     expected = entries([(fiblets.lines[0] - 1e6) / scale], 4.0, moved, SMALL)
     hit = np.isfinite(expected.depth)
@@ -236,7 +236,7 @@ def test_where_across_a_wide_line(gl, fabricate, camera, width, pipeline):
     for line in ends:
         fiblets = fabricate([line], kind=3)
         view = View(SMALL, camera(SMALL))
-        picture, across = pictured(gl, fiblets, view, Style(width, tolerance=0.0, across=True), pipeline=pipeline)
+        picture, across = pictured(gl, fiblets, view, FibletStyle(width, tolerance=0.0, across=True), pipeline=pipeline)
         a, b = to_window(to_clip(fiblets.lines[0], view.model_view_projection), SMALL)[:, :2]
         y, x = np.mgrid[: SMALL[1], : SMALL[0]] + 0.5
         run = (b - a) / np.linalg.norm(b - a)
@@ -257,13 +257,13 @@ def test_a_picture_pays_only_for_what_it_shows(gl, knots, camera):
 
     pixels = SMALL[0] * SMALL[1]
     for style, features, nbytes in (
-        (Style(), set(), 24),
-        (Style(across=True), set(), 24),
-        (Style(3.0), {"WIDE_LINES"}, 24),
-        (Style(3.0, across=True), {"WIDE_LINES", "CROSS_LINE"}, 26),
-        (Style(radius=1.0), {"WIDE_LINES", "TUBES"}, 24),
-        (Style(radius=1.0, across=True), {"WIDE_LINES", "TUBES", "CROSS_LINE"}, 28),
-        (Style(), set(), 24),
+        (FibletStyle(), set(), 24),
+        (FibletStyle(across=True), set(), 24),
+        (FibletStyle(3.0), {"WIDE_LINES"}, 24),
+        (FibletStyle(3.0, across=True), {"WIDE_LINES", "CROSS_LINE"}, 26),
+        (FibletStyle(radius=1.0), {"WIDE_LINES", "TUBES"}, 24),
+        (FibletStyle(radius=1.0, across=True), {"WIDE_LINES", "TUBES", "CROSS_LINE"}, 28),
+        (FibletStyle(), set(), 24),
     ):
         target, found, sizes = state(style)
         assert found == features
@@ -341,7 +341,7 @@ def test_mesh_stages_link(tmp_path, kind, asked):
 @pytest.mark.parametrize("name", ["perspective", "close"])
 def test_mesh_stages_draw_the_same_tubes(gl, monkeypatch, knots, camera, name, planes, serial):
     """Run as compute shaders, where there are no mesh shaders."""
-    view, style = View(SMALL, camera(SMALL, **VIEWS[name]), planes), Style(radius=3.0, tolerance=0.0, across=True)
+    view, style = View(SMALL, camera(SMALL, **VIEWS[name]), planes), FibletStyle(radius=3.0, tolerance=0.0, across=True)
     expected, normals = pictured(gl, knots, view, style, pipeline="geometry", culling=None)
     renderer = emulated_renderer(monkeypatch, gl, knots, serial=serial, culling=None)
     target = renderer.render(view, style)
@@ -382,7 +382,7 @@ def test_software_opengl_draws_the_largest_tubes_whole(gl, fabricate, camera):
     fiblets = fabricate([np.array([[-30.0, 0, 0], [30.0, 0, 0.5]])], kind=3)
     for more in ({"eye": (0, -60, 0), "near": 1.0}, {"height": 30.0}):
         view = View(SIZE, camera(SIZE, **more))
-        picture = draw(gl, fiblets, view, Style(radius=18.0))
+        picture = draw(gl, fiblets, view, FibletStyle(radius=18.0))
         expected = entries(fiblets.lines, 18.0, view.model_view_projection, SIZE)
         assert np.isfinite(expected.depth).sum() > 40_000
         assert (np.isfinite(expected.depth) ^ picture.drawn).sum() <= 2
@@ -393,7 +393,8 @@ def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camer
     fiblets = fabricate(random_lines(60, seed=5), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets, pipeline="compute")
     view = View(SIZE, camera(SIZE))
-    for style in (Style(), Style(radius=2.0, values="curvature"), Style(radius=1.0, values="arc_length"), Style(3.0)):
+    styles = FibletStyle(radius=2.0, values="curvature"), FibletStyle(radius=1.0, values="arc_length")
+    for style in (FibletStyle(), *styles, FibletStyle(3.0)):
         picture = read(renderer.render(view, style))
         pipeline = "compute" if style.radius is None else "geometry"
         assert_same(picture, draw(gl, fiblets, view, style, pipeline=pipeline))
@@ -407,13 +408,13 @@ def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camer
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])
 def test_a_radius_that_is_none_is_told(radius):
     with pytest.raises(ValueError, match="give a finite number of millimetres above 0"):
-        Style(radius=radius)
+        FibletStyle(radius=radius)
 
 
 def test_matrices_without_depth_draw_nothing_and_no_nan(gl, really, knots):
     for matrix in (np.zeros((4, 4)), np.diag([0.01, 0.01, 0.0, 1.0]), np.diag([0.01, 0.0, 0.01, 1.0])):
         for pipeline in PIPELINES:
-            picture = draw(gl, knots, View((32, 24), matrix), Style(radius=2.0), pipeline=pipeline)
+            picture = draw(gl, knots, View((32, 24), matrix), FibletStyle(radius=2.0), pipeline=pipeline)
             assert np.isfinite(picture.position[picture.drawn]).all()
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from pvfiblets import FibletSet, Streamlines, compress
 from pvfiblets.codec.restrict import even_share, restrict
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import memory_fit, renderer, upload
 from pvfiblets.engine.fiblets.pipelines import Limits
@@ -77,11 +77,11 @@ def test_a_sample_is_an_even_share_and_fits(gl, brain, camera, kilobytes):
     made = FibletRenderer(gl, brain, fit="sample", max_total_bytes=limit)
     assert 0.0 < made.share < 1.0
     assert made.explain()["share"] == made.share
-    made.render(view, Style(values="height"))
+    made.render(view, FibletStyle(values="height"))
     assert 0.6 * limit < bytes_of(made) <= limit
     taken = restrict(brain, even_share(brain, made.share))
     assert len(np.flatnonzero(np.diff(taken.offsets()))) == pytest.approx(3000 * made.share)
-    for style in (Style(), Style(values="height"), Style(2.0, "arc_length")):
+    for style in (FibletStyle(), FibletStyle(values="height"), FibletStyle(2.0, values="arc_length")):
         picture = read(made.render(view, style))
         assert picture.drawn.sum() > 1000
         assert_same(picture, draw(gl, taken, view, style))
@@ -314,7 +314,7 @@ def test_a_mapped_file_is_not_in_memory_beside_its_copy(gl, tmp_path, pipeline):
 def test_a_mapped_file_draws_the_same_picture(gl, brain, camera, tmp_path):
     brain.save(tmp_path / "brain.fiblets")
     view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
-    for style in (Style(), Style(values="height")):
+    for style in (FibletStyle(), FibletStyle(values="height")):
         assert_same(draw(gl, FibletSet.open(tmp_path / "brain.fiblets"), view, style), draw(gl, brain, view, style))
 
 

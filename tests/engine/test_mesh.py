@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress, synthetic
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
 from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
@@ -174,7 +174,7 @@ def test_pictures_of_lattices(gl, monkeypatch, fabricate, lines, camera, kind, w
     }
     matrix = camera(SIZE, **cameras.get(where, {}))
     planes = [[0.6, 0.5, -0.3, 10.0], [-1.0, 0.0, 0.0, 30.0]] if where == "planes" else []
-    view, style = View(SIZE, matrix, planes), Style(width, tolerance=0.5 if where == "far" else 0.0)
+    view, style = View(SIZE, matrix, planes), FibletStyle(width, tolerance=0.5 if where == "far" else 0.0)
     serial, expected = pictures(gl, monkeypatch, fiblets, view, style, serial=True, other="geometry")
     different = differences(serial, expected)
     assert not {"depth", "owner"} & set(different)
@@ -196,7 +196,7 @@ def brain():
 @pytest.mark.parametrize("tolerance", [0.0, 3.0], ids=["near", "far"])
 def test_pictures_of_directions_and_their_values(gl, monkeypatch, brain, camera, serial, values, tolerance):
     matrix = camera(SIZE, eye=(-250, 120, 90), target=(0, -18, 8), angle=35.0)
-    style = Style(1.0, values=values, tolerance=tolerance)
+    style = FibletStyle(1.0, values=values, tolerance=tolerance)
     picture, expected = pictures(gl, monkeypatch, brain, View(SIZE, matrix), style, serial=serial)
     assert_alike(picture, expected)
     same = (picture.owner == expected.owner) & picture.drawn & expected.drawn

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
 from .likeness import assert_like
 from .pictures import SIZE, read
@@ -23,8 +23,9 @@ def scenes():
     """Views and styles, by plain numbers, that a process of its own can draw again."""
     near = {"eye": (0, -60, 10), "near": 25.0, "far": 90.0}
     return [
-        ({}, (), Style()), ({}, (), Style(5.0)), ({"height": 150.0}, (), Style(values="arc_length")),
-        ({}, BOX, Style(values="curvature")), (near, BOX, Style(5.0, "curvature")), (near, (), Style(tolerance=0.0)),
+        ({}, (), FibletStyle()), ({}, (), FibletStyle(5.0)), ({"height": 150.0}, (), FibletStyle(values="arc_length")),
+        ({}, BOX, FibletStyle(values="curvature")), (near, BOX, FibletStyle(5.0, values="curvature")),
+        (near, (), FibletStyle(tolerance=0.0)),
     ]  # fmt: skip
 
 

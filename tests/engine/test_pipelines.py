@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets import measures
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
 from pvfiblets.engine.fiblets.pipelines.raster import RasterTarget, SeenTexture
@@ -29,10 +29,10 @@ VIEWS = {
     "far": {"eye": (0, -900, 10), "far": 2000.0},
 }
 STYLES = {
-    "every point": Style(tolerance=0.0),
-    "far detail": Style(tolerance=0.5),
-    "3 pixels": Style(3.0),
-    "12 pixels": Style(12.0),
+    "every point": FibletStyle(tolerance=0.0),
+    "far detail": FibletStyle(tolerance=0.5),
+    "3 pixels": FibletStyle(3.0),
+    "12 pixels": FibletStyle(12.0),
 }
 
 
@@ -58,7 +58,7 @@ def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name
 def test_lattice_kinds_and_fine_anchors(gl, fabricate, random_lines, camera, kind, low, pipeline):
     ids = np.arange(40) * 3 + 5
     fiblets = fabricate(random_lines(40, seed=kind), kind=kind, low=low, rank_to_id=ids, per_fiblet=7 * kind)
-    picture = compared(gl, fiblets, View(SIZE, camera(SIZE)), Style(), pipeline)
+    picture = compared(gl, fiblets, View(SIZE, camera(SIZE)), FibletStyle(), pipeline)
     assert set(picture.ids[picture.drawn][:, 0].tolist()) <= set(ids.tolist())
 
 
@@ -69,7 +69,7 @@ def test_a_made_up_brain(gl, camera, pipeline):
     assert fiblets.n_points > 1 << 16
     size = (640, 480)
     for eye in ((0, -260, 60), (150, 150, 30)):
-        for style in (Style(), Style(tolerance=0.0), Style(3.0)):
+        for style in (FibletStyle(), FibletStyle(tolerance=0.0), FibletStyle(3.0)):
             compared(gl, fiblets, View(size, camera(size, eye=eye)), style, pipeline)
 
 
@@ -83,7 +83,7 @@ def test_a_made_up_brain(gl, camera, pipeline):
 def test_clip_planes(gl, fabricate, random_lines, camera, planes, width, pipeline):
     fiblets = fabricate(random_lines(150, seed=3), kind=2)
     for more in ({}, {"height": 130.0}):
-        compared(gl, fiblets, View(SIZE, camera(SIZE, **more), planes), Style(width), pipeline)
+        compared(gl, fiblets, View(SIZE, camera(SIZE, **more), planes), FibletStyle(width), pipeline)
 
 
 @pytest.mark.parametrize("pipeline", RASTER)
@@ -95,7 +95,7 @@ def test_per_point_values(gl, fabricate, random_lines, camera, values, pipeline)
         codes = rng.integers(0, np.iinfo(dtype).max, fiblets.n_points, dtype, endpoint=True)
         fiblets.per_point[name] = SimpleNamespace(codes=codes, lo=-2.0, hi=3.0, max_error=0.0)
     for view in (View(SIZE, camera(SIZE)), View(SIZE, camera(SIZE, **VIEWS["far"])), View(SIZE, camera(SIZE), BOX)):
-        for style in (Style(1.0, values), Style(5.0, values)):
+        for style in (FibletStyle(1.0, values=values), FibletStyle(5.0, values=values)):
             compared(gl, fiblets, view, style, pipeline)
 
 
@@ -119,7 +119,7 @@ def test_one_point_streamlines_are_dots(gl, fabricate, camera, width, pipeline):
     points = np.random.default_rng(2).uniform(-40, 40, (300, 1, 3))
     fiblets = fabricate(list(points), kind=1)
     view = View(SIZE, camera(SIZE))
-    picture = compared(gl, fiblets, view, Style(width), pipeline)
+    picture = compared(gl, fiblets, view, FibletStyle(width), pipeline)
     clip = np.concatenate([np.concatenate(fiblets.lines), np.ones((300, 1))], axis=1) @ view.model_view_projection.T
     cells = ((clip[:, :2] / clip[:, 3:] + 1) / 2 * SIZE).astype(int)
     assert picture.drawn[cells[:, 1], cells[:, 0]].mean() > (0.99 if width < 2 or width > 4 else 0.6)
@@ -132,7 +132,7 @@ def test_segments_longer_than_the_picture(gl, fabricate, camera, pipeline):
     rng = np.random.default_rng(8)
     fiblets = fabricate(rng.uniform(-300, 300, (60, 3, 3)), kind=3)
     for more in ({}, {"height": 60.0}, {"eye": (0, 0, 0), "target": (1, 1, 0), "near": 0.1}):
-        for style in (Style(), Style(6.0)):
+        for style in (FibletStyle(), FibletStyle(6.0)):
             compared(gl, fiblets, View(SIZE, camera(SIZE, **more)), style, pipeline)
 
 
@@ -143,7 +143,7 @@ def test_paging_changes_nothing(gl, fabricate, random_lines, camera, pipeline):
     renderer = FibletRenderer(gl, fiblets, **few)
     assert len(renderer._chunks) == 3
     renderer.release()
-    for style in (Style(), Style(2.5, "arc_length"), Style(tolerance=0.0)):
+    for style in (FibletStyle(), FibletStyle(2.5, values="arc_length"), FibletStyle(tolerance=0.0)):
         for culling in (None, "two-phase"):
             whole = draw(gl, fiblets, view, style, pipeline=pipeline, culling=culling)
             pieces = draw(gl, fiblets, view, style, culling=culling, **few)
@@ -173,7 +173,7 @@ def test_two_phase_culling_changes_no_bit(gl, fabricate, random_lines, camera, w
     order = np.random.default_rng(3).permutation(450) % 150
     fiblets = fabricate([lines[i] for i in order], kind=2, per_fiblet=17)
     culled, whole = (FibletRenderer(gl, fiblets, pipeline=pipeline, culling=c) for c in ("two-phase", None))
-    style = Style(width)
+    style = FibletStyle(width)
     for number, view in enumerate(jumps(camera)):
         picture, expected = read(culled.render(view, style)), read(whole.render(view, style))
         assert not differences(picture, expected), f"picture {number}"
@@ -209,7 +209,7 @@ def test_ties_go_to_the_first_whatever_was_seen(gl, fabricate, random_lines, cam
     marks = np.zeros(seen.size[0] * seen.size[1], np.uint8)
     marks[n : 2 * n] = 1  # as if the copies had been seen and the lines not
     seen.texture.write(marks.tobytes())
-    renderer._drawn = None
+    renderer._made = None
     assert_same(read(renderer.render(view)), first)
     renderer.release()
 
@@ -259,7 +259,7 @@ def test_bindings_are_left_as_they_were(gl, fabricate, random_lines, camera, pip
     with functions.framebuffers_kept():
         mine.use()
         for near in (10.0, 20.0):
-            renderer.render(View(SIZE, camera(SIZE, near=near)), Style(values="arc_length"))
+            renderer.render(View(SIZE, camera(SIZE, near=near)), FibletStyle(values="arc_length"))
             assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == mine.glo
             assert gl.fbo is mine
     renderer.release()
@@ -273,7 +273,7 @@ def test_what_vtk_leaves_on_does_not_matter(gl, fabricate, random_lines, camera)
     """Blending, culling of faces, another depth test, wide lines' wireframes and a scissor."""
     fiblets, view = fabricate(random_lines(30), kind=2), View(SIZE, camera(SIZE))
     for pipeline in RASTER:
-        for style in (Style(), Style(4.0)):
+        for style in (FibletStyle(), FibletStyle(4.0)):
             expected = draw(gl, fiblets, view, style, pipeline=pipeline)
             mine = gl.simple_framebuffer((400, 400))
             mine.scissor = 10, 10, 20, 20
@@ -332,7 +332,7 @@ def test_empty_pixels_are_empty(gl, fabricate, random_lines, camera):
         renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
         assert read(renderer.render(View(SIZE, camera(SIZE)))).drawn.any()
         away = View(SIZE, camera(SIZE, eye=(0, -260, 60), target=(0, -500, 60)))
-        for style in (Style(), Style(5.0)):
+        for style in (FibletStyle(), FibletStyle(5.0)):
             picture = read(renderer.render(away, style))
             assert (picture.depth == EMPTY).all()
             assert (picture.owner == EMPTY).all()

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
 from .pictures import SIZE, read
 
@@ -32,7 +32,7 @@ def curvature(line):
 def draw_values(gl, fiblets, matrix, name, *, tolerance=0.0, **limits):
     """Streamline, place and value of every drawn pixel, and the renderer's range."""
     renderer = FibletRenderer(gl, fiblets, **limits)
-    picture = read(renderer.render(View(SIZE, matrix), Style(1.0, name, tolerance)))
+    picture = read(renderer.render(View(SIZE, matrix), FibletStyle(1.0, values=name, tolerance=tolerance)))
     found_range = renderer.value_range(name)
     renderer.release()
     drawn = picture.drawn

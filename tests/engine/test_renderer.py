@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View, gbuffer, passes
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, gbuffer, passes
 
 from .pictures import SIZE, assert_same, draw, read
 
@@ -17,7 +17,7 @@ LATER_PASSES = ["last picture", *PASSES[:3], "guessed", *PASSES[3:]]
 def test_ties_go_to_the_first_and_pictures_repeat(gl, fabricate, random_lines, camera, tolerance):
     """Every line four times over: ties in every pixel, and still the same bytes every time."""
     fiblets = fabricate(random_lines(60, seed=11) * 4, kind=2)
-    view, style = View(SIZE, camera(SIZE)), Style(tolerance=tolerance)
+    view, style = View(SIZE, camera(SIZE)), FibletStyle(tolerance=tolerance)
     first = draw(gl, fiblets, view, style)
     assert first.drawn.sum() > 1000
     assert (first.ids[first.drawn][:, 0] < 60).all()
@@ -31,7 +31,7 @@ def test_paging_changes_nothing(gl, fabricate, random_lines, camera):
     assert fiblets.n_fiblets > 2 * 16384
     view = View(SIZE, camera(SIZE))
     limits = {"max_buffer_bytes": 12 * (16384 + 1)}
-    for style in (Style(), Style(2.5, "arc_length"), Style(tolerance=0.0)):
+    for style in (FibletStyle(), FibletStyle(2.5, values="arc_length"), FibletStyle(tolerance=0.0)):
         whole = draw(gl, fiblets, view, style)
         drawn = whole.drawn
         renderer = FibletRenderer(gl, fiblets, max_groups=9, **limits)
@@ -48,13 +48,13 @@ def test_redraws_only_when_something_changed(gl, fabricate, random_lines, camera
     fiblets = fabricate(random_lines(20), kind=2)
     renderer = FibletRenderer(gl, fiblets)
     view = View(SIZE, camera(SIZE))
-    first = renderer.render(view, Style())
+    first = renderer.render(view, FibletStyle())
     assert first.generation == 1
-    assert renderer.render(View(SIZE, camera(SIZE)), Style()) is first
+    assert renderer.render(View(SIZE, camera(SIZE)), FibletStyle()) is first
     assert first.generation == 1
-    assert renderer.render(view, Style(line_width=2.0)).generation == 2
-    assert renderer.render(View(SIZE, camera(SIZE, near=25.0)), Style(line_width=2.0)).generation == 3
-    assert renderer.render(view, Style(line_width=2.0, tolerance=0.0)).generation == 4
+    assert renderer.render(view, FibletStyle(line_width=2.0)).generation == 2
+    assert renderer.render(View(SIZE, camera(SIZE, near=25.0)), FibletStyle(line_width=2.0)).generation == 3
+    assert renderer.render(view, FibletStyle(line_width=2.0, tolerance=0.0)).generation == 4
     resized = renderer.render(View((100, 50), camera((100, 50))))
     assert resized.generation == 5
     assert resized.depth.size == (100, 50)
@@ -77,7 +77,7 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}
     assert {"anchors", "bounds", "decoding", "codes", "pages", "rotations", "visibility_bits", "occlusion"} <= names
-    renderer.render(View(SIZE, camera(SIZE)), Style(2.0, "curvature", 0.0))
+    renderer.render(View(SIZE, camera(SIZE)), FibletStyle(2.0, values="curvature", tolerance=0.0))
     rich = renderer.explain()
     assert set(rich["features"]) == {
         "LATTICE", "WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "VALUES_CURVATURE", "CULL_PYRAMID",
@@ -137,7 +137,7 @@ def test_all_optional_buffers_at_once(gl, fabricate, random_lines, camera):
     ids = np.arange(700) * 3 + 1
     plain = fabricate(lines, kind=2, per_fiblet=2)
     rich = fabricate(lines, kind=2, per_fiblet=2, low=True, rank_to_id=ids)
-    view, style = View(SIZE, camera(SIZE)), Style(1.0, "arc_length")
+    view, style = View(SIZE, camera(SIZE)), FibletStyle(1.0, values="arc_length")
     a = draw(gl, plain, view, style)
     b = draw(gl, rich, view, style, max_buffer_bytes=12 * (16384 + 1))
     same = a.drawn & b.drawn
@@ -159,14 +159,14 @@ def test_limits_are_told(gl, fabricate, random_lines, camera):
     with pytest.raises(EngineError, match="largest texture"):
         renderer.render(View((10**6, 10), camera(SIZE)))
     with pytest.raises(EngineError, match="no per-point array 'fa'"):
-        renderer.render(View(SIZE, camera(SIZE)), Style(values="fa"))
+        renderer.render(View(SIZE, camera(SIZE)), FibletStyle(values="fa"))
     renderer.render(View(SIZE, camera(SIZE)))  # and works after all of these
     renderer.release()
 
 
 def test_a_picture_after_relief_had_no_memory(gl, fabricate, random_lines, camera, monkeypatch):
     fiblets = fabricate(random_lines(20, seed=11), kind=2)
-    view, plain, relief = View(SIZE, camera(SIZE)), Style(5.0), Style(5.0, across=True)
+    view, plain, relief = View(SIZE, camera(SIZE)), FibletStyle(5.0), FibletStyle(5.0, across=True)
     renderer = FibletRenderer(gl, fiblets)
     try:
         before = read(renderer.render(view, plain))

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, Style, View
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource, VolumeTexture
 
 from .emulated import emulated_renderer
@@ -63,7 +63,7 @@ def draw(gl, fiblets, matrix, source, *, tolerance=0.0, width=1.0, renderer=None
     """Streamline, place and value of every drawn pixel."""
     renderer = renderer or FibletRenderer(gl, fiblets, **options)
     try:
-        picture = read(renderer.render(View(SIZE, matrix), Style(width, source, tolerance)))
+        picture = read(renderer.render(View(SIZE, matrix), FibletStyle(width, values=source, tolerance=tolerance)))
     finally:
         renderer.release()
     place, value = picture.position[picture.drawn].astype(float).T
@@ -210,12 +210,12 @@ def test_the_volume_is_there_only_while_it_is_asked_for(gl, lines, camera):
     renderer.render(view)
     assert "volume" not in names()
     assert "VALUES_VOLUME" not in renderer.explain(counts=False)["features"]
-    first = renderer.render(view, Style(values=source)).generation
+    first = renderer.render(view, FibletStyle(values=source)).generation
     assert "volume" in names()
-    assert renderer.render(view, Style(values=source)).generation == first, "drawn again for the same source"
-    renderer.render(view, Style(values="arc_length"))
+    assert renderer.render(view, FibletStyle(values=source)).generation == first, "drawn again for the same source"
+    renderer.render(view, FibletStyle(values="arc_length"))
     assert "volume" not in names()
-    renderer.render(view, Style(values=source))
+    renderer.render(view, FibletStyle(values=source))
     assert renderer.value_range(source) == source.range
     renderer.release()
     renderer.release()

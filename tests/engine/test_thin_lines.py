@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 
 from .cells import SHIFT_256, decided_by, line_cells, thin_lines
 from .gl_lines import gl_lines
@@ -164,11 +164,11 @@ def test_one_point_streamlines_are_dots(gl, fabricate, camera):
     matrix = camera(SIZE)
     cells = to_window(to_clip(np.concatenate(fiblets.lines), matrix), SIZE)[:, :2].astype(int)
     for tolerance in (0.0, 0.5):
-        picture = draw(gl, fiblets, View(SIZE, matrix), Style(tolerance=tolerance))
+        picture = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(tolerance=tolerance))
         assert picture.drawn[cells[:, 1], cells[:, 0]].all()
         assert picture.drawn.sum() == len(np.unique(cells, axis=0))
         assert (picture.position[picture.drawn][:, 0] == 0).all()
-        wide = draw(gl, fiblets, View(SIZE, matrix), Style(7.0, tolerance=tolerance))
+        wide = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(7.0, tolerance=tolerance))
         area = wide.drawn.sum() / picture.drawn.sum()
         assert 0.8 * np.pi * 3.5**2 < area < 1.1 * np.pi * 3.5**2
 
@@ -180,7 +180,7 @@ def test_polylines_have_no_gaps(gl, fabricate, camera, tolerance):
         a = np.linspace(0, 2 * np.pi, n + 1)
         fiblets = fabricate([np.stack([60 * np.cos(a), 0 * a, 60 * np.sin(a)], axis=1)], kind=3)
         view = View(SIZE, camera(SIZE, eye=(0, -260, 0)))
-        drawn = draw(gl, fiblets, view, Style(tolerance=tolerance)).drawn
+        drawn = draw(gl, fiblets, view, FibletStyle(tolerance=tolerance)).drawn
         # flooding the outside must not reach the middle
         outside = np.zeros_like(drawn)
         outside[0, 0] = True

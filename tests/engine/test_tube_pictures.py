@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import View
 from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS
 from pvfiblets.tubes import NodeValues, SplineTubes
 from pvfiblets.tubes.curves import controls, evaluate
@@ -94,7 +94,7 @@ def test_attributes_are_interpolated_as_places_are(gl, tubes, view, expected, na
             tubes.tubes, tubes.n_tubes, kept,
         )  # fmt: skip
         expected = seen(tubes, view)
-    picture = draw_splines(gl, tubes, view, Style(values=name), min_width=0.0)
+    picture = draw_splines(gl, tubes, view, name, min_width=0.0)
     assert_shows(picture, tubes, view, expected=expected, least=1500)
     attribute = tubes.values[name]
     same = picture.drawn & (picture.owner == expected.owner) & (np.abs(expected.facing) > 0.1)

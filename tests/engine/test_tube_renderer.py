@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, Style, View, passes
+from pvfiblets.engine import EngineError, View, passes
 from pvfiblets.engine.culling.listing import LEAST_SEGMENTS
-from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS, TubeRenderer
+from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS, TubeRenderer, TubeStyle
 from pvfiblets.engine.tubes.options import check_choices
 from pvfiblets.tubes import NodeValues, SplineTubes
 
@@ -65,19 +65,19 @@ def buffers(renderer):
 def test_redraws_only_when_something_changed(renderer, camera, view):
     first = renderer.render(view)
     assert first.generation == 1
-    assert renderer.render(View(SIZE, camera(SIZE, **EYE)), Style()) is first
+    assert renderer.render(View(SIZE, camera(SIZE, **EYE)), TubeStyle()) is first
     assert first.generation == 1
-    assert renderer.render(view, Style(values="number")).generation == 2
-    assert renderer.render(view, Style(values="number")).generation == 2
+    assert renderer.render(view, TubeStyle(values="number")).generation == 2
+    assert renderer.render(view, TubeStyle(values="number")).generation == 2
     assert renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 25.0}))).generation == 3
     assert renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]])).generation == 4
     assert renderer.render(view).generation == 5
 
 
 def test_pictures_repeat_to_the_bit(renderer, view, camera):
-    first = read_splines(renderer.render(view, Style(values="number")))
-    renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 59.0}), [[1.0, 0, 0, 0]]), Style(values="colour"))
-    again = read_splines(renderer.render(view, Style(values="number")))
+    first = read_splines(renderer.render(view, TubeStyle(values="number")))
+    renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 59.0}), [[1.0, 0, 0, 0]]), TubeStyle(values="colour"))
+    again = read_splines(renderer.render(view, TubeStyle(values="number")))
     drawn = first.drawn
     assert drawn.sum() > 600
     for name in ("drawn", "z", "owner"):
@@ -106,7 +106,7 @@ def test_a_scissor_or_culling_left_on_changes_nothing(gl, renderer, view):
         gl.enable_direct(0x0B44)  # culling
         gl.depth_func = "!="
         gl.wireframe = True
-        renderer._drawn = None
+        renderer._made = None
         again = read_splines(renderer.render(view))
         gl.wireframe = False
         gl.disable_direct(0x0B44)
@@ -122,7 +122,7 @@ def test_no_framebuffer_of_its_own_stays_bound(gl, tubes, view):
     with library.framebuffers_kept():
         mine.use()
         renderer = TubeRenderer(gl, tubes)
-        for style in (Style(), Style(values="colour"), Style()):
+        for style in (TubeStyle(), TubeStyle(values="colour"), TubeStyle()):
             renderer.render(view, style)
             assert library.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == mine.glo
         renderer.release()
@@ -139,10 +139,10 @@ def test_values_take_memory_only_while_they_show(renderer, tubes, view):
     plain = buffers(renderer)
     assert not {"values", "colours"} & set(plain)
     assert renderer.render(view).colours is None
-    renderer.render(view, Style(values="number"))
+    renderer.render(view, TubeStyle(values="number"))
     assert buffers(renderer) == plain | {"values": 8 * tubes.n_nodes}
     assert "TUBE_VALUES" in renderer.explain()["features"]
-    shown = renderer.render(view, Style(values="colour"))
+    shown = renderer.render(view, TubeStyle(values="colour"))
     assert shown.colours is not None
     pixels = SIZE[0] * SIZE[1]
     assert buffers(renderer) == plain | {"colours": 32 * tubes.n_nodes, "gbuffer": plain["gbuffer"] + 4 * pixels}
@@ -162,7 +162,7 @@ def test_values_that_are_no_number_stay_so(gl, tubes, view):
     values = tubes.values["number"].values.copy()
     values[7] = np.nan
     tubes = changed(tubes, values={"some": NodeValues(values, tubes.values["number"].slopes)})
-    picture = draw_splines(gl, tubes, view, Style(values="some"))
+    picture = draw_splines(gl, tubes, view, "some")
     beside = (tubes.segments[np.maximum(picture.owner, 0)] == 7).any(axis=-1) & picture.drawn
     assert beside.sum() > 10
     assert np.isnan(picture.value[beside]).any()
@@ -179,15 +179,15 @@ def test_explain(renderer, tubes, view, camera, monkeypatch):
     assert said["primitives"] == 2 * tubes.n_segments
     assert (said["solver"], said["iterations"]) == ("illinois", SOLVERS["illinois"].iterations)
     assert said["culling"] is None
-    assert said["features"] == ["TUBE_ILLINOIS", "TUBES"]
+    assert said["features"] == ["TUBES", "TUBE_ILLINOIS"]
     # Planes cost nothing where they touch nothing, and only what cutting needs where they do.
     renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 1000.0]]))
-    assert renderer.explain()["features"] == ["TUBE_ILLINOIS", "TUBES"]
+    assert renderer.explain()["features"] == ["TUBES", "TUBE_ILLINOIS"]
     renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 0.0]]))
-    assert renderer.explain()["features"] == ["CLIP_PLANES", "TUBE_CHAIN", "TUBE_ILLINOIS", "TUBES"]
+    assert renderer.explain()["features"] == ["CLIP_PLANES", "TUBES", "TUBE_CHAIN", "TUBE_ILLINOIS"]
     assert "clip_planes" in buffers(renderer)
     renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 59.0})))
-    assert renderer.explain()["features"] == ["TUBE_CHAIN", "TUBE_HOLLOW", "TUBE_ILLINOIS", "TUBES"]
+    assert renderer.explain()["features"] == ["TUBES", "TUBE_CHAIN", "TUBE_HOLLOW", "TUBE_ILLINOIS"]
     assert "clip_planes" not in buffers(renderer)
     renderer.render(view)
     assert renderer.explain()["features"] == said["features"]
@@ -204,7 +204,7 @@ def test_choices_are_kept(gl, tubes, view, silhouettes, solver):
     assert (said["solver"], said["iterations"]) == (solver, 17)
     assert said["primitives"] == (2 if silhouettes == "rectangles" else 24) * tubes.n_segments
     assert renderer.share == 1.0
-    assert not renderer.needs_outside(view, Style())
+    assert not renderer.needs_outside(view, TubeStyle())
     renderer.release()
 
 
@@ -228,7 +228,7 @@ def test_discarding_shows_nothing_and_takes_silhouettes_alone(gl, tubes, view):
 @pytest.fixture
 def few_are_many(monkeypatch):
     """Have culling begin where tests do not take long."""
-    monkeypatch.setattr("pvfiblets.engine.tubes.renderer.LEAST_SEGMENTS", 3000)
+    monkeypatch.setattr("pvfiblets.engine.hit_target.LEAST_SEGMENTS", 3000)
 
 
 @pytest.mark.usefixtures("few_are_many")
@@ -290,15 +290,22 @@ BAD = {
 def test_bad_choices_name_what_there_is(gl, tubes, name):
     options, message = BAD[name]
     with pytest.raises(ValueError, match=message):
-        TubeRenderer(gl, tubes, **options)
-    with pytest.raises(ValueError, match=message):
         check_choices(**options)
+    if "min_width" not in options:
+        with pytest.raises(ValueError, match=message):
+            TubeRenderer(gl, tubes, **options)
+
+
+@pytest.mark.parametrize("width", [-1.0, np.nan, np.inf])
+def test_a_style_needs_a_width(width):
+    with pytest.raises(ValueError, match=f"min_width is {width}; give a finite number of pixels, 0 or more"):
+        TubeStyle(min_width=width)
 
 
 def test_unknown_values_name_those_there_are(renderer, view):
     renderer.render(view)
     with pytest.raises(EngineError, match=r"no values 'fa' .* there are \['colour', 'number'\]"):
-        renderer.render(view, Style(values="fa"))
+        renderer.render(view, TubeStyle(values="fa"))
     assert read_splines(renderer.render(view)).drawn.any()
 
 
@@ -327,7 +334,7 @@ def test_a_picture_too_large(renderer, camera, view):
 
 def test_release_twice_and_use_after(gl, tubes, view):
     renderer = TubeRenderer(gl, tubes)
-    renderer.render(view, Style(values="number"))
+    renderer.render(view, TubeStyle(values="number"))
     renderer.release()
     renderer.release()
     with pytest.raises(EngineError, match="released"):
@@ -340,7 +347,7 @@ def test_a_set_without_segments_shows_nothing(gl, tubes, view):
     for some in (empty(), nodes_only):
         for silhouettes in SILHOUETTES:
             renderer = TubeRenderer(gl, some, silhouettes=silhouettes)
-            for style in (None, *(Style(values=name) for name in some.values)):
+            for style in (None, *(TubeStyle(values=name) for name in some.values)):
                 for planes in ((), [[0, 1.0, 0, 0]]):
                     picture = read_splines(renderer.render(View(SIZE, view.model_view_projection, planes), style))
                     assert not picture.drawn.any()
@@ -368,11 +375,11 @@ for name in ("tests", "tests.engine"):
     spec = importlib.util.spec_from_loader(name, loader=None, is_package=True)
     sys.modules[name] = importlib.util.module_from_spec(spec)
 sys.modules["tests"].__path__, sys.modules["tests.engine"].__path__ = [str(here.parent)], [str(here)]
-from tests.engine import conftest, splines
+from tests.engine import conftest, tubes
 ctx = moderngl.create_standalone_context(require=330, backend="egl")
 assert ctx.version_code == int(float(sys.argv[2]) * 100 + 0.5), ctx.version_code
 camera = getattr(conftest.camera, "__wrapped__", None) or conftest.camera.__pytest_wrapped__.obj
-found = {s: splines.pictures_of(ctx, camera(), s) for s in splines.SILHOUETTES}
+found = {s: tubes.pictures_of(ctx, camera(), s) for s in tubes.SILHOUETTES}
 assert ctx.error == "GL_NO_ERROR"
 Path(sys.argv[3]).write_bytes(pickle.dumps({s: [tuple(p) for p in pictures] for s, pictures in found.items()}))
 """

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress
-from pvfiblets.engine import FibletRenderer, Style, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.synthetic import brain_streamlines
 
@@ -26,13 +26,13 @@ class Both:
 
     def draw(self, view, style=None) -> Picture:
         """Draw one picture with both; they must be the same."""
-        style = style or Style()
+        style = style or FibletStyle()
         picture, expected = read(self.culled.render(view, style)), read(self.whole.render(view, style))
-        assert not differences(picture, expected), f"picture {self.culled._target.generation}"
+        assert not differences(picture, expected), f"picture {self.culled._buffer.generation}"
         assert (owning(self.culled) == owning(self.whole)).all()
         wanted, left = planned(self.whole), planned(self.culled)
         assert not (left & ~wanted).any()
-        if self.culled._target.generation == 1:
+        if self.culled._buffer.generation == 1:
             return picture  # nothing was seen before, and nothing can be hidden
         self.tested += int(planned(self.whole, seen=False).sum())
         self.hidden += int((wanted & ~left).sum())
@@ -94,10 +94,10 @@ def unguessed(monkeypatch):
 
 
 STYLES = {
-    "thin": Style(),
-    "every point": Style(tolerance=0.0),
-    "three pixels": Style(3.0),
-    "with values": Style(1.0, "arc_length"),
+    "thin": FibletStyle(),
+    "every point": FibletStyle(tolerance=0.0),
+    "three pixels": FibletStyle(3.0),
+    "with values": FibletStyle(1.0, values="arc_length"),
 }
 CLOSE = {"eye": (0, -110, 30), "near": 30.0, "far": 200.0}
 
@@ -137,7 +137,7 @@ def test_dollies_through_the_data(both, brain, camera, tolerance):
     for distance in (250.0, 200.0, 120.0, 60.0, 30.0, 10.0, -5.0, -30.0, -70.0, 100.0):
         target = np.array([3.0, 1.0 - distance + 10.0, 2.0])
         matrix = camera(SMALL, eye=(3.0, -distance, 2.0), target=target, near=1.0, far=400.0, angle=60.0)
-        pair.draw(View(SMALL, matrix), Style(tolerance=tolerance))
+        pair.draw(View(SMALL, matrix), FibletStyle(tolerance=tolerance))
     assert pair.hidden > 0
 
 
@@ -163,7 +163,7 @@ def test_clipping_ranges(both, onion, camera):
         for height in (None, 70.0):
             matrix = camera(SMALL, eye=(60, -80, 45), near=near_plane, far=far, height=height)
             pair.draw(View(SMALL, matrix))
-            pair.draw(View(SMALL, matrix), Style(4.0))
+            pair.draw(View(SMALL, matrix), FibletStyle(4.0))
     assert pair.hidden > 0.2 * pair.tested
 
 
@@ -181,7 +181,7 @@ def test_sizes(both, onion, camera):
 def test_line_widths(both, onion, camera):
     pair = both(onion)
     for i, width in enumerate((1.0, 9.0, 1.0, 1.5, 2.0, 30.0, 3.0, 1.0)):
-        pair.draw(View(SMALL, camera(SMALL, **orbit(7.0 * i, 110.0))), Style(width))
+        pair.draw(View(SMALL, camera(SMALL, **orbit(7.0 * i, 110.0))), FibletStyle(width))
     assert pair.hidden > 0.3 * pair.tested
 
 
@@ -192,7 +192,7 @@ def test_clip_planes(both, onion, camera, width):
     pair = both(onion)
     for i, height in enumerate((40.0, 20.0, 5.0, 0.0, -10.0, None, -20.0, 10.0)):
         planes = [] if height is None else [(0.1, 1.0, 0.2, height), (1.0, 0.0, 0.0, 20.0)]
-        pair.draw(View(SMALL, camera(SMALL, **orbit(4.0 * i, 110.0)), planes), Style(width))
+        pair.draw(View(SMALL, camera(SMALL, **orbit(4.0 * i, 110.0)), planes), FibletStyle(width))
     assert pair.hidden > 0.01 * pair.tested
 
 
@@ -217,7 +217,7 @@ def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, lo
     fiblets = fabricate(lines * 5, kind=kind, low=low, per_fiblet=7)
     pair = both(fiblets)
     for i in range(8):
-        picture = pair.draw(View(SMALL, camera(SMALL, **orbit(40.0 * i, 120.0))), Style(1.0 + 3.0 * (i % 2)))
+        picture = pair.draw(View(SMALL, camera(SMALL, **orbit(40.0 * i, 120.0))), FibletStyle(1.0 + 3.0 * (i % 2)))
         assert (picture.ids[picture.drawn][:, 0] < len(lines)).all()
 
 
@@ -227,7 +227,7 @@ def test_several_chunks(both, fabricate, random_lines, camera):
     pair = both(fiblets, max_buffer_bytes=12 * (16384 + 1), max_groups=16)
     assert len(pair.culled._chunks) == 3
     for angle in (0.0, 1.14, 60.0, 180.0):
-        pair.draw(View(SMALL, camera(SMALL, **orbit(angle, 180.0))), Style(4.0))
+        pair.draw(View(SMALL, camera(SMALL, **orbit(angle, 180.0))), FibletStyle(4.0))
     assert pair.hidden > 0.05 * pair.tested
 
 
@@ -247,7 +247,7 @@ def random_views(rng, count, camera):
         for _ in range(3):
             eye = eye + rng.choice([0.0, 0.3, 2.0]) * rng.normal(0, 1, 3)
             matrix = camera(size, eye=eye, target=target, near=near_plane, far=far, height=height, angle=angle)
-            yield View(size, matrix), Style(width, tolerance=tolerance)
+            yield View(size, matrix), FibletStyle(width, tolerance=tolerance)
             far += rng.choice([0.0, 10.0])
 
 

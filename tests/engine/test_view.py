@@ -1,4 +1,4 @@
-"""`View` and `Style`: what they refuse, and when two are the same."""
+"""`View` and `FibletStyle`: what they refuse, and when two are the same."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.frame import frame_block, reference_anchor
 
 
@@ -38,13 +38,13 @@ def test_a_matrix_is_finite_and_square(matrix):
 @pytest.mark.parametrize("width", [0.5, 0.0, -1.0, np.nan, np.inf])
 def test_line_widths(width):
     with pytest.raises(ValueError, match="line_width"):
-        Style(width)
+        FibletStyle(width)
 
 
 @pytest.mark.parametrize("tolerance", [-0.1, np.nan, np.inf])
 def test_tolerances(tolerance):
     with pytest.raises(ValueError, match="tolerance"):
-        Style(tolerance=tolerance)
+        FibletStyle(tolerance=tolerance)
 
 
 def test_the_reference_is_what_the_camera_looks_at(camera):
@@ -64,7 +64,7 @@ def test_planes_are_signed_distances(camera):
     size = (200, 100)
     matrix = camera(size, eye=(0, 0, 0), target=(0, 1, 0), near=1.0, far=100.0, angle=60.0)
     origin, scale = np.array([-50.0, -50.0, -50.0]), np.full(3, 100 / 65535)
-    block = np.frombuffer(frame_block(View(size, matrix), Style(), origin, scale, 65535)[0], "<f4")
+    block = np.frombuffer(frame_block(View(size, matrix), FibletStyle(), origin, scale, 65535)[0], "<f4")
     planes, reference = block[16:40].reshape(6, 4), block[40:43].view("<u4")
     point = np.array([3.0, 40.0, -7.0])
     local = point - origin - scale * reference

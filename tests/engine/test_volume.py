@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, Style, View
+from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
 from pvfiblets.volumes import reference
 from pvfiblets.volumes.options import RaycastOptions
@@ -291,7 +291,7 @@ def test_redraws_only_when_something_changed(gl, camera):
     assert not renderer.needs_outside(view, style)
     assert renderer.needs_outside(view, VolumeStyle(casting=RaycastOptions("mip")))
     with pytest.raises(TypeError, match="VolumeStyle"):
-        renderer.render(view, Style())
+        renderer.render(view, FibletStyle())
     renderer.release()
     renderer.release()
     with pytest.raises(EngineError, match="released"):

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, Style, View
+from pvfiblets.engine import EngineError, FibletStyle, View
 
 from .pictures import SIZE, assert_same, draw, near
 from .polylines import to_clip, to_window
@@ -31,7 +31,7 @@ def test_wide_lines(gl, fabricate, camera, width):
     line = np.cumsum(rng.normal(0, 1, (40, 3)) * [9, 1, 6], axis=0)
     fiblets = fabricate([line - line.mean(0)], kind=3)
     matrix = camera(SIZE)
-    drawn = draw(gl, fiblets, View(SIZE, matrix), Style(width, tolerance=0.0)).drawn
+    drawn = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(width, tolerance=0.0)).drawn
     nearest = distances_to(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)
     assert drawn[nearest < width / 2 - 0.01].all()
     assert not drawn[nearest > width / 2 + 0.01].any()
@@ -43,10 +43,10 @@ def test_no_width_loses_pieces(gl, fabricate, random_lines, camera, width, toler
     """Software OpenGL leaves loops that run long: what a thin line shows, a wide one must."""
     fiblets = fabricate(random_lines(150, seed=6), kind=2)
     view = View(SIZE, camera(SIZE))
-    thin = draw(gl, fiblets, view, Style(tolerance=tolerance))
-    wide = draw(gl, fiblets, view, Style(width, tolerance=tolerance))
+    thin = draw(gl, fiblets, view, FibletStyle(tolerance=tolerance))
+    wide = draw(gl, fiblets, view, FibletStyle(width, tolerance=tolerance))
     assert near(wide.drawn)[thin.drawn].all()
-    assert_same(draw(gl, fiblets, view, Style(width, tolerance=tolerance)), wide)
+    assert_same(draw(gl, fiblets, view, FibletStyle(width, tolerance=tolerance)), wide)
 
 
 def test_wide_lines_in_a_close_view(gl, fabricate, camera):
@@ -56,14 +56,14 @@ def test_wide_lines_in_a_close_view(gl, fabricate, camera):
     fiblets = fabricate([line - line.mean(0) for line in lines], kind=2)
     view = View(SIZE, camera(SIZE, eye=(0, -8, 0), near=0.5, far=60.0))
     thin = draw(gl, fiblets, view).drawn
-    assert near(draw(gl, fiblets, view, Style(9.0, tolerance=0.0)).drawn)[thin].all()
+    assert near(draw(gl, fiblets, view, FibletStyle(9.0, tolerance=0.0)).drawn)[thin].all()
 
 
 def test_a_width_beyond_software_opengl_is_told(gl, fabricate, random_lines, camera):
     if "llvmpipe" not in gl.info["GL_RENDERER"]:
         pytest.skip("hardware draws any width")
     with pytest.raises(EngineError, match="at most 100"):
-        draw(gl, fabricate(random_lines(5), kind=2), View(SIZE, camera(SIZE)), Style(400.0))
+        draw(gl, fabricate(random_lines(5), kind=2), View(SIZE, camera(SIZE)), FibletStyle(400.0))
 
 
 def test_wide_lines_reach_in_from_outside(gl, fabricate, camera):
@@ -72,13 +72,13 @@ def test_wide_lines_reach_in_from_outside(gl, fabricate, camera):
     x = 102.2  # window x = 202.2, and the last pixel's centre is at 199.5
     fiblets = fabricate([np.array([[x, 0.0, -30.0], [x, 0.0, 30.0]])], kind=3)
     assert not draw(gl, fiblets, View(size, matrix)).drawn.any()
-    drawn = draw(gl, fiblets, View(size, matrix), Style(line_width=6.0)).drawn
+    drawn = draw(gl, fiblets, View(size, matrix), FibletStyle(line_width=6.0)).drawn
     assert drawn[50].tolist() == [False] * 199 + [True]
 
 
 def test_the_nearest_wide_line_wins(gl, fabricate, camera):
     lines = [np.array([[-50.0, y, 1e-3 * i], [50.0, y, 1e-3 * i]]) for i, y in enumerate((5.0, -20.0, 30.0))]
     fiblets = fabricate(lines, kind=3)
-    picture = draw(gl, fiblets, View(SIZE, camera(SIZE, eye=(0, -260, 0))), Style(line_width=3.0))
+    picture = draw(gl, fiblets, View(SIZE, camera(SIZE, eye=(0, -260, 0))), FibletStyle(line_width=3.0))
     middle = np.nonzero(picture.drawn[:, SIZE[0] // 2])[0]
     assert (picture.ids[middle[1:-1], SIZE[0] // 2, 0] == 1).all()  # at the edges another may stand out

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvfiblets.engine import Style, View
-from pvfiblets.engine.tubes import SILHOUETTES, TubeRenderer
+from pvfiblets.engine import View
+from pvfiblets.engine.tubes import SILHOUETTES, TubeRenderer, TubeStyle
 from pvfiblets.tubes import NodeValues, SplineTubes, reference
 from pvfiblets.tubes.curves import MIDDLE, controls, derivative, evaluate
 from pvfiblets.tubes.reference import CAP, EXIT, MISS, surface_distance
@@ -161,11 +161,11 @@ def read_splines(gbuffer):
     )  # fmt: skip
 
 
-def draw_splines(gl, tubes, view, style=None, **options):
+def draw_splines(gl, tubes, view, values=None, min_width=1.0, **options):
     """Draw one picture with a renderer of its own."""
     renderer = TubeRenderer(gl, tubes, **options)
     try:
-        return read_splines(renderer.render(view, style))
+        return read_splines(renderer.render(view, TubeStyle(values=values, min_width=min_width)))
     finally:
         renderer.release()
 
@@ -174,9 +174,12 @@ def scenes(camera):
     """Views and styles that a process of its own can draw again."""
     size, inside = (96, 72), {**EYE, "near": 59.0}
     return [
-        (View(size, camera(size, **EYE)), Style(values="number")),
-        (View(size, camera(size, **EYE, height=40.0), [[0.4, 1.0, 0, 2.0], [1.0, 0, 0, 8.0]]), Style(values="colour")),
-        (View(size, camera(size, **inside)), Style()),
+        (View(size, camera(size, **EYE)), TubeStyle(values="number")),
+        (
+            View(size, camera(size, **EYE, height=40.0), [[0.4, 1.0, 0, 2.0], [1.0, 0, 0, 8.0]]),
+            TubeStyle(values="colour"),
+        ),
+        (View(size, camera(size, **inside)), TubeStyle()),
     ]
 
 

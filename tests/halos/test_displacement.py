@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.halos import Look
+from pvfiblets.halos import HaloStyle
 from pvfiblets.halos.displacement import as_displacement, displaced
 from pvfiblets.halos.style import DISPLACEMENTS, TABLE_SIZE
 
@@ -37,7 +37,7 @@ def test_tables_are_linear_between_equally_spaced_places():
         assert form == (0.0, 0.5, 0.25)
         assert all(type(entry) is float for entry in form)
         assert displaced([0, 0.25, 0.5, 0.75, 1], form).tolist() == [0, 0.25, 0.5, 0.375, 0.25]
-        assert Look(1, 2, 3, form).displacement == form
+        assert HaloStyle(1, 2, 3, form).displacement == form
 
 
 def test_what_lies_outside_counts_as_the_nearer_end():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, picture
 
 from .views import CAMERAS, PLAIN, SIZE, centres, kinds, line, lines, parallel, perspective, window_depth
@@ -18,7 +18,7 @@ from .views import CAMERAS, PLAIN, SIZE, centres, kinds, line, lines, parallel, 
 @pytest.mark.parametrize(("camera", "k"), [("parallel", 1.0), ("perspective", 100.0 / 120.0)])
 def test_a_strip_across_the_view(camera, k):
     x, y = centres()
-    look = Look(line_width=6.2, strip_width=21.0, max_displacement=30.0, **PLAIN)
+    look = HaloStyle(line_width=6.2, strip_width=21.0, max_displacement=30.0, **PLAIN)
     found = picture(line([-20, 3.1, 120], [31, 3.1, 120]), look, CAMERAS[camera](), SIZE)
     along, away = x / k, abs(y / k - 3.1)
     there = (along > -20) & (along < 31) & (away < 10.5)
@@ -37,7 +37,7 @@ def test_a_strip_across_the_view(camera, k):
 def test_a_strip_that_recedes_lies_in_the_plane_of_its_axis_and_of_what_is_level_across_it():
     """Where the eye's ray meets that plane is the fragment's place; the width goes by its depth."""
     a, b = np.array([-20.0, -12, 80]), np.array([45.0, 20, 160])
-    look = Look(line_width=9.0, strip_width=9.0, max_displacement=0.0, **PLAIN)
+    look = HaloStyle(line_width=9.0, strip_width=9.0, max_displacement=0.0, **PLAIN)
     found = picture(line(a, b), look, perspective(), SIZE)
     x, y = centres()
     ends = [100 * p[:2] / p[2] for p in (a, b)]
@@ -60,7 +60,7 @@ def test_a_strip_that_recedes_lies_in_the_plane_of_its_axis_and_of_what_is_level
      ((0.0, 0.7, 0.2), lambda r: np.where(r < 0.5, 1.4 * r, 1.2 - r))],
 )  # fmt: skip
 def test_equation_3(name, function):
-    look = Look(2.0, 30.0, 40.0, displacement=name, **PLAIN)
+    look = HaloStyle(2.0, 30.0, 40.0, displacement=name, **PLAIN)
     found = picture(line([-99, 0, 120], [99, 0, 120]), look, parallel(), SIZE)
     _, y = centres()
     halo = (abs(y) > 1) & (abs(y) < 15)
@@ -70,7 +70,7 @@ def test_equation_3(name, function):
 
 def test_depth_is_displaced_along_the_view_axis():
     """A halo off the picture's middle is as far behind by its distance along the axis, not along its ray."""
-    look = Look(2.0, 20.0, 50.0, **PLAIN)
+    look = HaloStyle(2.0, 20.0, 50.0, **PLAIN)
     found = picture(line([-60, 40, 120], [60, 40, 120]), look, perspective(), SIZE)
     x, y = centres()
     away = abs(y * 1.2 - 40)
@@ -81,7 +81,7 @@ def test_depth_is_displaced_along_the_view_axis():
 
 @pytest.mark.parametrize("smooth", [True, False])
 def test_ink_between_line_and_halo(smooth):
-    look = Look(7.3, 21.0, 40.0, n_tapered=0, min_width=0.0, smooth=smooth)
+    look = HaloStyle(7.3, 21.0, 40.0, n_tapered=0, min_width=0.0, smooth=smooth)
     found = picture(line([-99, 0, 120], [99, 0, 120]), look, parallel(), SIZE)
     _, y = centres()
     expected = np.clip(3.65 - abs(y) + 0.5, 0, 1) if smooth else abs(y) < 3.65
@@ -92,7 +92,7 @@ def test_ink_between_line_and_halo(smooth):
 def test_thin_lines_take_their_least_width_and_keep_their_halo_beside_it():
     _, y = centres()
     for width, inked, reach in ((0.2, 2.5, 2.5 + 9.9), (9.0, 4.5, 10.0)):
-        look = Look(width, 20.0, 30.0, n_tapered=0, min_width=5.0, smooth=False)
+        look = HaloStyle(width, 20.0, 30.0, n_tapered=0, min_width=5.0, smooth=False)
         found = picture(line([-99, 0.2, 120], [99, 0.2, 120]), look, parallel(), SIZE)
         assert (found.kind == kinds(abs(y - 0.2) < inked, abs(y - 0.2) < reach)).all()
 
@@ -100,7 +100,7 @@ def test_thin_lines_take_their_least_width_and_keep_their_halo_beside_it():
 @pytest.mark.parametrize("camera", CAMERAS)
 def test_depth_cueing_by_width(camera):
     """The nearest line has its width, the farthest what the cue leaves, and the strip keeps its own."""
-    look = Look(6.0, 14.0, 1.0, width_cue=0.75, **PLAIN)
+    look = HaloStyle(6.0, 14.0, 1.0, width_cue=0.75, **PLAIN)
     places = ((-29.1, 60), (-9.1, 80), (14.1, 100))
     scene = lines(*([[x, -90, z], [x, 90, z]] for x, z in places))
     found = picture(scene, look, CAMERAS[camera](), SIZE)
@@ -115,7 +115,7 @@ def test_depth_cueing_by_width(camera):
 
 
 def test_a_flat_scene_has_no_depth_to_cue():
-    look = Look(6.0, 14.0, 1.0, width_cue=0.75, **PLAIN)
+    look = HaloStyle(6.0, 14.0, 1.0, width_cue=0.75, **PLAIN)
     found = picture(line([-9, 0, 80], [9, 0, 80]), look, parallel(), SIZE)
     x, y = centres()
     assert ((found.kind == LINE) == ((abs(y) < 3) & (abs(x) < 9))).all()
@@ -126,7 +126,7 @@ def test_a_flat_scene_has_no_depth_to_cue():
 
 @pytest.mark.parametrize(("camera", "k"), [("parallel", 1.0), ("perspective", 100.0 / 120.0)])
 def test_a_point_is_a_round_cone(camera, k):
-    look = Look(8.0, 30.0, 60.0, min_width=0.0, smooth=False)
+    look = HaloStyle(8.0, 30.0, 60.0, min_width=0.0, smooth=False)
     found = picture(HaloPoints(np.array([[3.0, -2.0, 120.0]])), look, CAMERAS[camera](), SIZE)
     x, y = centres()
     away = np.hypot(x / k - 3, y / k + 2)
@@ -142,11 +142,11 @@ def test_points_are_there_or_not_by_their_centres():
     scene = HaloPoints(
         np.array([[-20.0, 0, 100], [0, 0, 100], [20, 0, 100], [0, 0, 20]]), {"n": np.array([1, 2, 3, 2])}
     )
-    look = Look(8.0, 10.0, 0.0, min_width=0.0)
+    look = HaloStyle(8.0, 10.0, 0.0, min_width=0.0)
     seen = lambda found: set(np.unique(found.owner)) - {-1}  # noqa: E731
     assert seen(picture(scene, look, parallel(), SIZE)) == {0, 1, 2}  # one is before the near plane
     assert seen(picture(scene, look, parallel(), SIZE, clip_planes=[[1, 0, 0, 1.0]])) == {1, 2}
-    look = Look(8.0, 10.0, 0.0, min_width=0.0, filter_by="n", low=2.0)
+    look = HaloStyle(8.0, 10.0, 0.0, min_width=0.0, filter_by="n", low=2.0)
     assert seen(picture(scene, look, parallel(), SIZE)) == {1, 2}
     scene = HaloPoints(scene.points, {"n": np.array([1, np.nan, 3, 2])})
     assert seen(picture(scene, look, parallel(), SIZE)) == {2}
@@ -174,7 +174,7 @@ def crossing(away):
 
 @pytest.mark.parametrize("away", [0.0, 3.0, 7.9, 8.1, 9.0, 12.0, 17.5, 25.0, 39.9, 40.1, 90.0])
 def test_the_halo_of_a_line_on_another(away):
-    look = Look(8.0, 40.0, 40.0, **PLAIN)
+    look = HaloStyle(8.0, 40.0, 40.0, **PLAIN)
     found = picture(crossing(away), look, parallel(), SIZE)
     column = found.kind[:, SIZE[0] // 2]
     white = np.count_nonzero(column == HALO) / 2
@@ -187,7 +187,7 @@ def test_the_halo_of_a_line_on_another(away):
 
 @pytest.mark.parametrize("camera", CAMERAS)
 def test_neighbours_in_one_plane_have_no_halo_on_each_other(camera):
-    look = Look(4.0, 30.0, 40.0, **PLAIN)
+    look = HaloStyle(4.0, 30.0, 40.0, **PLAIN)
     scene = lines(*([[-90, y, 100], [90, y, 100]] for y in (-8, 0, 5)))
     found = picture(scene, look, CAMERAS[camera](), SIZE)
     _, y = centres()
@@ -214,7 +214,7 @@ def test_no_pixel_changes_within_its_margin(seed, camera, filtered, points, angl
     numbers = {"n": rng.uniform(0, 1, several.n_points)}
     scene = HaloPoints(several.points, numbers) if points else HaloLines(several.points, several.offsets, numbers)
     more = {"filter_by": "n", "low": 0.3, "filter_taper": 3.0} if filtered else {}
-    look = Look(2.0, 9.0, 6.0, width_cue=0.3, **more)
+    look = HaloStyle(2.0, 9.0, 6.0, width_cue=0.3, **more)
     matrix = CAMERAS[camera](size)
     shift = np.eye(4)
     shift[:2, 3] = 2 * step * np.array([np.cos(angle), np.sin(angle)]) / size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.neighbours import Cloud, Frame, Paths, distances
 from pvfiblets.halos.spacing import default_widths, line_spacing, point_spacing
 
@@ -238,7 +238,7 @@ def test_what_is_given_stays_and_all_make_a_look(given):
         found = default_widths(drawn, *given)
         assert [f for f, g in zip(found, given, strict=True) if g is not None] == [g for g in given if g is not None]
         assert found[0] <= found[1]
-        Look(*found)
+        HaloStyle(*found)
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e12, 1e300])

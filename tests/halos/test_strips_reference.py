@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.halos import HaloPoints, Look
+from pvfiblets.halos import HaloPoints, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
 from pvfiblets.halos.strips_reference import mask, places_along, rates
 
@@ -35,7 +35,7 @@ def test_places_along_the_mask():
 def test_tapered_ends_are_round():
     """With the ends of the mask on the first segment, half an ellipse; the line narrows as its strip does."""
     x, y = centres()
-    look = Look(10.0, 30.0, 20.0, n_tapered=1, t_tapered=0.2, min_width=0.0, smooth=False)
+    look = HaloStyle(10.0, 30.0, 20.0, n_tapered=1, t_tapered=0.2, min_width=0.0, smooth=False)
     found = picture(line([-30, 0, 100], [-10, 0, 100], [20, 0, 100], [30, 0, 100]), look, parallel(), SIZE)
     end = np.where(x < -10, (x + 30) / 20, np.where(x > 20, (30 - x) / 10, 1.0))
     m = np.sqrt(np.clip(end * (2 - end), 0, 1)) * (end > 0)
@@ -51,7 +51,7 @@ def test_filtered_lines_end_where_their_numbers_do():
     x, y = centres()
     scene = line([-30, 0, 100], [0, 0, 100], [30, 0, 100], n=[0.0, 6.0, 0.0])
     for low, high in ((2.0, np.inf), (-np.inf, 3.35), (2.0, 3.35), (0.0, 6.0), (7.0, 8.0)):
-        look = Look(10.0, 30.0, 20.0, filter_by="n", low=low, high=high, **PLAIN)
+        look = HaloStyle(10.0, 30.0, 20.0, filter_by="n", low=low, high=high, **PLAIN)
         found = picture(scene, look, parallel(), SIZE)
         number = 6 - abs(x) / 5
         there = (number >= low) & (number <= high) & (abs(x) < 30) & (abs(y) < 15)
@@ -62,7 +62,7 @@ def test_filtered_lines_end_where_their_numbers_do():
 def test_filtered_ends_narrow_over_their_mm():
     x, y = centres()
     scene = line([-30, 0, 100], [30, 0, 100], n=[0.0, 6.0])
-    look = Look(10.0, 30.0, 20.0, filter_by="n", low=2.0, high=5.0, filter_taper=8.0, **PLAIN)
+    look = HaloStyle(10.0, 30.0, 20.0, filter_by="n", low=2.0, high=5.0, filter_taper=8.0, **PLAIN)
     found = picture(scene, look, parallel(), SIZE)
     end = np.clip(np.minimum(x + 10, 20 - x) / 8, 0, 1)
     m = np.sqrt(end * (2 - end))
@@ -72,7 +72,7 @@ def test_filtered_ends_narrow_over_their_mm():
 def test_what_has_no_number_is_not_there():
     x, y = centres()
     scene = line(*([10 * i, 0, 100] for i in range(-3, 4)), n=[1, 1, 1, np.nan, 1, 1, 1])
-    look = Look(10.0, 30.0, 20.0, filter_by="n", **PLAIN)
+    look = HaloStyle(10.0, 30.0, 20.0, filter_by="n", **PLAIN)
     found = picture(scene, look, parallel(), SIZE)
     assert ((found.kind != NOTHING) == ((abs(x) > 10) & (abs(x) < 30) & (abs(y) < 15))).all()
 
@@ -95,7 +95,7 @@ def bent(degrees, *, length=25.0):
 @pytest.mark.parametrize("degrees", [0.0, 20.0, 59.0, -59.0, 61.0, 90.0, 150.0, 180.0])
 def test_bends(degrees):
     """Either segment goes on round; up to 60 degrees it ends at the bisector, where the other is as near."""
-    look = Look(6.0, 16.0, 5.0, **PLAIN)
+    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
     found = picture(bent(degrees), look, parallel(), SIZE)
     x, y = centres()
     turn = np.radians(degrees)
@@ -128,7 +128,7 @@ def test_bends_take_everything_from_the_foot(degrees):
     """Beyond a segment's end all is as at its end: depth, width, number."""
     turn = np.radians(degrees)
     far = [25 * np.cos(turn), -5 + 25 * np.sin(turn), 130]
-    look = Look(6.0, 16.0, 5.0, min_width=0.0, smooth=False, n_tapered=1, t_tapered=0.1, width_cue=0.4)
+    look = HaloStyle(6.0, 16.0, 5.0, min_width=0.0, smooth=False, n_tapered=1, t_tapered=0.1, width_cue=0.4)
     found = picture(line([-25, -5, 100], [0, -5, 115], far), look, parallel(), SIZE)
     x, y = centres()
     off = np.hypot(x, y + 5)
@@ -142,7 +142,7 @@ def test_bends_take_everything_from_the_foot(degrees):
 
 def test_steep_bends_are_round():
     """A segment that runs at the viewer, and whose strip so soon widens much, has no bisector with the next."""
-    look = Look(6.0, 16.0, 5.0, **PLAIN)
+    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
     x, y = centres()
     before = (x < -0.1) & (np.hypot(x, y) < 3)
     for z, divided in ((140, False), (101, True)):
@@ -152,7 +152,7 @@ def test_steep_bends_are_round():
 
 def test_repeated_points_and_segments_seen_end_on_are_round():
     """With the segments beside them, a disc."""
-    look = Look(6.0, 16.0, 5.0, **PLAIN)
+    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
     x, y = centres()
     for middle in ([[0, 0, 100], [0, 0, 100]], [[0, 0, 100], [0, 0, 100], [0, 0, 100]], [[0, 0, 100], [0, 0, 150]]):
         found = picture(line([-20, 0, 100], *middle), look, parallel(), SIZE)
@@ -161,7 +161,7 @@ def test_repeated_points_and_segments_seen_end_on_are_round():
 
 
 def test_lines_without_extent_show_nothing():
-    look = Look(6.0, 16.0, 5.0, **PLAIN)
+    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
     for scene in (lines(np.zeros((0, 3))), line([0, 0, 100]), lines([[0, 0, 100]], [[5, 0, 100]])):
         assert not picture(scene, look, parallel(), SIZE).kind.any()
     assert not picture(HaloPoints(np.zeros((0, 3))), look, parallel(), SIZE).kind.any()
@@ -172,7 +172,7 @@ def test_lines_without_extent_show_nothing():
 
 @pytest.mark.parametrize("camera", CAMERAS)
 def test_planes_cut_the_axis_square(camera):
-    look = Look(6.0, 16.0, 5.0, n_tapered=0, min_width=0.0)
+    look = HaloStyle(6.0, 16.0, 5.0, n_tapered=0, min_width=0.0)
     k = 1.0 if camera == "parallel" else 0.8
     slanting = [[1, 0.7, 0, 9.0], [-1, 3.0, 0, 20.0]]
     found = picture(
@@ -184,7 +184,7 @@ def test_planes_cut_the_axis_square(camera):
 
 def test_what_lies_behind_the_eye_is_not_there():
     """A line through the near plane, and the eye's own, shows up to where it meets the near plane."""
-    look = Look(2.0, 6.0, 5.0, **PLAIN)
+    look = HaloStyle(2.0, 6.0, 5.0, **PLAIN)
     found = picture(line([10, 0, 150], [2, 0, -90]), look, perspective(), SIZE)
     x, _ = centres()
     at_near = 100 * np.interp(NEAR, [-90, 150], [2, 10]) / NEAR
@@ -203,7 +203,7 @@ def test_where_bisectors_cross_it_is_open_what_is_beyond():
     steps = np.cumsum([[np.cos(a), np.sin(a)] for a in (0, turn, 2 * turn)] * np.array([[20.0], [4.0], [20.0]]), axis=0)
     points = [[0.0, 0, 100], *([x, y, 100.0] for x, y in steps)]
     scene = line(*([x - 20, y - 12, z] for x, y, z in points))
-    look = Look(2.0, 24.0, 60.0, **PLAIN)
+    look = HaloStyle(2.0, 24.0, 60.0, **PLAIN)
     found = picture(scene, look, parallel(), SIZE)
     x, y = (n + d for n, d in zip(centres(), (20, 12), strict=True))
     normals = [(np.cos(turn / 2), np.sin(turn / 2)), (np.cos(1.5 * turn), np.sin(1.5 * turn))]

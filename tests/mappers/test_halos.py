@@ -12,12 +12,12 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions, windows
 from pvfiblets.mappers.halos import Strips, halo_renderer
 
 PIXELS = 5.0  # a mm, in the view `flat`
-LOOK = Look(2.0, 8.0, 4.0, n_tapered=0, min_width=0.0, smooth=False)
+LOOK = HaloStyle(2.0, 8.0, 4.0, n_tapered=0, min_width=0.0, smooth=False)
 GREEN = (0, 255, 0)
 WHITE = (255, 255, 255)
 BLACK = (0, 0, 0)
@@ -380,7 +380,7 @@ def test_the_least_width_is_in_pixels_of_the_window(make_plotter, tools, supersa
 def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
     random = np.random.default_rng(3)
     curves = [np.cumsum(random.normal(size=(40, 3)), axis=0) * 2.0 for _ in range(12)]
-    mapper, actor = made(lines_of(*curves), Look(0.5, 3.0, 3.0), halo_color=None)
+    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0), halo_color=None)
     plotter = make_plotter()
     plotter.add_actor(actor)
     plotter.set_background("red", top="blue")
@@ -388,7 +388,7 @@ def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
     large = plotter.screenshot(None, scale=4).astype(int)
     mapper.raise_pending()
     whole = make_plotter(window_size=(960, 800))
-    mapper, actor = made(lines_of(*curves), Look(0.5, 3.0, 3.0, min_width=4.0), halo_color=None)
+    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0, min_width=4.0), halo_color=None)
     whole.add_actor(actor)
     whole.camera = plotter.camera.copy()
     whole.set_background("red", top="blue")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.mappers import Colouring
 from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 
@@ -210,10 +210,10 @@ def test_tubes_are_picked_where_they_show(rods, make_plotter, tools):
 
 def test_what_the_engine_was_asked(rods):
     """The values that the extras stand for."""
-    assert Style(**Tubes(0.5).style) == Style(radius=0.5, across=True)
-    assert Style(line_width=4.0, **TubeShading().style).relief == "across"
-    assert Style(**TubeShading().style).relief is None
-    assert Style(**Tubes(0.5).style).relief == "normal"
+    assert FibletStyle(**Tubes(0.5).style) == FibletStyle(radius=0.5, across=True)
+    assert FibletStyle(line_width=4.0, **TubeShading().style).relief == "across"
+    assert FibletStyle(**TubeShading().style).relief is None
+    assert FibletStyle(**Tubes(0.5).style).relief == "normal"
     assert View((4, 4), np.eye(4)) == View((4, 4), np.eye(4))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine.halos import HaloRenderer
-from pvfiblets.halos import HaloLines, Look
+from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.halos_pictures import differences, helices, look_of, orbit, picture
 
@@ -19,7 +19,7 @@ def across(size=(64, 48)):
     camera = Camera(size, np.array([0.0, -100.0, 0.0]), np.zeros(3), 50.0, 150.0)
     k = camera.pixels / 100.0
     line = HaloLines([[-80.0, 0.0, 0.0], [80.0, 0.0, 0.0]], [0, 2])
-    return line, Look(16.0 / k, 24.0 / k, 1.0, n_tapered=0, smooth=False, min_width=0.0), camera
+    return line, HaloStyle(16.0 / k, 24.0 / k, 1.0, n_tapered=0, smooth=False, min_width=0.0), camera
 
 
 @pytest.mark.parametrize("times", [1, 2, 3])
@@ -35,7 +35,7 @@ def test_a_picture_is_as_dark_as_its_line_is_wide(gl, times):
 
 def test_the_least_width_is_in_pixels_of_the_picture(gl):
     line, look, camera = across()
-    thin = Look(1e-3, 1.0, 1.0, n_tapered=0, smooth=False, min_width=4.0)
+    thin = HaloStyle(1e-3, 1.0, 1.0, n_tapered=0, smooth=False, min_width=4.0)
     renderer = HaloRenderer(gl, line)
     for times in (1, 4):
         assert picture(renderer, camera, thin, times).sum() == 64 * 4

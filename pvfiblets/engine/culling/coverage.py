@@ -163,7 +163,7 @@ class CoverageBuffer:
     def before(self, target: GBuffer, view: View, style: Style) -> None:
         """Make the buffer for a picture of the last one, which the target still holds."""
         last, self._last = self._last, None
-        self._thicker = style.radius or 0.0  # tubes are thicker than the capsules of their axes
+        self._thicker = style.thickness  # tubes are thicker than the capsules of their axes
         width, height = view.size
         self._side = 2 << LEVEL
         while self._side > max(2, min(width, height) // 2):
@@ -204,7 +204,7 @@ class CoverageBuffer:
     def _comparable(last: tuple[GBuffer, View, Style], view: View, style: Style) -> bool:
         """Whether what hid then hides now: same lines, and nothing else is cut away."""
         _, before, then = last
-        same = (then.half_width, then.tolerance, then.radius) == (style.half_width, style.tolerance, style.radius)
+        same = (then.half_width, then.detail, then.thickness) == (style.half_width, style.detail, style.thickness)
         cut = np.array_equal(before.clip_planes, view.clip_planes) and before.region == view.region
         return before.size == view.size and same and cut
 

@@ -86,14 +86,9 @@ class Listing:
             raise
 
     @property
-    def nbytes(self) -> int:
-        """Bytes of GPU memory that go with the items."""
-        return sum(buffer.size for buffer in self.buffers.values())
-
-    @property
-    def pyramid_nbytes(self) -> int:
-        """Bytes of GPU memory that go with the picture."""
-        return self._pyramid.nbytes
+    def sizes(self) -> dict[str, int]:
+        """Bytes of GPU memory that go with the items, and with the picture."""
+        return {"culling": sum(buffer.size for buffer in self.buffers.values()), "occlusion": self._pyramid.nbytes}
 
     def before(self, target: HitTarget, shown: moderngl.Texture) -> None:
         """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared.

@@ -13,7 +13,7 @@ from .screen import ScreenEffect
 __all__ = ["WIDEST", "HaloPass"]
 
 WIDEST = 24.0
-"""Pixels: a halo of more, of a line near the viewer, is drawn with so many."""
+"""Pixels of the finished picture: a halo of more, of a line near the viewer, is drawn with so many."""
 
 TILE = 8
 """Pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into."""
@@ -30,7 +30,16 @@ class HaloPass(ScreenEffect):
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"tile": TILE})
 
-    def draw(self, buffer: Any, lens: Lens, *, width: float, depth: float, nearest: float = 0.0) -> moderngl.Texture:
+    def draw(
+        self,
+        buffer: Any,
+        lens: Lens,
+        *,
+        width: float,
+        depth: float,
+        nearest: float = 0.0,
+        pixel_scale: float = 1.0,
+    ) -> moderngl.Texture:
         """Bring the texture up to date.
 
         Parameters
@@ -40,11 +49,13 @@ class HaloPass(ScreenEffect):
         lens : Lens
             Of the same picture.
         width : float
-            mm from a line's edge to its halo's; at most `WIDEST` pixels.
+            mm from a line's edge to its halo's; at most `WIDEST` pixels of the finished picture.
         depth : float
             mm by which the halo's edge lies behind the line.
         nearest : float
             mm: no line is nearer to the viewer's plane. It saves time and changes nothing.
+        pixel_scale : float
+            Pixels of the lens's picture for one of the finished picture.
 
         Returns
         -------
@@ -52,8 +63,9 @@ class HaloPass(ScreenEffect):
             r32ui keys as in the G-buffer: where a halo is nearer than the pixel's line, its key, else EMPTY. Valid
             until the next draw.
         """
-        reach = self.reach(lens, width, nearest)
-        uniforms = lens.uniforms() | {"width": width, "depth": depth, "widest": WIDEST, "reach": reach}
+        widest = WIDEST * pixel_scale
+        reach = math.ceil(min(width * lens.pixels_per_mm(nearest), widest))
+        uniforms = lens.uniforms() | {"width": width, "depth": depth, "widest": widest, "reach": reach}
         across, up = (-(-side // TILE) for side in lens.size)
         texture = self._target("halos", lens.size, "u4")
         distances = self._target("distances", lens.size, "f4")
@@ -65,10 +77,5 @@ class HaloPass(ScreenEffect):
             self._pass("nearest", "tiles", {"distances": distances}, uniforms)
             self._pass("halo", "halos", keys | {"distances": distances, "tiles": tiles}, uniforms)
 
-        self._once((buffer, buffer.generation, lens.key, width, depth, reach), passes)
+        self._once((buffer, buffer.generation, lens.key, width, depth, reach, widest), passes)
         return texture
-
-    @staticmethod
-    def reach(lens: Lens, width: float, nearest: float) -> int:
-        """Return how many pixels wide the widest halo can be, of lines no nearer than ``nearest`` (mm)."""
-        return math.ceil(min(width * lens.pixels_per_mm(nearest), WIDEST))

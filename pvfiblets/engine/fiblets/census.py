@@ -24,11 +24,13 @@ from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
 from .chunks import Chunk, storage_buffer
 from .data_textures import DataTextures, set_data_samplers
+from .pipelines import ComputePipeline
 
 if TYPE_CHECKING:
+    from .pipelines import Pipeline
     from .visibility import Visibility
 
-__all__ = ["Census"]
+__all__ = ["Census", "count_fiblets", "no_counts"]
 
 _MARKS, _COUNTS = 5, 7  # storage bindings
 
@@ -116,3 +118,43 @@ class Census:
         """Count fiblets that own a pixel of a picture, by reading it back."""
         owners = np.unique(np.frombuffer(target.owner.read(), "<u4"))
         return int((owners != EMPTY).sum())
+
+
+def no_counts(
+    total: int, in_frustum: int | None = None, drawn: int | None = None, visible: int | None = None
+) -> dict[str, int | None]:
+    """Return how many fiblets there are, and what is known besides."""
+    return {"total": total, "in_frustum": in_frustum, "drawn": drawn, "visible": visible}
+
+
+def count_fiblets(
+    census: Census,
+    total: int,
+    chunks: Sequence[Chunk],
+    features: Sequence[str],
+    pipeline: Pipeline,
+    target: GBuffer,
+    kept: Visibility,
+    culled: bool,
+) -> dict[str, int | None]:
+    """Count fiblets of the last picture; uniform blocks and camera are those of it.
+
+    Parameters
+    ----------
+    census : Census
+    total : int
+        Fiblets on the GPU.
+    chunks : sequence of Chunk
+    features : sequence of str
+        What the fiblets need to be decoded, and ``CLIP_PLANES``.
+    pipeline : Pipeline
+    target : GBuffer
+    kept : Visibility
+    culled : bool
+        Whether fiblets behind others were left out.
+    """
+    marks = None
+    if isinstance(pipeline, ComputePipeline) and pipeline.planned:
+        marks = pipeline.buffers["visibility_bits"]
+    in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marks, kept)
+    return no_counts(total, in_frustum, drawn if culled else in_frustum, census.visible(target))

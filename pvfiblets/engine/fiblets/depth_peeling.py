@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from ..culling import Occlusion
     from ..opengl import OpenGL
     from ..shaders import Programs
-    from ..view import Style, View
+    from ..view import View
     from .pipelines import DrawRequest, Pipeline
+    from .style import FibletStyle
 
 __all__ = ["MOST_LAYERS", "PEEL_UNITS", "LayeredBuffer", "Layers", "Peel"]
 
@@ -155,7 +156,7 @@ class _Stage:
         self.occlusion = occlusion
         self.target: GBuffer | None = None
 
-    def draw(self, request: DrawRequest, peel: Peel, view: View, style: Style) -> GBuffer:
+    def draw(self, request: DrawRequest, peel: Peel, view: View, style: FibletStyle) -> GBuffer:
         """Draw what lies behind some layers."""
         if self.target is not None and self.target.size != request.target.size:
             self.target.release()
@@ -218,7 +219,7 @@ class Layers:
         self._drawn: tuple[int, int] | None = None
 
     def of(
-        self, nearest: GBuffer, count: int, view: View, style: Style, make_job: Callable[[], DrawRequest]
+        self, nearest: GBuffer, count: int, view: View, style: FibletStyle, make_job: Callable[[], DrawRequest]
     ) -> LayeredBuffer:
         """Return the layers of a picture, drawn unless they are there.
 

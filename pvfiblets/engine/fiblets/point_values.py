@@ -94,7 +94,7 @@ class ValueSources:
         Parameters
         ----------
         name : str or VolumeSource, optional
-            ``Style.values``.
+            ``FibletStyle.values``.
         features : sequence of str
             What the fiblets need to be decoded.
 

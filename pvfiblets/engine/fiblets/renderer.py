@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 
 from ..capabilities import check_choices, choose
 from ..culling import Occlusion, make_occlusion
+from ..drawable import Drawable
 from ..errors import EngineError
 from ..frame import local_frame
 from ..gbuffer import GBuffer
-from ..opengl import OpenGL
-from ..passes import Passes
-from ..reporting import buffer_sizes, count_fiblets, no_counts
-from ..shaders import Programs
 from ..view import Style, View
-from .census import Census
+from .census import Census, count_fiblets, no_counts
 from .chunks import Chunk
 from .depth_peeling import LayeredBuffer, Layers
 from .filter_textures import Filter
 from .memory_fit import Room
 from .pipelines import CONSTANTS, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
+from .style import FibletStyle
 from .uniform_blocks import SharedBlocks, decoding_features
 from .upload import release_chunks, upload_fitting
 from .visibility import Visibility
@@ -40,11 +38,11 @@ if TYPE_CHECKING:
 __all__ = ["FibletRenderer"]
 
 
-class FibletRenderer:
+class FibletRenderer(Drawable[FibletStyle]):
     """Draws one fiblet set.
 
-    The context must be current in every call. The renderer binds what it needs and leaves it bound; the caller keeps
-    its own OpenGL state.
+    What others in the scene hide may be missing from a picture for which their depth was given: two-phase culling
+    looks at it.
 
     Parameters
     ----------
@@ -82,6 +80,8 @@ class FibletRenderer:
         If there is no pipeline or fit of that name.
     """
 
+    STYLE = FibletStyle
+
     def __init__(
         self,
         ctx: moderngl.Context,
@@ -97,109 +97,59 @@ class FibletRenderer:
     ) -> None:
         pipeline = choose(ctx, pipeline)
         check_choices(fit=fit)
+        super().__init__(ctx, CONSTANTS)
         self.pipeline = pipeline
-        self._ctx = ctx
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
-        self._shared: SharedBlocks | None = None
-        self._gl = OpenGL(ctx)
-        self._occlusion: Occlusion | None = None
-        self._pipeline: Pipeline | None = None
-        self._target: GBuffer | None = None
-        self._drawn: tuple[View, Style] | None = None
-        self._last: tuple[View, Style] | None = None
-        self._passes = Passes(ctx)
-        self._programs = Programs(ctx, CONSTANTS)
-        self._generation = 0
-        self._features: frozenset[str] = frozenset()
+        self._last: tuple[View, FibletStyle] | None = None
         self._features_of_layers: frozenset[str] = frozenset()
-        self._values: ValueSources | None = None
-        self._kept: Visibility | None = None
         self._layers: Layers | None = None
         self._query: RegionQuery | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
-        try:
+        with self._making():
             whole = fiblets
             room = Room.of(ctx, self._gl, limits, max_total_bytes)
             fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
-            self._shared = SharedBlocks(ctx, fiblets)
-            self._kept = Visibility(ctx, self._gl, self._programs, whole, fiblets, self._chunks)
+            self._shared = self._keep(SharedBlocks(ctx, fiblets))
+            self._kept = self._keep(Visibility(ctx, self._gl, self._programs, whole, fiblets, self._chunks))
             self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
-            self._pipeline = self._make_pipeline()
+            if self._occlusion is not None:
+                self._keep(self._occlusion, "occlusion")
+            self._pipeline = self._keep(self._make_pipeline())
             self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
             measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
             self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._shared.forget_camera)
-        except BaseException:
-            self.release()
-            raise
+            self._keep(self._values)
 
-    def render(
-        self, view: View, style: Style | None = None, *, outside: moderngl.Texture | None = None
-    ) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style.
-
-        Parameters
-        ----------
-        view : View
-        style : Style, optional
-        outside : moderngl.Texture, optional
-            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. What they hide may be
-            missing from the picture, which therefore serves this one call only: the next one draws anew. Two-phase
-            culling alone looks at it.
-
-        Returns
-        -------
-        GBuffer
-            The renderer's own; the same object until the size changes.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`, if the picture is too large, or if ``style.values`` names no array.
-        """
-        style = style or Style()
-        pipeline = self._alive()[0]
-        if self._target is not None and self._drawn == (view, style):
-            return self._target
-        self._drawn = None
-        if self._target is None or self._target.size != view.size:
-            if self._target is not None:
-                self._target.release()
-                self._target = None
-            self._target = GBuffer(self._ctx, view.size)
+    def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
+        target = self._fitting("gbuffer", view.size, lambda: GBuffer(self._ctx, view.size))
         try:
-            self._target.want_relief(self._ctx, style.relief)
+            target.want_relief(self._ctx, style.relief)
         except EngineError:
-            self._target = None  # its textures are given back
+            self._drop_target("gbuffer")  # its textures are given back
             raise
-        with self._programs.noting() as features:
-            request = self._job(view, style, self._target)
-            self._passes.begin()
-            if self._occlusion is not None:
-                self._occlusion.outside = outside
-                with self._passes.timed("last picture") if self._target.generation else nullcontext():
-                    self._occlusion.before(self._target, view, style)
-            pipeline.draw(request)
-            if self._occlusion is not None:
-                self._occlusion.after(self._target, view, style)
-        self._features, self._features_of_layers = frozenset(features), frozenset()
-        self._generation += 1
-        self._target.generation = self._generation
-        if outside is None:
-            self._drawn = (view, style)
-        self._last = (view, style)
-        return self._target
+        request = self._request(view, style, target)
+        if self._occlusion is not None:
+            self._occlusion.outside = outside
+            with self._passes.timed("last picture") if target.generation else nullcontext():
+                self._occlusion.before(target, view, style)
+        self._pipeline.draw(request)
+        if self._occlusion is not None:
+            self._occlusion.after(target, view, style)
+        self._features_of_layers = frozenset()
+        self._last = view, style
+        return target
 
-    def render_layers(self, view: View, style: Style | None = None, count: int = 4) -> LayeredBuffer:
+    def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
         """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
 
         Parameters
         ----------
         view : View
-        style : Style, optional
+        style : FibletStyle, optional
         count : int
             Layers, the picture of :meth:`render` included.
 
@@ -215,19 +165,19 @@ class FibletRenderer:
         ValueError
             If the number of layers is not from 2 to 64.
         """
-        style = style or Style()
+        style = style or FibletStyle()
         nearest = self.render(view, style)
         if self._layers is None:
-            self._layers = Layers(self._ctx, self._gl, self._programs, self._make_stage)
+            self._layers = self._keep(Layers(self._ctx, self._gl, self._programs, self._make_stage), "layers")
         with self._programs.noting() as features:
-            layers = self._layers.of(nearest, count, view, style, lambda: self._job(view, style, nearest))
+            layers = self._layers.of(nearest, count, view, style, lambda: self._request(view, style, nearest))
         self._features_of_layers |= features
         return layers
 
     def drop_layers(self) -> None:
         """Give back what :meth:`render_layers` keeps; twice is harmless."""
         if self._layers is not None:
-            self._layers.release()
+            self._drop(self._layers)
             self._layers = None
         self._features_of_layers = frozenset()
 
@@ -248,9 +198,9 @@ class FibletRenderer:
             self._limits,
         )
 
-    def _job(self, view: View, style: Style, target: GBuffer) -> DrawRequest:
+    def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
         """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
-        _, values, kept, shared = self._alive()
+        values, kept, shared = self._values, self._kept, self._shared
         shared.bind()
         decoding = self._decoding_features()
         source = values.activate(style.values, decoding)
@@ -288,7 +238,7 @@ class FibletRenderer:
         Parameters
         ----------
         values : str or VolumeSource
-            As in :class:`Style`. Arc length and curvature are measured on the GPU, once.
+            As in :class:`FibletStyle`. Arc length and curvature are measured on the GPU, once.
 
         Returns
         -------
@@ -300,9 +250,9 @@ class FibletRenderer:
         EngineError
             If there is no such array, or after :meth:`release`.
         """
-        _, sources, _, shared = self._alive()
-        shared.bind()
-        return sources.range(values, self._decoding_features())
+        self._check_alive()
+        self._shared.bind()
+        return self._values.range(values, self._decoding_features())
 
     @property
     def filtering(self) -> Filter | None:
@@ -315,15 +265,16 @@ class FibletRenderer:
         EngineError
             After :meth:`release`, or if memory does not suffice.
         """
-        return self._alive()[2].filtering
+        self._check_alive()
+        return self._kept.filtering
 
     @filtering.setter
     def filtering(self, wanted: Filter | None) -> None:
-        kept = self._alive()[2]
-        self._drawn = None  # also of one that fails, as everything is there again
+        self._check_alive()
+        self._made = None  # also of one that fails, as everything is there again
         if self._occlusion is not None:
             self._occlusion.forget()
-        kept.filtering = wanted
+        self._kept.filtering = wanted
 
     def query(self, region: Region, sampling: float | None = None) -> npt.NDArray[np.uint8]:
         """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
@@ -342,25 +293,24 @@ class FibletRenderer:
         """
         from .region_query import RegionQuery
 
-        shared = self._alive()[3]
+        self._check_alive()
         if self._query is None:
-            self._query = RegionQuery(
-                self._ctx, self._gl, self._programs, self._whole, self._chunks, self._max_groups
-            )
-        shared.bind()
+            query = RegionQuery(self._ctx, self._gl, self._programs, self._whole, self._chunks, self._max_groups)
+            self._query = self._keep(query, "query")
+        self._shared.bind()
         found = self._query.flags(self._decoding_features(), region, sampling)
-        shared.bind()
+        self._shared.bind()
         return found
-
-    def _alive(self) -> tuple[Pipeline, ValueSources, Visibility, SharedBlocks]:
-        if self._pipeline is None or self._values is None or self._kept is None or self._shared is None:
-            raise EngineError("this renderer has been released; make a new one")
-        return self._pipeline, self._values, self._kept, self._shared
 
     def _decoding_features(self) -> list[str]:
         return decoding_features(self._fiblets, self._chunks)
 
-    def explain(self, *, counts: bool = True) -> dict[str, object]:
+    def _facts(self, *, counts: bool) -> dict[str, Any]:
+        total = int(self._fiblets.n_fiblets)
+        found = self._count(total) if counts else no_counts(total)
+        return {"fiblets_total": total, "fiblets": found, "share": self.share}
+
+    def explain(self, *, counts: bool = True) -> dict[str, Any]:
         """Say what the last redraw was made of, and wait for it to end.
 
         Parameters
@@ -371,66 +321,34 @@ class FibletRenderer:
         Returns
         -------
         dict
-            ``passes`` (name, ms); ``features``, which are on in the programs that ran, layers' included; ``buffers``
-            (name, bytes); ``fiblets_total``, ``share``; ``fiblets``: ``total``,
-            ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.fiblets.census`), None where not known.
+            As :meth:`.Drawable.explain`, the features of layers included; ``fiblets_total``, ``share``; ``fiblets``:
+            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.fiblets.census`), None where
+            not known.
         """
-        return {
-            "passes": self._passes.report(),
-            "features": sorted(self._features | self._features_of_layers),
-            "buffers": buffer_sizes(
-                {} if self._shared is None else self._shared.buffers,
-                self._chunks,
-                self._pipeline,
-                self._occlusion,
-                self._target,
-                self._kept,
-                self._values,
-                self._layers,
-                self._query,
-            ),
-            "fiblets_total": int(self._fiblets.n_fiblets),
-            "fiblets": self._count() if counts else no_counts(int(self._fiblets.n_fiblets)),
-            "share": self.share,
-        }
+        return super().explain(counts=counts) | {"features": sorted(self._features | self._features_of_layers)}
 
-    def _count(self) -> dict[str, int | None]:
+    def _sizes(self) -> dict[str, int]:
+        sizes = super()._sizes()
+        for chunk in self._chunks:
+            for name, buffer in chunk.buffers.items():
+                sizes[name] = sizes.get(name, 0) + buffer.size
+        return sizes
+
+    def _count(self, total: int) -> dict[str, int | None]:
         """Count fiblets of the last picture."""
-        total = int(self._fiblets.n_fiblets)
-        if self._target is None or self._last is None:
+        if self._buffer is None or self._last is None:
             return no_counts(total)
-        pipeline, _, kept, shared = self._alive()
-        shared.bind()
-        _, planes = shared.write_camera(*self._last)
+        self._shared.bind()
+        _, planes = self._shared.write_camera(*self._last)
         features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else [])]
         culled = self._occlusion is not None
-        return count_fiblets(self._census, total, self._chunks, features, pipeline, self._target, kept, culled)
+        return count_fiblets(
+            self._census, total, self._chunks, features, self._pipeline, self._buffer, self._kept, culled
+        )
 
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
         release_chunks(self._chunks)
-        if self._shared is not None:
-            self._shared.release()
-            self._shared = None
-        if self._pipeline is not None:
-            self._pipeline.release()
-            self._pipeline = None
-        if self._values is not None:
-            self._values.release()
-            self._values = None
-        self.drop_layers()
-        if self._kept is not None:
-            self._kept.release()
-            self._kept = None
-        if self._query is not None:
-            self._query.release()
-            self._query = None
-        if self._occlusion is not None:
-            self._occlusion.release()
-            self._occlusion = None
-        if self._target is not None:
-            self._target.release()
-            self._target = None
-        self._programs.release()
-        self._passes.release()
-        self._drawn = None
+        super().release()
+        self._layers = self._query = None
+        self._features_of_layers = frozenset()

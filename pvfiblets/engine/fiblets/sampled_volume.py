@@ -49,7 +49,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class VolumeSource:
-    """Numbers on a regular grid, as a per-point value (`Style.values`).
+    """Numbers on a regular grid, as a per-point value (`FibletStyle.values`).
 
     Two sources are the same only if they are one object: make another one to have a changed array looked at again.
 

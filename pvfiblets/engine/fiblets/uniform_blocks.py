@@ -16,8 +16,9 @@ from .line_tubes import TUBES_BYTES, tubes_block
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from ..view import Style, View
+    from ..view import View
     from .chunks import Chunk
+    from .style import FibletStyle
 
 __all__ = ["SharedBlocks", "decoding_features"]
 
@@ -83,7 +84,7 @@ class SharedBlocks:
         """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
         self.buffers["frame"].write(bytes(FRAME_BYTES))
 
-    def write_camera(self, view: View, style: Style) -> tuple[bool, bool]:
+    def write_camera(self, view: View, style: FibletStyle) -> tuple[bool, bool]:
         """Bring the blocks of the camera up to date; say whether anything may cross the edges, or planes."""
         # Where steps vary, four times their mean stands for the longest.
         self.segment = segment_pixels(view, *self.place, 4.0 * self._fiblets.step)

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...halos.style import DISPLACEMENTS, TABLE_SIZE, Look
+from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
 from ..clipping import BLOCK_BYTES, clip_planes_block
 from ..frame import FRAME_BYTES, frame_block, local_frame
 from ..lattice import TOP
@@ -66,7 +66,7 @@ class HaloBlocks:
         self._corners = np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])
         self.buffers: dict[str, moderngl.Buffer] = {}
 
-    def write(self, view: View, look: Look, n_items: int) -> tuple[bool, bool]:
+    def write(self, view: View, look: HaloStyle, n_items: int) -> tuple[bool, bool]:
         """Bring all up to date and bind them.
 
         Returns
@@ -90,7 +90,7 @@ class HaloBlocks:
         inside = (np.abs(z) < w) & (np.maximum(np.abs(x), np.abs(y)) < BESIDE * w)
         return not inside.all()
 
-    def _block(self, view: View, look: Look, n_items: int) -> bytes:
+    def _block(self, view: View, look: HaloStyle, n_items: int) -> bytes:
         _, to_data, (x, y, z, w) = local_frame(view, *self._place)
         half_size = np.array(view.size) / 2.0
         axis, scale_of_w, perspective = _axis(z, w)

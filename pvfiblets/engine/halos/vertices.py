@@ -157,7 +157,7 @@ def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float
     offsets : numpy.ndarray
         (n_lines + 1,) int64, of the lines' points.
     n_tapered, t_tapered
-        As of :class:`pvfiblets.halos.Look`.
+        As of :class:`pvfiblets.halos.HaloStyle`.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Hermite spline tubes, ray cast into a G-buffer (Russig et al. 2020), on a moderngl context. No VTK, no PyVista.
 
->>> renderer = TubeRenderer(ctx, tubes)                                               # doctest: +SKIP
->>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), Style())       # doctest: +SKIP
+>>> renderer = TubeRenderer(ctx, tubes)                                                     # doctest: +SKIP
+>>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), TubeStyle())       # doctest: +SKIP
 
 Every segment covers what it may show with silhouettes (:mod:`.silhouettes`); the fragment stage meets the pixel's ray
 with it (``shaders/tubes/solver.glsl``) and keeps segment, place and depth; one pass over the picture finds all else.
@@ -14,16 +14,17 @@ from typing import TYPE_CHECKING
 from ...lazy_imports import names_from
 
 if TYPE_CHECKING:
-    from .options import SILHOUETTES, SOLVERS, check_choices
+    from .options import SILHOUETTES, SOLVERS, TubeStyle, check_choices
     from .renderer import TubeRenderer
 
 
-__all__ = ["SILHOUETTES", "SOLVERS", "TubeRenderer", "check_choices"]
+__all__ = ["SILHOUETTES", "SOLVERS", "TubeRenderer", "TubeStyle", "check_choices"]
 
 _HOME = {
     "SILHOUETTES": "options",
     "SOLVERS": "options",
     "TubeRenderer": "renderer",
+    "TubeStyle": "options",
     "check_choices": "options",
 }
 

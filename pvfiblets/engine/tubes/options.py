@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-__all__ = ["SILHOUETTES", "SOLVERS", "Solver", "check_choices"]
+from ..view import Style, check_at_least
+
+__all__ = ["SILHOUETTES", "SOLVERS", "Solver", "TubeStyle", "check_choices"]
 
 AUTO = "auto"
 
@@ -44,6 +46,39 @@ SOLVERS: dict[str, Solver] = {
     "bisection": Solver(None, 20, "the paper's: all derivatives, a fixed number of halvings"),
 }
 """How roots are found inside a bracket; all but the paper's leave the chain of derivatives out where f is convex."""
+
+
+@dataclass(frozen=True)
+class TubeStyle(Style):
+    """How spline tubes become pixels.
+
+    Parameters
+    ----------
+    values : str, optional
+        Name of an attribute of the nodes, to write beside each pixel.
+    min_width : float
+        Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
+
+    Raises
+    ------
+    ValueError
+        If the width is below 0 or not finite.
+    """
+
+    min_width: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_at_least("min_width", self.min_width, 0.0, "pixels")
+
+    @property
+    def half_width(self) -> float:
+        """Pixels that a tube reaches to either side of its axis at least."""
+        return self.min_width / 2.0
+
+    @property
+    def relief(self) -> str:
+        """Normals of the surface."""
+        return "normal"
 
 
 def check_choices(

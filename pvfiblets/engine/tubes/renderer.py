@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 
 from ...tubes.curves import MIDDLE
-from ..culling.listing import LEAST_SEGMENTS, Listing, supports_listing
 from ..errors import EngineError
 from ..gbuffer import GBuffer
-from ..hit_target import HitTarget
+from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
-from ..opengl import OpenGL
-from ..passes import Passes
-from ..shaders import Programs
-from ..view import Style, View
+from ..view import View
 from .eye_inside import Inside
 from .nodes import UNITS, Nodes
-from .options import AUTO, SOLVERS, check_choices
+from .options import AUTO, SOLVERS, TubeStyle, check_choices
 from .proxy_geometry import Silhouettes
 from .uniform_blocks import CONSTANTS, TubeBlocks
 
@@ -30,11 +26,12 @@ __all__ = ["TubeRenderer"]
 HITS_UNIT = 10
 
 
-class TubeRenderer:
-    """Draws one set of spline tubes.
+class TubeRenderer(HitDrawable[TubeStyle]):
+    """Draws one set of spline tubes; a view's region is not looked at.
 
-    The context must be current in every call. The renderer binds what it needs and leaves it bound; the caller keeps
-    its own OpenGL state.
+    In its `GBuffer` ``owner`` holds segments, ``ids`` tubes and tangents, ``position`` the parameter in 0..1 of the
+    segment and the value, ``across`` normals. `explain` also says ``tubes_total``, ``segments_total``, ``primitives``
+    (triangles without culling), ``culling``, ``solver`` and ``iterations``.
 
     Parameters
     ----------
@@ -48,8 +45,6 @@ class TubeRenderer:
         How roots are found, of :data:`.SOLVERS`; ``'auto'`` takes the fastest that is exact.
     iterations : int, optional
         Steps of one search for a root; the solver's own number by default.
-    min_width : float
-        Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
     culling : {'two-phase', None}
         How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
         it (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
@@ -66,8 +61,6 @@ class TubeRenderer:
     solver : str
         The one in use.
     iterations : int
-    share : float
-        1.0: all is drawn.
 
     Raises
     ------
@@ -77,7 +70,8 @@ class TubeRenderer:
         If a choice is none.
     """
 
-    share = 1.0
+    STYLE = TubeStyle
+    SAMPLERS = UNITS
 
     def __init__(
         self,
@@ -87,158 +81,68 @@ class TubeRenderer:
         silhouettes: str = AUTO,
         solver: str = AUTO,
         iterations: int | None = None,
-        min_width: float = 1.0,
         culling: str | None = "two-phase",
         middle: float = MIDDLE,
         discard: bool = False,
     ) -> None:
-        check_choices(silhouettes, solver, iterations, min_width, culling)
+        check_choices(silhouettes, solver, iterations, culling=culling)
         self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
         self.solver = "illinois" if solver == AUTO else solver
         self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
-        self._ctx, self._tubes = ctx, tubes
-        self._min_width, self._middle, self._discard = float(min_width), float(middle), discard
-        self._gl = OpenGL(ctx)
-        self._passes = Passes(ctx)
-        self._programs = Programs(ctx, CONSTANTS)
-        self._nodes: Nodes | None = None
-        self._blocks: TubeBlocks | None = None
-        self._silhouettes: Silhouettes | None = None
-        self._visibility: Listing | None = None
-        self._target: HitTarget | None = None
-        self._drawn: tuple[View, Style] | None = None
-        self._features: list[str] = []
-        self._generation = 0
-        try:
-            self._nodes = Nodes(ctx, self._gl, tubes)
-            self._blocks = TubeBlocks(ctx, (self._nodes.origin, self._nodes.scale, TOP), tubes.scaled)
-            self._silhouettes = Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments)
-            many = self.pipeline == "rectangles" and tubes.n_segments >= LEAST_SEGMENTS
-            if culling is not None and many and supports_listing(ctx):
-                self._visibility = Listing(
-                    ctx, self._gl, self._programs, tubes.n_segments, cull="tubes/cull.comp", features=["TUBES"]
-                )
-        except BaseException:
-            self.release()
-            raise
+        super().__init__(ctx, CONSTANTS)
+        self._tubes, self._middle, self._discard = tubes, float(middle), discard
+        with self._making():
+            self._nodes = self._keep(Nodes(ctx, self._gl, tubes))
+            place = self._nodes.origin, self._nodes.scale, TOP
+            self._blocks = self._keep(TubeBlocks(ctx, place, tubes.scaled))
+            self._silhouettes = self._keep(Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments))
+            listable = tubes.n_segments if self.pipeline == "rectangles" else 0
+            self._make_listing(culling, listable, tubes.n_segments, cull="tubes/cull.comp", features=["TUBES"])
         self._inside = Inside(tubes, self._middle)
 
-    def render(
-        self,
-        view: View,
-        style: Style | None = None,
-        *,
-        outside: moderngl.Texture | None = None,  # noqa: ARG002  as other renderers have it
-    ) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style.
-
-        Parameters
-        ----------
-        view : View
-            Its region is not looked at.
-        style : Style, optional
-            Only ``values`` is looked at: the name of an attribute of the nodes.
-        outside : moderngl.Texture, optional
-            Not looked at.
-
-        Returns
-        -------
-        GBuffer
-            The renderer's own; the same object until the size changes. ``owner`` holds segments, ``ids`` tubes and
-            tangents, ``position`` the parameter in 0..1 of the segment and the value, ``across`` normals.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`, if the picture is too large, or if ``style.values`` names no attribute.
-        """
-        style = style or Style()
-        nodes, blocks, silhouettes = self._alive()
-        if self._target is not None and self._drawn == (view, style):
-            return self._target.buffer
-        self._drawn = None
-        shown = self._attribute(style)
-        reads = nodes.show(shown)
-        # One of our framebuffers must not stay bound when it is released.
-        with self._gl.framebuffers_kept(), self._programs.noting() as features:
-            target = self._draw(view, reads, nodes, blocks, silhouettes)
-        self._features = sorted(features)
-        self._generation += 1
-        target.buffer.generation = self._generation
-        self._drawn = (view, style)
-        return target.buffer
-
-    def _draw(
-        self, view: View, reads: str | None, nodes: Nodes, blocks: TubeBlocks, silhouettes: Silhouettes
-    ) -> HitTarget:
-        """Draw all, whatever was drawn last."""
-        coloured = reads == "TUBE_COLOURS"
-        if self._target is None or self._target.size != view.size or self._target.coloured != coloured:
-            if self._target is not None:
-                self._target.release()
-                self._target = None
-            self._target = HitTarget(self._ctx, self._gl, view.size, coloured)
-        target = self._target
-        cut = blocks.write(
+    def _draw(self, view: View, style: TubeStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
+        reads = self._nodes.show(self._attribute(style))
+        target = self._hit_target(view.size, coloured=reads == "TUBE_COLOURS")
+        cut = self._blocks.write(
             view,
             reach=self._inside.reach,
             middle=self._middle,
-            min_width=self._min_width,
+            min_width=style.min_width,
             iterations=self.iterations,
             n_segments=self._tubes.n_segments,
         )
-        hollow = self._inside.touched(view, self._min_width)
+        hollow = self._inside.touched(view, style.min_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
         rounds = self._rounds(common, cut=cut, hollow=hollow)
-        self._passes.begin()
-        self._ctx.scissor = None
-        nodes.bind()
-        if self._visibility is not None:
-            with self._passes.timed("last picture"):
-                self._visibility.before(target, target.buffer.owner)
-        with self._passes.timed("clear"):
-            target.clear()
-        if self._visibility is not None:
-
-            def render(commands: moderngl.Buffer) -> None:
-                self._render(rounds, silhouettes, target, commands)
-
-            self._visibility.draw(target, self._passes, self._prepare, render)
-        elif self._tubes.n_segments:
-            with self._passes.timed("tubes"):
-                self._render(rounds, silhouettes, target)
-        with self._passes.timed("attributes"):
-            stages = {"vertex": "screen/near.vert", "fragment": "tubes/attributes.frag"}
-            program = self._programs.render(stages, [*common, *([reads] if reads else [])])
-            self._prepare(program)
-            target.hits.use(HITS_UNIT)
-            program["hits"] = HITS_UNIT
-            target.attributes.use()
-            self._ctx.enable_only(moderngl.DEPTH_TEST)
-            self._ctx.depth_func = "<"
-            silhouettes.whole(program).render(moderngl.TRIANGLES, vertices=3)
-            self._ctx.depth_func = "<="
-        return target
+        self._nodes.bind()
+        self._draw_hits(
+            target,
+            lambda commands: self._render(rounds, target, commands),
+            name="tubes",
+            n_items=self._tubes.n_segments,
+            shown=target.buffer.owner,
+            listing=self._listing,
+        )
+        features = [*common, *([reads] if reads else [])]
+        hits = [("hits", target.hits, HITS_UNIT)]
+        self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
+        return target.buffer
 
     def _render(
-        self,
-        rounds: list[tuple[list[str], int]],
-        silhouettes: Silhouettes,
-        target: HitTarget,
-        commands: moderngl.Buffer | None = None,
+        self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None
     ) -> None:
         """Draw all segments, or those that are listed."""
         target.hits_buffer.use()
         for chosen, sides in rounds:
-            program = silhouettes.program(chosen)
+            program = self._silhouettes.program(chosen)
             self._prepare(program)
             if "drawn_sides" in program:
                 program["drawn_sides"] = sides
-            if commands is None or self._visibility is None:
-                silhouettes.draw(program)
+            if commands is None or self._listing is None:
+                self._silhouettes.draw(program)
             else:
-                self._visibility.bind(program)
-                silhouettes.draw_listed(program, commands)
+                self._listing.bind(program)
+                self._silhouettes.draw_listed(program, commands)
 
     def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
         """Return features of each round, and which side of the planes it draws.
@@ -247,7 +151,7 @@ class TubeRenderer:
         chain.
         """
         solving = SOLVERS[self.solver].feature
-        wanted = {"TUBE_DISCARD": self._discard, "TUBE_LISTED": self._visibility is not None}
+        wanted = {"TUBE_DISCARD": self._discard, "TUBE_LISTED": self._listing is not None}
         common = [*common, *([solving] if solving else []), *(name for name, on in wanted.items() if on)]
         chained = [*common, "TUBE_CHAIN"]
         if hollow:
@@ -256,11 +160,7 @@ class TubeRenderer:
             return [(chained, 3)]
         return [(common, 1), (chained, 2)] if cut else [(common, 3)]
 
-    def _prepare(self, program: moderngl.Program | moderngl.ComputeShader) -> None:
-        for sampler, unit in UNITS.items():
-            self._gl.set_sampler(program, sampler, unit)
-
-    def _attribute(self, style: Style) -> NodeValues | None:
+    def _attribute(self, style: TubeStyle) -> NodeValues | None:
         if style.values is None:
             return None
         known = self._tubes.values
@@ -268,52 +168,12 @@ class TubeRenderer:
             return known[style.values]
         raise EngineError(f"no values {style.values!r} at the nodes of these spline tubes; there are {sorted(known)}")
 
-    def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
-        """Say that depths of other things would gain nothing."""
-        return False
-
-    def _alive(self) -> tuple[Nodes, TubeBlocks, Silhouettes]:
-        if self._nodes is None or self._blocks is None or self._silhouettes is None:
-            raise EngineError("this renderer has been released; make a new one")
-        return self._nodes, self._blocks, self._silhouettes
-
-    def explain(self, *, counts: bool = True) -> dict[str, object]:  # noqa: ARG002
-        """Say what the last redraw was made of, and wait for it to end.
-
-        Returns
-        -------
-        dict
-            ``passes`` (name, ms), ``features``, which are on in the programs that ran, ``buffers`` (name, bytes),
-            ``tubes_total``, ``segments_total``, ``primitives`` (triangles without culling), ``culling``, ``solver``,
-            ``iterations``.
-        """
-        sizes: dict[str, int] = {}
-        for holder in (self._nodes, self._blocks, self._silhouettes):
-            if holder is not None:
-                sizes |= {name: buffer.size for name, buffer in holder.buffers.items()}
-        if self._visibility is not None:
-            sizes["culling"] = self._visibility.nbytes
-            sizes["occlusion"] = self._visibility.pyramid_nbytes
-        if self._target is not None:
-            sizes["gbuffer"] = self._target.nbytes
+    def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
         return {
-            "passes": self._passes.report(),
-            "features": list(self._features),
-            "buffers": [{"name": name, "bytes": size} for name, size in sizes.items()],
             "tubes_total": int(self._tubes.n_tubes),
             "segments_total": int(self._tubes.n_segments),
-            "primitives": 0 if self._silhouettes is None else self._silhouettes.primitives,
-            "culling": None if self._visibility is None else "two-phase",
+            "primitives": self._silhouettes.primitives,
+            "culling": None if self._listing is None else "two-phase",
             "solver": self.solver,
             "iterations": self.iterations,
         }
-
-    def release(self) -> None:
-        """Give everything on the GPU back; twice is harmless."""
-        for holder in (self._nodes, self._blocks, self._silhouettes, self._visibility, self._target):
-            if holder is not None:
-                holder.release()
-        self._nodes = self._blocks = self._silhouettes = self._visibility = self._target = None
-        self._programs.release()
-        self._passes.release()
-        self._drawn = None

@@ -9,7 +9,6 @@ One pass over the picture: every pixel's ray runs through the volume's octree an
 
 from __future__ import annotations
 
-from .renderer import VolumeRenderer
-from .style import VolumeStyle
+from .renderer import VolumeRenderer, VolumeStyle
 
 __all__ = ["VolumeRenderer", "VolumeStyle"]

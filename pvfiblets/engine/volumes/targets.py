@@ -1,4 +1,4 @@
-"""What rays are cast into: the G-buffer, and for sparse casting a coarse one and a mark on pixels that want rays."""
+"""`RayTarget`: a G-buffer that rays are cast into, and for sparse casting a mark on pixels that want rays."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import moderngl
 from ..errors import EngineError
 from ..gbuffer import GBuffer
 
-__all__ = ["Picture"]
+__all__ = ["RayTarget"]
 
 
-class Picture:
+class RayTarget:
     """A G-buffer and its framebuffer.
 
     Parameters
@@ -39,7 +39,6 @@ class Picture:
     def __init__(
         self, ctx: moderngl.Context, size: tuple[int, int], relief: str | None, *, coloured: bool, marked: bool
     ) -> None:
-        self.key = size, relief, coloured, marked
         self._marks: moderngl.Renderbuffer | None = None
         self.buffer = GBuffer(ctx, size)
         self.buffer.want_relief(ctx, relief)

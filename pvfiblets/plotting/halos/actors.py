@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
@@ -32,7 +32,7 @@ class PlottedHalos(Plotted, HaloMapper):
     ----------
     drawn : HaloLines or HaloPoints
         What to draw.
-    look : Look
+    look : HaloStyle
         How.
     """
 
@@ -141,7 +141,7 @@ class HaloActor(HaloSettings, Coloured, pv.Actor):
     # Looks --------------------------------------------------------------------------------------
 
     @property
-    def look(self) -> Look:
+    def look(self) -> HaloStyle:
         """Every setting below as it is drawn, with the numbers that were measured of the data."""
         return self._mapper.look
 

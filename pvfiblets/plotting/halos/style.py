@@ -1,4 +1,4 @@
-"""What a user sets about lines and points with halos, and the `Look` that this means for what is drawn."""
+"""What a user sets about lines and points with halos, and the `HaloStyle` that this means for what is drawn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.displacement import as_displacement
 from pvfiblets.halos.spacing import default_widths
 from pvfiblets.plotting.halos.settings import WIDTH_CUE
@@ -68,13 +68,13 @@ class LookSettings:
     Parameters
     ----------
     line_width, strip_width, max_displacement : float, optional
-        mm; as of `Look`. Of points the first two are the diameters of point and halo.
+        mm; as of `HaloStyle`. Of points the first two are the diameters of point and halo.
     displacement : str, tuple of float or callable
         As of :func:`pvfiblets.halos.displacement.as_displacement`.
     tapering : bool or tuple
         Vertices over which ends narrow, and where along the mask those end; True for the paper's.
     width_cue, min_width, smooth
-        As of `Look`.
+        As of `HaloStyle`.
     filter_by : str, optional
         Numbers at the points that filter.
     threshold : float or tuple of float, optional
@@ -95,7 +95,7 @@ class LookSettings:
     threshold: Threshold = None
     filter_taper: float | None = None
 
-    def look(self, drawn: HaloLines | HaloPoints, spacing: Spacing) -> Look:
+    def look(self, drawn: HaloLines | HaloPoints, spacing: Spacing) -> HaloStyle:
         """Return what this means.
 
         Parameters
@@ -107,7 +107,7 @@ class LookSettings:
 
         Returns
         -------
-        Look
+        HaloStyle
 
         Raises
         ------
@@ -124,7 +124,7 @@ class LookSettings:
                 message = message.replace(theirs, ours)
             raise ValueError(message) from None
 
-    def _look(self, lines: bool, spacing: Spacing) -> Look:
+    def _look(self, lines: bool, spacing: Spacing) -> HaloStyle:
         given = {
             name: _number(name, getattr(self, name), "mm")
             for name in ("line_width", "strip_width", "max_displacement", "filter_taper")
@@ -143,7 +143,7 @@ class LookSettings:
         if taper is None:
             taper = 2.0 * spacing.step if lines and self.filter_by is not None else 0.0
         line, strip, displacement = spacing.widths(given["line_width"], given["strip_width"], given["max_displacement"])
-        return Look(
+        return HaloStyle(
             line_width=line,
             strip_width=strip,
             max_displacement=displacement,

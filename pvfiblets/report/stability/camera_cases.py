@@ -6,7 +6,7 @@ import numpy as np
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.engine import EngineError, Style, View
+from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.streamlines import Streamlines
 
@@ -200,7 +200,7 @@ def _through(setting: Setting) -> Outcome:
 def _broad(setting: Setting) -> Outcome:
     view = View((64, 48), camera((64, 48), angle=10.0))
     line = np.linspace(-40.0, 40.0, 100)[:, None] * [1.0, 0.2, 0.1]
-    shown = drawn(setting.gl, compress(lines_of(line)), view, Style(line_width=100.0))
+    shown = drawn(setting.gl, compress(lines_of(line)), view, FibletStyle(line_width=100.0))
     return Outcome(float((~shown.there).sum()) if shown.sound else np.inf, 0.0, "empty pixels")
 
 
@@ -210,7 +210,7 @@ def _broad(setting: Setting) -> Outcome:
 def _coarse(setting: Setting) -> Outcome:
     fiblets = compress(lines_of(np.linspace(-40.0, 40.0, 300)[:, None] * [1.0, 0.1, 0.2]))
     matrix = camera(SIZE)
-    shown = drawn(setting.gl, fiblets, View(SIZE, matrix), Style(tolerance=1e9))
+    shown = drawn(setting.gl, fiblets, View(SIZE, matrix), FibletStyle(tolerance=1e9))
     ends = [np.array([[-40.0, -4.0, -8.0], [40.0, 4.0, 8.0]])]
     off = off_lines(shown, ends, matrix, SIZE) if shown.sound else np.inf
     return Outcome(off, OFF_LINE + SLACK, PIXELS)
@@ -239,7 +239,7 @@ def _no_camera(_: Setting) -> Outcome:
         lambda: View((0, 5), matrix),
         lambda: View(SIZE, matrix, [[1.0, 0.0, np.nan, 0.0]]),
         lambda: View(SIZE, matrix, np.ones((9, 4))),
-        lambda: Style(line_width=0.5),
-        lambda: Style(tolerance=np.inf),
-        lambda: Style(radius=0.0),
+        lambda: FibletStyle(line_width=0.5),
+        lambda: FibletStyle(tolerance=np.inf),
+        lambda: FibletStyle(radius=0.0),
     )

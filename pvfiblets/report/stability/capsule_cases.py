@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.layout import unpack, unpack_ends
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 
 from .case import Cases, Outcome, Setting, refused, worst
 from .codec_cases import EFFORTS
@@ -101,7 +101,7 @@ def _tubes(setting: Setting) -> Outcome:
     found = []
     for radius, eye in ((0.5, 120.0), (5.0, 120.0), (100.0, 600.0)):
         matrix = camera(SIZE, eye=(0.0, -eye, 0.2 * eye), near=1.0, far=3.0 * eye)
-        shown = drawn(setting.gl, fiblets, View(SIZE, matrix), Style(radius=radius, tolerance=0.0))
+        shown = drawn(setting.gl, fiblets, View(SIZE, matrix), FibletStyle(radius=radius, tolerance=0.0))
         o, d = pixel_rays(matrix, SIZE)
         there = [np.isfinite(entries(decoded, radius * factor, o, d)) for factor in (1.0, 0.98, 1.02)]
         sure = (there[0] == there[1]) & (there[0] == there[2])
@@ -110,7 +110,7 @@ def _tubes(setting: Setting) -> Outcome:
             wrong &= ~shown.there.ravel()
         off = 100.0 * float(wrong.mean()) if shown.sound and shown.there.any() else np.inf
         found.append(Outcome(off, 1.0, "pixels in 100", f"radius {radius:g} mm"))
-    thread = drawn(setting.gl, fiblets, View(SIZE, camera(SIZE)), Style(radius=1e-6, tolerance=0.0))
+    thread = drawn(setting.gl, fiblets, View(SIZE, camera(SIZE)), FibletStyle(radius=1e-6, tolerance=0.0))
     found.append(Outcome(0.0 if thread.sound and thread.there.any() else np.inf, 1.0, "pixels in 100", "1e-6 mm"))
     return worst(found)
 
@@ -130,7 +130,7 @@ def _inside(setting: Setting) -> Outcome:
         (1e6, (1.0, -20.0, 3.0), (0.0, 0.0, 0.0)),
     ):
         view = View(SIZE, camera(SIZE, eye=eye, target=target, near=0.01, far=300.0, angle=70.0))
-        shown = drawn(setting.gl, fiblets, view, Style(radius=radius, tolerance=0.0, across=True))
+        shown = drawn(setting.gl, fiblets, view, FibletStyle(radius=radius, tolerance=0.0, across=True))
         wrong += int((shown.ids[shown.there][:, 0] == 0).sum()) + (not shown.sound)
     return Outcome(float(wrong), 0.0, "pixels of the tube about the eye")
 
@@ -139,5 +139,5 @@ def _inside(setting: Setting) -> Outcome:
 def _bad_radii(_: Setting) -> Outcome:
     values = (0.0, -1.0, np.nan, np.inf)
     return refused(
-        ValueError, "radius is .*above 0", *(lambda radius=radius: Style(radius=radius) for radius in values)
+        ValueError, "radius is .*above 0", *(lambda radius=radius: FibletStyle(radius=radius) for radius in values)
     )

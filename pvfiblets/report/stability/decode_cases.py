@@ -8,7 +8,7 @@ from pvfiblets.codec import reference
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, FIELDS, PAGE_BITS, STEP_LEVELS, unpack
-from pvfiblets.engine import Style, View
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.query.measures import measure
 from pvfiblets.streamlines import Streamlines
 
@@ -114,7 +114,7 @@ def _lengths(setting: Setting) -> Outcome:
         fiblets = compress(Streamlines(points, base.offsets))
         length = float(fiblets.decompress(dtype=np.float64).lengths().max())
         with drawing(setting.gl, fiblets) as renderer:
-            renderer.render(View((8, 8), camera((8, 8))), Style(values="arc_length"))
+            renderer.render(View((8, 8), camera((8, 8))), FibletStyle(values="arc_length"))
             most = renderer.value_range("arc_length")[1]
         found.append(Outcome(abs(most - length) / length, 1e-4, "of the length", name))
     return worst(found)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.engine import View
-from pvfiblets.engine.halos import HaloRenderer, HaloStyle
-from pvfiblets.halos import HaloLines, HaloPoints, Look
+from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
+from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.reference import LINE, NOTHING, picture
 
 from .case import Cases, Outcome, Setting, refused, worst
@@ -18,7 +18,7 @@ __all__ = ["CASES"]
 
 CASES = Cases("halos", draws=True)
 SIZE = (96, 72)
-LOOK = Look(2.0, 7.0, 2.5, n_tapered=0, min_width=0.0)
+LOOK = HaloStyle(2.0, 7.0, 2.5, n_tapered=0, min_width=0.0)
 EYE = (3.0, -62.0, 14.0)
 SURE = "every pixel as in float64 that is 0.03 pixels or more from an edge there, and no holes"
 WRONG = "wrong pixels"
@@ -42,11 +42,11 @@ def wandering(n: int = 8, m: int = 7, seed: int = 0) -> HaloLines:
     return of_lines(*lines)
 
 
-def kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: Look) -> tuple[Any, Array]:
+def kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: HaloStyle) -> tuple[Any, Array]:
     """Return what each pixel shows, nothing, line or halo, and its window depth."""
     renderer = HaloRenderer(setting.gl, drawn)
     try:
-        buffer = renderer.render(view, HaloStyle(look=look))
+        buffer = renderer.render(view, HaloDrawStyle(look=look))
         key, owner = (
             np.frombuffer(texture.read(), "<u4").reshape(view.size[::-1]) for texture in (buffer.depth, buffer.owner)
         )
@@ -62,7 +62,7 @@ def compare(
     drawn: HaloLines | HaloPoints,
     matrix: Array,
     size: tuple[int, int] = SIZE,
-    look: Look = LOOK,
+    look: HaloStyle = LOOK,
 ) -> Outcome:
     """Compare a picture with the one in float64."""
     view = View(size, matrix)
@@ -128,7 +128,7 @@ def _nothing(setting: Setting) -> Outcome:
 
 @CASES.add("strips wider than the scene", "500 mm wide, that lie 50 mm back", SURE)
 def _wide(setting: Setting) -> Outcome:
-    look = Look(1.0, 500.0, 50.0, n_tapered=0, min_width=0.0)
+    look = HaloStyle(1.0, 500.0, 50.0, n_tapered=0, min_width=0.0)
     return compare(setting, wandering(6, 2, 1), camera(SIZE, eye=EYE, near=10.0, far=200.0), look=look)
 
 
@@ -147,7 +147,7 @@ def _sizes(setting: Setting) -> Outcome:
     base, matrix, found = wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
     for size in (1e-6, 1e6):
         back = np.diag([1 / size, 1 / size, 1 / size, 1.0])
-        look = Look(2.0 * size, 7.0 * size, 2.5 * size, n_tapered=0, min_width=0.0)
+        look = HaloStyle(2.0 * size, 7.0 * size, 2.5 * size, n_tapered=0, min_width=0.0)
         found.append(compare(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
     return worst(found)
 
@@ -171,9 +171,9 @@ def _bad(_: Setting) -> Outcome:
         "finite|line_width|strip_width|max_displacement|thresholds",
         lambda: of_lines([[0, 0, 0], [np.nan, 0, 0]]),
         lambda: HaloPoints(np.full((2, 3), np.inf)),
-        lambda: Look(0.0, 1.0, 1.0),
-        lambda: Look(2.0, 1.0, 1.0),
-        lambda: Look(1.0, np.nan, 1.0),
-        lambda: Look(1.0, 2.0, -1.0),
-        lambda: Look(1.0, 2.0, 1.0, low=2.0, high=1.0),
+        lambda: HaloStyle(0.0, 1.0, 1.0),
+        lambda: HaloStyle(2.0, 1.0, 1.0),
+        lambda: HaloStyle(1.0, np.nan, 1.0),
+        lambda: HaloStyle(1.0, 2.0, -1.0),
+        lambda: HaloStyle(1.0, 2.0, 1.0, low=2.0, high=1.0),
     )

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.engine import FibletRenderer, Style, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
 __all__ = ["EVERY_POINT", "OFF_LINE", "Picture", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
 
@@ -22,7 +22,7 @@ Array = npt.NDArray[np.float64]
 
 EMPTY = 0xFFFFFFFF
 OFF_LINE = 5.0**0.5 / 2.0 + 2.0**0.5 * 23.0 / 256.0
-EVERY_POINT = Style(tolerance=0.0)
+EVERY_POINT = FibletStyle(tolerance=0.0)
 SAMPLES = 8  # places on a line for each pixel it crosses
 REACH = 3  # pixels within which lines and pixels are looked for
 
@@ -114,7 +114,7 @@ def drawing(ctx: Any, fiblets: Any, **options: Any) -> Iterator[FibletRenderer]:
         renderer.release()
 
 
-def drawn(ctx: Any, fiblets: Any, view: View, style: Style = EVERY_POINT, **options: Any) -> Picture:
+def drawn(ctx: Any, fiblets: Any, view: View, style: FibletStyle = EVERY_POINT, **options: Any) -> Picture:
     """Draw one picture with a renderer of its own."""
     with drawing(ctx, fiblets, **options) as renderer:
         return read(renderer.render(view, style))

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import View
+from pvfiblets.engine.tubes.options import TubeStyle
 from pvfiblets.engine.tubes.renderer import TubeRenderer
 from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.tubes import reference
@@ -156,9 +157,9 @@ def winding(scale: float = 1.0, shift: float = 0.0, radius: float = 2.0) -> Spli
 
 def compare(setting: Setting, tubes: SplineTubes, matrix: Array, size: tuple[int, int] = SIZE) -> Outcome:
     """Compare a picture with the hits of all pixels' rays in float64."""
-    renderer = TubeRenderer(setting.gl, tubes, min_width=0.0)
+    renderer = TubeRenderer(setting.gl, tubes)
     try:
-        buffer = renderer.render(View(size, matrix))
+        buffer = renderer.render(View(size, matrix), TubeStyle(min_width=0.0))
         key = np.frombuffer(buffer.depth.read(), "<u4")
         place = np.frombuffer(buffer.position.read(), "<f4").reshape(-1, 2)[:, 0]
     finally:
@@ -234,9 +235,9 @@ def _nothing(setting: Setting) -> Outcome:
     still, own = np.zeros((3, 3)), np.array([[0, 0], [1, 1]])
     dots = SplineTubes(np.eye(3), own, np.zeros(3), still, np.zeros(3), False, np.arange(2), 2)
     for tubes in (empty, dots):
-        renderer = TubeRenderer(setting.gl, tubes, min_width=0.0)
+        renderer = TubeRenderer(setting.gl, tubes)
         try:
-            buffer = renderer.render(View(SIZE, camera(SIZE, eye=(0.0, -60.0, 20.0))))
+            buffer = renderer.render(View(SIZE, camera(SIZE, eye=(0.0, -60.0, 20.0))), TubeStyle(min_width=0.0))
             pixels += int((np.frombuffer(buffer.depth.read(), "<u4") != EMPTY).sum())
         finally:
             renderer.release()

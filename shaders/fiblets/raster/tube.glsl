@@ -21,8 +21,8 @@
 //   3. Planes of the caller's narrow the range from t_in to t_out. What they cut is closed: the cut shows as a flat disc.
 //      What the near plane cuts is left open: one looks through it.
 //
-// A tube thinner than a pixel would be hit by few rays. Pixels at most half a pixel away from the axis belong to it too, as to
-// a line of one pixel's width; where no ray hits, they show the axis.
+// A tube thinner than a pixel would be hit by few rays. Pixels at most viewport.z away from the axis belong to it too, as to
+// a line of twice that width (a pixel of the finished picture); where no ray hits, they show the axis.
 //
 // Outline: which pixels are tested. A ball of radius r around p reaches |J v| / (W + grad W . v), |v| <= r, pixels away from
 // the pixel of p, where J = (grad X - x grad W, grad Y - y grad W): no more than r |J| / (W - r |grad W|), nor than
@@ -38,7 +38,7 @@ struct Outline {
     float t0;      // where on the segment they lie
     float t1;
     float reach;   // pixels away from that part
-    bool thin;     // may be thinner than a pixel
+    bool thin;     // may be thinner than 2 viewport.z
 };
 
 struct Tube {
@@ -57,7 +57,6 @@ struct Hit {
     vec3 normal;   // unit vector, local mm
 };
 
-const float BRUSH = 0.5;           // pixels
 const float OUTLINE_ROUNDING = 0.05;
 
 // What a box around the part of a tube between a and b takes of the window; false if nothing.
@@ -96,11 +95,11 @@ bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
     a = to_window(a);
     b = to_window(b);
     float at_a = tube.x * pixel_derivative_at(a.xy), at_b = tube.x * pixel_derivative_at(b.xy);
-    float reach = max(max(at_a, at_b) / close, BRUSH) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
+    float reach = max(max(at_a, at_b) / close, viewport.z) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
     if (!(reach < viewport.x + viewport.y)) return box_of(c, d, outline);
     vec2 least = min(a.xy, b.xy) - reach, most = max(a.xy, b.xy) + reach;
     if (any(greaterThan(least, viewport.xy)) || any(lessThan(most, vec2(0.0)))) return false;
-    outline = Outline(a, b, t0, t1, reach, min(at_a, at_b) < 2.0 * BRUSH * max(a.w, b.w));
+    outline = Outline(a, b, t0, t1, reach, min(at_a, at_b) < 2.0 * viewport.z * max(a.w, b.w));
     return true;
 }
 
@@ -189,7 +188,7 @@ bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && !t.start && outline.t0 == 0.0 || dot(away, away) > BRUSH * BRUSH) return false;
+    if (foot < 0.0 && !t.start && outline.t0 == 0.0 || dot(away, away) > viewport.z * viewport.z) return false;
     precise float z = outline.a.z + (outline.b.z - outline.a.z) * s;
     if (!(z >= 0.0 && z <= 1.0)) return false;
     precise float u = clamp(s * outline.a.w / max((1.0 - s) * outline.b.w + s * outline.a.w, 1e-30), 0.0, 1.0);

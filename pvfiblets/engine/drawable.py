@@ -1,0 +1,256 @@
+"""`Drawable`: what the renderers of all drawables do in the same way.
+
+A renderer copies its data to the GPU when it is made, draws a G-buffer when the view or the style has changed, says
+what that was made of, and gives everything back. A new drawable derives from `Drawable` and has
+
+- a style, derived from :class:`pvfiblets.engine.view.Style`, as ``STYLE``,
+- a constructor that puts all it keeps on the GPU through :meth:`Drawable._keep`, inside :meth:`Drawable._making`,
+- :meth:`Drawable._draw`, which draws,
+- :meth:`Drawable._facts`, which says what nobody else knows.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
+
+import moderngl
+
+from .errors import EngineError
+from .gbuffer import GBuffer
+from .opengl import OpenGL
+from .passes import Passes
+from .shaders import Programs
+from .view import Style, View
+
+__all__ = ["Drawable", "Target", "sizes_of"]
+
+
+class Kept(Protocol):
+    """What a renderer keeps on the GPU; ``sizes``, ``buffers`` or ``nbytes`` say how large it is."""
+
+    def release(self) -> None:
+        """Give it back; twice is harmless."""
+        ...
+
+
+class Target(Kept, Protocol):
+    """Textures that a renderer draws a picture into."""
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        ...
+
+
+AnyStyle = TypeVar("AnyStyle", bound=Style)
+AnyKept = TypeVar("AnyKept", bound=Kept)
+AnyTarget = TypeVar("AnyTarget", bound=Target)
+
+
+class Drawable(ABC, Generic[AnyStyle]):
+    """Draws one set of data on one OpenGL context.
+
+    The context must be current in every call. The renderer binds what it needs and leaves it bound, but for the
+    framebuffers; the caller keeps its own OpenGL state.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        OpenGL 3.3 or later.
+    constants : mapping
+        What the shaders' placeholders stand for.
+
+    Attributes
+    ----------
+    pipeline : str
+        How it draws.
+    share : float
+        How much of the data is drawn: 1.0 for all.
+    """
+
+    STYLE: ClassVar[type[Style]]
+    """Class of its styles."""
+
+    pipeline: str
+    share = 1.0
+
+    def __init__(self, ctx: moderngl.Context, constants: Mapping[str, Any]) -> None:
+        self._ctx = ctx
+        self._gl = OpenGL(ctx)
+        self._passes = Passes(ctx)
+        self._programs = Programs(ctx, constants)
+        self._kept_on_gpu: list[tuple[str, Kept]] = []
+        self._targets: dict[str, tuple[Hashable, Target]] = {}
+        self._buffer: GBuffer | None = None
+        self._made: tuple[View, Style] | None = None
+        self._features: frozenset[str] = frozenset()
+        self._generation = 0
+        self._released = False
+
+    # What a drawable adds
+
+    @abstractmethod
+    def _draw(self, view: View, style: AnyStyle, outside: moderngl.Texture | None) -> GBuffer:
+        """Draw, whatever was drawn last."""
+
+    @abstractmethod
+    def _facts(self, *, counts: bool) -> dict[str, Any]:
+        """Return what :meth:`explain` says beside passes, features and buffers."""
+
+    def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
+        """Say whether :meth:`render` would gain from the depth of other things in the scene."""
+        return False
+
+    # Drawing
+
+    def render(self, view: View, style: AnyStyle | None = None, *, outside: moderngl.Texture | None = None) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style.
+
+        Parameters
+        ----------
+        view : View
+        style : Style
+            Of the class ``STYLE``; may be left out where that has a default for everything.
+        outside : moderngl.Texture, optional
+            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture for which
+            it was looked at serves this one call only: the next one draws anew.
+
+        Returns
+        -------
+        GBuffer
+            The renderer's own; the same object until the size, or what the style wants of it, changes.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, if the picture is too large, or if ``style.values`` names nothing.
+        TypeError
+            If the style is another drawable's.
+        """
+        style = self._checked(style)
+        self._check_alive()
+        if self._buffer is not None and self._made == (view, style) and self._serves(outside):
+            return self._buffer
+        self._made = None
+        # One of our framebuffers must not stay bound when it is released.
+        with self._gl.framebuffers_kept(), self._programs.noting() as features:
+            self._passes.begin()
+            self._ctx.scissor = None
+            self._buffer = self._draw(view, style, outside)
+        self._features = frozenset(features)
+        self._generation += 1
+        self._buffer.generation = self._generation
+        if outside is None:
+            self._made = view, style
+        return self._buffer
+
+    def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
+        """Say whether a picture that was drawn without an outside serves where there is one."""
+        return True
+
+    def _checked(self, style: AnyStyle | None) -> AnyStyle:
+        """Return a style of the right class."""
+        if style is None:
+            try:
+                return cast("AnyStyle", self.STYLE())
+            except TypeError:
+                pass  # it has fields without a default
+        if not isinstance(style, self.STYLE):
+            raise TypeError(f"style is a {type(style).__name__}; {type(self).__name__} needs a {self.STYLE.__name__}")
+        return style
+
+    def _fitting(self, name: str, key: Hashable, make: Callable[[], AnyTarget]) -> AnyTarget:
+        """Return the target of a name: the one there is, if it was made for that key, else another."""
+        held = self._targets.get(name)
+        if held is not None and held[0] == key:
+            return cast("AnyTarget", held[1])
+        self._drop_target(name)
+        target = make()
+        self._targets[name] = key, target
+        return target
+
+    def _drop_target(self, name: str) -> None:
+        """Give a target back; nothing if there is none."""
+        held = self._targets.pop(name, None)
+        if held is not None:
+            self._buffer = self._made = None
+            held[1].release()
+
+    # Memory
+
+    @contextmanager
+    def _making(self) -> Iterator[None]:
+        """Give everything back that has been kept so far if making the rest fails."""
+        try:
+            yield
+        except BaseException:
+            self.release()
+            raise
+
+    def _keep(self, kept: AnyKept, name: str = "") -> AnyKept:
+        """Release something with the renderer, and tell its size, by name where it has none for its parts."""
+        self._kept_on_gpu.append((name, kept))
+        return kept
+
+    def _drop(self, kept: Kept) -> None:
+        """Give one thing back before the others."""
+        self._kept_on_gpu = [(name, other) for name, other in self._kept_on_gpu if other is not kept]
+        kept.release()
+
+    def _check_alive(self) -> None:
+        if self._released:
+            raise EngineError("this renderer has been released; make a new one")
+
+    def _sizes(self) -> dict[str, int]:
+        """Return bytes of everything on the GPU by name."""
+        sizes: dict[str, int] = {}
+        parts = [*self._kept_on_gpu, *((name, target) for name, (_, target) in self._targets.items())]
+        for name, kept in parts:
+            for part, size in sizes_of(kept, name).items():
+                sizes[part] = sizes.get(part, 0) + size
+        return sizes
+
+    def explain(self, *, counts: bool = True) -> dict[str, Any]:
+        """Say what the last redraw was made of, and wait for it to end.
+
+        Parameters
+        ----------
+        counts : bool
+            Whether to count what takes a pass of its own to count.
+
+        Returns
+        -------
+        dict
+            ``passes`` (name, ms); ``features``, which are on in the programs that ran; ``buffers`` (name, bytes); and
+            what the class says of its own.
+        """
+        return {
+            "passes": self._passes.report(),
+            "features": sorted(self._features),
+            "buffers": [{"name": name, "bytes": size} for name, size in self._sizes().items()],
+            **self._facts(counts=counts),
+        }
+
+    def release(self) -> None:
+        """Give back everything on the GPU; twice is harmless."""
+        self._released = True
+        for _, kept in self._kept_on_gpu:
+            kept.release()
+        self._kept_on_gpu.clear()
+        for name in list(self._targets):
+            self._drop_target(name)
+        self._programs.release()
+        self._passes.release()
+        self._buffer = self._made = None
+
+
+def sizes_of(kept: Any, name: str) -> dict[str, int]:
+    """Return bytes by name: of ``sizes`` or ``buffers`` if it has them, else of all of it by the name given."""
+    if name:
+        return {name: kept.nbytes}
+    if hasattr(kept, "sizes"):
+        return dict(kept.sizes)
+    return {part: getattr(buffer, "size", buffer) for part, buffer in kept.buffers.items()}

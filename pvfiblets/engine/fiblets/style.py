@@ -1,0 +1,84 @@
+"""`FibletStyle`: how fiblets become pixels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..view import Style, check_at_least
+
+__all__ = ["FibletStyle"]
+
+
+@dataclass(frozen=True)
+class FibletStyle(Style):
+    """How fiblets become pixels.
+
+    Parameters
+    ----------
+    values : str or VolumeSource, optional
+        The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
+        streamline's first point), the name of an array in ``FibletSet.per_point``, or a volume to be sampled at the
+        points (:mod:`pvfiblets.engine.fiblets.sampled_volume`). None costs nothing.
+    line_width : float
+        Pixels, at least 1. Exactly 1 draws thin lines as OpenGL does; more draws round brushes of that diameter.
+    tolerance : float
+        Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
+        one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
+    across : bool
+        Whether to write where across a line each pixel lies, for shading it as if it were round (``GBuffer.across``).
+        Thin lines have nothing to write.
+    radius : float, optional
+        Millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each
+        pixel shows the nearest point of their surface. ``line_width`` is then not looked at.
+    min_width : float
+        Pixels, at least 1: tubes that are thinner are drawn as wide as that.
+
+    Raises
+    ------
+    ValueError
+        If the line width or the least width is below 1, the tolerance below 0, the radius not positive, or any of them
+        not finite.
+    """
+
+    line_width: float = 1.0
+    tolerance: float = 0.5
+    across: bool = False
+    radius: float | None = None
+    min_width: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_at_least("line_width", self.line_width, 1.0, "pixels")
+        check_at_least("min_width", self.min_width, 1.0, "pixels")
+        check_at_least("tolerance", self.tolerance, 0.0, "pixels")
+        if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 0.0):
+            raise ValueError(f"radius is {self.radius}; give a finite number of millimetres above 0, or None for lines")
+
+    @property
+    def half_width(self) -> float:
+        """Pixels that a line reaches to either side of its axis at least; 0 for thin lines."""
+        if self.radius is not None:
+            return self.min_width / 2.0
+        return 0.0 if self.line_width == 1.0 else self.line_width / 2.0
+
+    @property
+    def reach(self) -> float:
+        """Millimetres from a line's axis to its surface."""
+        return self.radius or 0.0
+
+    @property
+    def thickness(self) -> float:
+        """Millimetres from a line's axis to its surface."""
+        return self.radius or 0.0
+
+    @property
+    def detail(self) -> float:
+        """Pixels by which fiblets may be simplified."""
+        return self.tolerance
+
+    @property
+    def relief(self) -> str | None:
+        """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
+        if not self.across or self.half_width == 0.0:
+            return None
+        return "across" if self.radius is None else "normal"
