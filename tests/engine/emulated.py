@@ -81,7 +81,7 @@ void put_handed(uint primitive, Handed handed, Piece piece, vec3 from, vec3 to) 
     for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(handed_values[a]);
 #endif
 }
-#include "mesh/STAGE.glsl"
+#include "fiblets/mesh/STAGE.glsl"
 void main() {
     uint at = gl_WorkGroupID.y * 16u, k = gl_WorkGroupID.x;
     mesh = (gl_WorkGroupID.y * gl_NumWorkGroups.x + k) * MESH_WORDS;

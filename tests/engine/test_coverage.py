@@ -117,7 +117,9 @@ def to_window(points, matrix, size=SIZE):
     return np.concatenate([window * [*size, 1.0], clip[:, 3:]], axis=1)
 
 
-@pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
+@pytest.mark.parametrize(
+    "parallel", [False, pytest.param(True, marks=pytest.mark.exhaustive)], ids=["perspective", "parallel"]
+)
 def test_the_same_camera_loses_no_pixel_and_turns_lose_few(gl, brain, orbit, parallel):
     """Error against use: pixels lost, and fiblets hidden, for the paper's turn a frame and larger ones."""
     covering = FibletRenderer(gl, brain, culling="coverage")
@@ -163,6 +165,7 @@ def test_a_teleport_through_the_data_is_repaired_by_the_next_picture(gl, brain, 
     assert max(lost[3::2]) < 2e-3
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
 def test_what_is_hidden_is_behind_the_depth_in_float64(gl, fabricate, random_lines, camera, low, parallel):

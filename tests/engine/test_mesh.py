@@ -80,6 +80,7 @@ def link(folder, sources):
     return subprocess.run([glslang(), "-l", *paths], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("culled", CULLED)
 @pytest.mark.parametrize("drawn", DRAWN)
 @pytest.mark.parametrize("records", RECORDS)
