@@ -18,6 +18,9 @@ demo: environment gl
 serve: demo
 	$(BIN)/pvfiblets serve $(DEMO)/*.fiblets --root $(DEMO)
 
+# Mesa's software OpenGL compiles a shader's machine code anew on every new machine, which takes longer than to draw
+# small pictures: here without optimising it, by `make test-all` as users have it.
+test: export GALLIVM_PERF = nopt
 test: export LEAST = 4.3
 test: environment gl shaders browser display lint
 	$(PYTEST)
