@@ -8,7 +8,8 @@ READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
 # Files in the order in which conftest.py puts them, the longest first: pytest-xdist would go by numbers of tests.
-PYTEST := $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
+# Compiled modules are kept, for the many processes that tests start.
+PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
 .PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel wheel environment gl shaders browser display clean
 
