@@ -1,4 +1,4 @@
-# One command each: `make demo`, `make serve`, `make test`, `make lint`, `make fuzz`, `make soak`, `make bench`.
+# One command each: `make demo`, `make serve`, `make test`, `make test-all`, `make lint`, `make fuzz`, `make soak`, `make bench`.
 # A new machine needs only make and Python >= 3.11 with its venv module.
 
 PYTHON ?= python3
@@ -7,8 +7,11 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
+# Files in the order in which conftest.py puts them, the longest first: pytest-xdist would go by numbers of tests.
+# Compiled modules are kept, for the many processes that tests start.
+PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test lint fuzz soak bench docs check-wheel wheel environment gl shaders browser display clean
+.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel wheel environment gl shaders browser display clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -16,9 +19,16 @@ demo: environment gl
 serve: demo
 	$(BIN)/pvfiblets serve $(DEMO)/*.fiblets --root $(DEMO)
 
+# Mesa's software OpenGL compiles a shader's machine code anew on every new machine, which takes longer than to draw
+# small pictures: here without optimising it, by `make test-all` as users have it.
+test: export GALLIVM_PERF = nopt
 test: export LEAST = 4.3
 test: environment gl shaders browser display lint
-	$(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile
+	$(PYTEST)
+
+test-all: export LEAST = 4.3
+test-all: environment gl shaders browser display lint
+	PVFIBLETS_FUZZ=1000 $(PYTEST) -m '' --hypothesis-profile=exhaustive --timeout=3600
 
 lint: environment
 	$(BIN)/ruff check .

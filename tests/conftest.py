@@ -1,17 +1,21 @@
 """Fixtures and rules that every room's tests share.
 
-Three rules live here:
+Four rules live here:
 
 * Real data is found, never copied: the ``shared_data`` fixture.
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
 * On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
   must run with some of its parameters, unless the real data is not on that machine.
+* ``make test`` takes minutes: what is marked ``exhaustive``, or is left over of a product of parameters marked
+  ``every``, runs by ``make test-all`` only.
 """
 
 from __future__ import annotations
 
 import gc
 import os
+from collections import defaultdict
+from itertools import combinations
 from pathlib import Path
 
 import hypothesis
@@ -19,9 +23,30 @@ import pytest
 
 NO_DATA = "real data is not on this machine"
 
+SIZES = {"value": 1, "pair": 2}
+"""What ``pytest.mark.every`` may say, and of how many parameters it speaks."""
+
+LONGEST = (
+    "left_out/test_left_out.py", "tests/test_examples.py", "docs/test_snippets.py", "web/test_browser.py",
+    "stability/test_soak.py", "stability/test_load.py", "plotting/test_everything_at_once.py",
+    "engine/test_two_phase.py", "engine/test_coverage.py", "web/test_browser_tools.py", "web/test_browser_layout.py",
+    "report/test_features_study.py", "report/test_tubes_study.py", "formats/test_fuzz.py",
+    "engine/test_region_query.py", "engine/test_volume.py", "engine/test_volume_steep.py",
+    "engine/test_filter_textures.py", "engine/test_line_tubes.py", "web/test_browser_connection.py",
+    "web/test_browser_touch.py",
+)  # fmt: skip
+"""Files that take longest. They begin first, so that in the end no process works on while the others have nothing."""
+
 hypothesis.settings.register_profile(
     "default",
-    max_examples=30,
+    max_examples=15,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[hypothesis.HealthCheck.too_slow],
+)
+hypothesis.settings.register_profile(
+    "exhaustive",
+    max_examples=100,
     deadline=None,
     derandomize=True,
     suppress_health_check=[hypothesis.HealthCheck.too_slow],
@@ -131,6 +156,38 @@ def _no_plotter_left_open():
 
     if (pyvista := sys.modules.get("pyvista")) is not None and hasattr(pyvista, "close_all"):
         pyvista.close_all()
+
+
+def covering(rows: list[list[str]], size: int) -> set[int]:
+    """Return which rows to take so that all sets of `size` values that occur in a row occur in one that is taken."""
+    wanted = [set(combinations(enumerate(row), min(size, len(row)))) for row in rows]
+    missing, taken = set().union(*wanted), set()
+    while missing:
+        best = max(range(len(rows)), key=lambda row: len(wanted[row] & missing))  # of equals, the first
+        taken.add(best)
+        missing -= wanted[best]
+    return taken
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest deselects by mark
+def pytest_collection_modifyitems(items):
+    """Put the longest files first, and thin products of parameters."""
+    order = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get("/".join(item.path.parts[-2:]), len(order)))
+    thin(items)
+
+
+def thin(items):
+    """Mark as exhaustive what products of parameters have besides every value, or every pair of values."""
+    products = defaultdict(list)
+    for item in items:
+        if (mark := item.get_closest_marker("every")) is not None and hasattr(item, "callspec"):
+            products[item.nodeid.partition("[")[0], SIZES[mark.args[0]]].append(item)
+    for (_, size), product in products.items():
+        taken = covering([item.callspec._idlist for item in product], size)
+        for row, item in enumerate(product):
+            if row not in taken:
+                item.add_marker(pytest.mark.exhaustive)
 
 
 class _SkipRule:

@@ -1,11 +1,13 @@
-"""The rule about skips on continuous integration holds."""
+"""The rules about skips on continuous integration and about what `make test` leaves out hold."""
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -31,3 +33,35 @@ def test_a_check_cannot_vanish_on_ci(tmp_path, body, on_ci, passes):
     command = [sys.executable, "-m", "pytest", "-q", "--rootdir", str(tmp_path), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=tmp_path)
     assert (done.returncode == 0) is passes, done.stdout
+
+
+PRODUCT = """
+import json, pathlib, pytest
+@pytest.mark.every("pair")
+@pytest.mark.parametrize("a", range(3))
+@pytest.mark.parametrize("b", range(4))
+@pytest.mark.parametrize(("c", "d"), [(0, 1), (1, 0)])
+def test_it(a, b, c, d):
+    with pathlib.Path("kept").open("a") as file:
+        print(json.dumps([a, b, c]), file=file)
+@pytest.mark.exhaustive
+def test_other():
+    pathlib.Path("other").touch()
+"""
+
+
+@pytest.mark.parametrize(("arguments", "fewest", "most"), [([], 12, 15), (["-m", ""], 24, 24)], ids=["some", "all"])
+def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewest, most):
+    shutil.copy(CONFTEST, tmp_path / "conftest.py")
+    shutil.copy(CONFTEST.parents[1] / "pyproject.toml", tmp_path)
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "test_it.py").write_text(PRODUCT)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments]
+    environment = {**os.environ, "PVFIBLETS_CI": "1"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    rows = [json.loads(line) for line in (tmp_path / "kept").read_text().splitlines()]
+    assert fewest <= len(rows) <= most
+    for i, j in combinations(range(3), 2):
+        assert len({(row[i], row[j]) for row in rows}) == (3, 4, 2)[i] * (3, 4, 2)[j]
+    assert (tmp_path / "other").exists() == bool(arguments)

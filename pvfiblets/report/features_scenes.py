@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.engine.fiblets.style import FibletStyle
-from pvfiblets.engine.view import View
+from pvfiblets.engine.view import Style, View
 
 from .cameras import Camera, orbit
 
@@ -63,7 +62,7 @@ class Subject:
     name : str
     make : callable
         Takes a context and the feature's options; returns the engine's renderer.
-    style : FibletStyle
+    style : Style
         The plain one.
     bounds : sequence of float
         ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
@@ -73,7 +72,7 @@ class Subject:
 
     name: str
     make: Callable[..., Any]
-    style: FibletStyle
+    style: Style
     bounds: Sequence[float]
     features: list[Feature]
 

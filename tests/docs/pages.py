@@ -20,6 +20,12 @@ from pvfiblets.synthetic import brain_streamlines
 pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
 """
 
+# Windows that a page gives no size are a quarter of the usual ones.
+SMALL = """
+import pyvista
+pyvista.global_theme.window_size = (512, 384)
+"""
+
 # What a page takes for granted: the reader's own files and objects.
 GIVEN = {
     "README.md": BRAIN + """
@@ -69,10 +75,11 @@ RUN_ELSEWHERE = {
     "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",
     "docs/reference/fiblets-files.md": "test_fiblets_files.py runs the reader that it prints",
 }
-# A smaller brain, and windows that stay open for what a page says after it has shown them.
+# A smaller brain, a smaller print, and windows that stay open for what a page says after it has shown them.
 INSTEAD = {
     "brain_streamlines(20_000, seed=1, fa=True)": "brain_streamlines(400, seed=1, fa=True)",
     "plotter.show()": "plotter.show(auto_close=False)",
+    "scale=4, one_bit=True": "scale=2, one_bit=True",
 }
 
 
@@ -92,7 +99,7 @@ def pages_with_blocks() -> set[str]:
 
 def program(page: str) -> str:
     """Return one program of all blocks of a page."""
-    parts = ["import subprocess", GIVEN[page]]
+    parts = ["import subprocess", SMALL, GIVEN[page]]
     for language, text in blocks(ROOT / page):
         if language != "python":
             if INSTALLS.search(text):  # of an install only what comes after it

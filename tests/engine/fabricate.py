@@ -33,7 +33,7 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
         lattice = max(extent, 1e-12) / {1: 2.5, 2: 15.0, 3: 900.0}[kind]
     lattice = lattice * 2.0**halvings
     edge = lattice * 0.5**halvings
-    words, decodings, lows, codes, reaches, pages, starts = [], [], [], [], [], [], []
+    anchors, decodings, lows, codes, pages, starts = [], [], [], [], [], []
     code_at = point_at = 0
     pieces = []
     for rank, line in enumerate(lines):
@@ -69,24 +69,18 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
             shape |= (int(size[0]) - 1) << 24
             step = int(size[1]) - 1
         high = q >> 16 if low else q
-        words.append(
-            layout.pack(
-                "anchors", anchor_x=high[0], anchor_y=high[1], anchor_z=high[2],
-                rank=rank - base[0], begin=int(a == 0), end=int(b == n),
-            )
-        )  # fmt: skip
+        anchors.append((*high, rank - base[0], int(a == 0), int(b == n)))
         lows.append(q & 65535)
-        decodings.append(
-            layout.pack(
-                "decoding", shape=shape, code=code_at - base[1], step=step, point=point_at - base[2],
-                last=len(points) - 1, cap=halvings, kind=kind,
-            )
-        )  # fmt: skip
+        decodings.append((shape, code_at - base[1], step, point_at - base[2], len(points) - 1))
         codes.append(body)
         code_at += len(body)
         point_at += len(points)
         out[rank][a:b] = anchor + edge * k
         starts.append(a)
+    columns = zip(("anchor_x", "anchor_y", "anchor_z", "rank", "begin", "end"), np.array(anchors).T, strict=True)
+    words = layout.pack("anchors", **dict(columns))
+    columns = zip(("shape", "code", "step", "point", "last"), np.array(decodings).T, strict=True)
+    decodings = layout.pack("decoding", cap=halvings, kind=kind, **dict(columns))
     # second round: a capsule needs the next fiblet's decoded anchor, or the streamline's rounded end
     tails = np.array([out[rank][b - 1] - out[rank][a] for rank, a, b, n in pieces if b == n])
     end_scale = max(np.abs(tails).max() / 511.0, 1e-12)
@@ -103,8 +97,8 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
     pages.append((len(lines), code_at, point_at))
     assert n_pages == -(-len(pieces) // layout.PAGE)
     return SimpleNamespace(
-        anchors=np.concatenate(words),
-        decoding=np.concatenate(decodings),
+        anchors=words,
+        decoding=decodings,
         reach=reaches,
         ends=((ends & 1023) << [0, 10, 20]).sum(1).astype(np.uint32),
         parameters=SimpleNamespace(end_scale=end_scale, largest_radius=1.001 * max(spheres) + 2 * reach_scale),

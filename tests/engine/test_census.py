@@ -19,7 +19,7 @@ PLANES = [(0.3, -0.9, 0.1, 12.0), (0.0, 0.0, 1.0, -10.0)]
 
 @pytest.fixture(scope="module")
 def brain():
-    return compress(brain_streamlines(4000, step=0.5, seed=3))
+    return compress(brain_streamlines(1000, step=0.5, seed=3))
 
 
 def capsules(fiblets):

@@ -28,20 +28,16 @@ def box(half, centre=(0.0, 0.0, 0.0)):
 
 
 def cut(lines, planes):
-    """The kept pieces of polylines in float64, as (streamline, index of the first point, its place, points)."""
+    """(m, 2, 3) ends of the kept pieces of polylines, in float64."""
     planes = np.asarray(planes, float).reshape(-1, 4)
-    pieces = []
-    for streamline, line in enumerate(lines):
-        for i in range(len(line) - 1):
-            ha, hb = planes[:, :3] @ line[i] + planes[:, 3], planes[:, :3] @ line[i + 1] + planes[:, 3]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                crossing = ha / (ha - hb)
-            t0 = crossing[(ha < 0) & (hb >= 0)].max(initial=0.0)
-            t1 = crossing[(ha >= 0) & (hb < 0)].min(initial=1.0)
-            if not ((ha < 0) & (hb < 0)).any() and t0 <= t1:
-                run = line[i + 1] - line[i]
-                pieces.append((streamline, i, np.array([line[i] + t0 * run, line[i] + t1 * run])))
-    return pieces
+    a, b = np.concatenate([line[:-1] for line in lines]), np.concatenate([line[1:] for line in lines])
+    ha, hb = (points @ planes[:, :3].T + planes[:, 3] for points in (a, b))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = ha / (ha - hb)
+    t0 = np.where((ha < 0) & (hb >= 0), crossing, 0.0).max(axis=1, keepdims=True)
+    t1 = np.where((ha >= 0) & (hb < 0), crossing, 1.0).min(axis=1, keepdims=True)
+    kept = ~((ha < 0) & (hb < 0)).any(axis=1) & (t0 <= t1)[:, 0]
+    return np.stack([a + t0 * (b - a), a + t1 * (b - a)], axis=1)[kept]
 
 
 def shown_points(picture, lines):
@@ -81,9 +77,9 @@ def test_planes_cut_as_opengl_and_numpy_cut(gl, fabricate, random_lines, camera,
     assert near(drawn)[mask].mean() >= 0.99
     # NumPy's, sampled densely: all that is drawn is there, and all that is there is drawn.
     touched = np.zeros_like(drawn)
-    for _, _, (a, b) in cut(fiblets.lines, planes):
-        points = a + np.linspace(0, 1, 40)[:, None] * (b - a)
-        clip = to_clip(points, matrix)
+    a, b = cut(fiblets.lines, planes).swapaxes(0, 1)
+    for t in np.linspace(0, 1, 40):
+        clip = to_clip(a + t * (b - a), matrix)
         clip = clip[(np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)]
         cells = to_window(clip, SIZE)[:, :2].astype(int).clip(0, np.array(SIZE) - 1)
         touched[cells[:, 1], cells[:, 0]] = True

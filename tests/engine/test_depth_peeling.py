@@ -49,6 +49,7 @@ def sorted_layers(depths, count):
     return np.take_along_axis(depths, order, 0), order
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 @pytest.mark.parametrize("width", [1.0, 5.0])
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])

@@ -20,10 +20,9 @@ STYLES = {"thin": EVERY_POINT, "far detail": FibletStyle(), "wide": FibletStyle(
 
 
 def packed(bits):
-    words = np.zeros(-(-len(bits) // 32), np.uint32)
-    for i in np.flatnonzero(bits):
-        words[i >> 5] |= np.uint32(1 << (i & 31))
-    return words
+    whole = np.zeros(-(-len(bits) // 32) * 32, bool)
+    whole[: len(bits)] = bits
+    return np.packbits(whole, bitorder="little").view("<u4")
 
 
 def filtered(gl, fiblets, view, style, wanted, **options):
@@ -43,6 +42,7 @@ def same_pixels(a, b):
     np.testing.assert_array_equal(a.position[drawn], b.position[drawn])
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("style", STYLES)
 def test_kept_streamlines_look_as_if_there_were_no_others(gl, random_lines, camera, pipeline, style):
@@ -78,6 +78,7 @@ def kept_segments(picture, lines, bits):
     return kept
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("style", STYLES)
 @pytest.mark.parametrize("kind", [1, 2, 3])

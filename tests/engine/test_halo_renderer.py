@@ -290,9 +290,10 @@ def test_thresholds_of_infinity_let_all_numbers_pass(gl, view):
 
 
 @pytest.mark.slow
-def test_ten_million_vertices(gl, camera):
+@pytest.mark.parametrize("n", [1_000_000, pytest.param(10_000_000, marks=pytest.mark.exhaustive)])
+def test_millions_of_vertices(gl, camera, n):
     """They are built and drawn, and take what few of them take each: with one number, no more than 20 bytes."""
-    n, each = 10_000_000, 1000
+    each = 1000
     steps = np.random.default_rng(0).standard_normal((n, 3), np.float32)
     points = np.cumsum(steps.reshape(-1, each, 3), axis=1, dtype=np.float32).reshape(-1, 3)
     points[:, 0] += np.repeat(np.linspace(-100, 100, n // each, dtype=np.float32), each)

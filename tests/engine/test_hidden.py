@@ -190,6 +190,7 @@ def found_and_seen(gl, camera, size, name, width, rng, count=2000):
     return found[asked], np.array(seen)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("width", [1.0, 5.0])
 @pytest.mark.parametrize("name", VIEWS)
 def test_nothing_that_would_show_is_hidden(gl, camera, name, width):
@@ -200,6 +201,7 @@ def test_nothing_that_would_show_is_hidden(gl, camera, name, width):
         assert found.sum() > 100
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(gl, camera, monkeypatch, mutation):
     honest, (right, wrong) = shaders.read_shader, MUTATIONS[mutation]

@@ -179,6 +179,7 @@ def several_pages(fabricate, random_lines):
     return fiblets
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", "mesh", "mesh-serial"])
 @pytest.mark.parametrize("culling", ["two-phase", None])
 def test_pictures_do_not_depend_on_limits(gl, several_pages, camera, name, culling):

@@ -82,6 +82,7 @@ def pictured(gl, fiblets, view, style, **options):
         renderer.release()
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("radius", [2.5, 6.0])
 @pytest.mark.parametrize("name", VIEWS)
@@ -136,6 +137,7 @@ def test_planes_cut_tubes_as_solids(gl, few, known, really, camera, name):
         assert (normals[faces] < 1e-3).mean() > 0.97
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("culling", ["two-phase", "coverage"])
 def test_culling_loses_no_pixel(gl, really, fabricate, random_lines, camera, culling, pipeline):
@@ -171,6 +173,7 @@ def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     assert counts[1]["in_frustum"] == len(wall) + len(behind)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 def test_far_tubes_are_lines_and_never_vanish(gl, really, fabricate, camera, tolerance, pipeline):
@@ -227,6 +230,7 @@ def test_any_scale_and_far_from_the_origin(gl, really, fabricate, camera, scale)
     assert (np.abs(picture.window_depth - expected.depth)[both] < 2e-5).mean() > 0.99
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("width", [2.0, 9.0])
 def test_where_across_a_wide_line(gl, fabricate, camera, width, pipeline):

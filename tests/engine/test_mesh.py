@@ -80,6 +80,7 @@ def link(folder, sources):
     return subprocess.run([glslang(), "-l", *paths], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("culled", CULLED)
 @pytest.mark.parametrize("drawn", DRAWN)
 @pytest.mark.parametrize("records", RECORDS)
@@ -191,6 +192,7 @@ def brain():
     return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("values", [None, "fa", "arc_length", "curvature"])
 @pytest.mark.parametrize("tolerance", [0.0, 3.0], ids=["near", "far"])

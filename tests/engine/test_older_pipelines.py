@@ -62,8 +62,12 @@ Path(sys.argv[4]).write_bytes(pickle.dumps([tuple(p) for p in pictures]))
 
 
 @pytest.mark.parametrize(
-    ("version", "pipeline"), [("4.1", "tessellation"), ("4.1", "geometry"), ("4.1", "auto"), ("3.3", "geometry")]
-)
+    ("version", "pipeline"),
+    [
+        ("4.1", "tessellation"), pytest.param("4.1", "geometry", marks=pytest.mark.exhaustive), ("4.1", "auto"),
+        ("3.3", "geometry"),
+    ],
+)  # fmt: skip
 def test_older_opengl_draws_the_same(gl, fabricate, random_lines, camera, older_opengl, tmp_path, version, pipeline):
     """In a process whose OpenGL has nothing newer: storage buffers, images and compute do not even compile there."""
     file = tmp_path / "pictures"

@@ -43,6 +43,7 @@ def compared(gl, fiblets, view, style, pipeline, **options):
     return picture
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("name", VIEWS)
 def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name, pipeline):
@@ -52,6 +53,7 @@ def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name
         compared(gl, fiblets, view, style, pipeline)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("kind", [1, 2, 3])
 @pytest.mark.parametrize("low", [False, True])
@@ -73,6 +75,7 @@ def test_a_made_up_brain(gl, camera, pipeline):
             compared(gl, fiblets, View(size, camera(size, eye=eye)), style, pipeline)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("width", [1.0, 5.0])
 @pytest.mark.parametrize(
@@ -86,6 +89,7 @@ def test_clip_planes(gl, fabricate, random_lines, camera, planes, width, pipelin
         compared(gl, fiblets, View(SIZE, camera(SIZE, **more), planes), FibletStyle(width), pipeline)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("values", ["arc_length", "curvature", "bytes", "words"])
 def test_per_point_values(gl, fabricate, random_lines, camera, values, pipeline):
@@ -165,6 +169,7 @@ def jumps(camera):
     return [*views, View(SIZE, camera(SIZE), BOX), View(SIZE, camera(SIZE), BOX[:1]), View(SIZE, camera(SIZE))]
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("width", [1.0, 4.0])
 def test_two_phase_culling_changes_no_bit(gl, fabricate, random_lines, camera, width, pipeline):

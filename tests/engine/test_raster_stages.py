@@ -29,6 +29,7 @@ STAGES = {
 }  # fmt: skip
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("name", STAGES)
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")])
 @pytest.mark.parametrize("culling", [("CULL_PYRAMID", "SECOND_ROUND"), ("CULL_COVERAGE",)])
@@ -46,6 +47,7 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     programs.release()
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("name", STAGES)
 @pytest.mark.parametrize("values", [(), *((f"VALUES_{v}",) for v in ("STORED", "ARC_LENGTH", "CURVATURE", "VOLUME"))])
 def test_stages_link_for_the_reference_compiler(tmp_path, name, values):

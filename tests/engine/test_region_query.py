@@ -69,7 +69,7 @@ def by_numpy(fiblets, region, sampling=None):
 
 @pytest.fixture(scope="module")
 def plain():
-    return packed(steady(400))
+    return packed(steady(150))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -87,13 +87,13 @@ def test_every_shape(gl, plain, name):
 
 
 SETS = {
-    "lattice": lambda: packed(wandering(200), max_error=0.2),
-    "wide lattice": lambda: packed([line * [1, 1, 40] for line in wandering(200)], max_error=0.05),
-    "32-bit anchors": lambda: packed([*steady(200), steady(6)[5] + 20000.0]),
-    "fine lattice": lambda: packed(steady(200), max_error=1e-4),
-    "hilbert": lambda: packed(steady(300), order="hilbert"),
-    "turned sharply": lambda: packed(steady(200, turn=1.0)),
-    "both kinds": lambda: packed(steady(150) + wandering(150)),
+    "lattice": lambda: packed(wandering(80), max_error=0.2),
+    "wide lattice": lambda: packed([line * [1, 1, 40] for line in wandering(80)], max_error=0.05),
+    "32-bit anchors": lambda: packed([*steady(100), steady(6)[5] + 20000.0]),
+    "fine lattice": lambda: packed(steady(100), max_error=1e-4),
+    "hilbert": lambda: packed(steady(120), order="hilbert"),
+    "turned sharply": lambda: packed(steady(100, turn=1.0)),
+    "both kinds": lambda: packed(steady(60) + wandering(60)),
 }
 
 

@@ -101,6 +101,7 @@ def test_a_pipeline_that_opengl_is_too_old_for_is_refused_plainly():
     assert done.stdout.startswith("pipeline 'compute' cannot draw on OpenGL 4.1")
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("value", ["VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME"])
 def test_storage_buffers_are_no_more_than_opengl_promises(gl, name, value):

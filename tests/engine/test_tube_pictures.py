@@ -173,6 +173,7 @@ def test_silhouettes_give_one_picture(gl, camera, tubes, parallel):
 # ------------------------------------------------------------------------------------------ cut by planes of the view
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize(("near_plane", "far_plane"), [(57.0, 120.0), (20.0, 62.0), (60.0, 66.0)])
 def test_near_and_far_plane_cut_tubes(gl, camera, tubes, near_plane, far_plane, parallel):
@@ -213,6 +214,7 @@ PLANES = {
 }
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("planes", PLANES)
 def test_planes_cut_and_close(gl, camera, tubes, planes, parallel):

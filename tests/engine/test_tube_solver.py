@@ -58,6 +58,7 @@ BOUNDS = {
 }  # fmt: skip
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("solver", "chain"), WAYS)
 def test_rays_meet_halves_where_the_reference_says(gl, sample, solver, chain, kind):
@@ -108,6 +109,7 @@ def test_steps_of_bisection_halve_the_error(gl, sample):
     assert 0.45 < np.exp(np.log(ratios).mean()) < 0.55
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize(("solver", "chain"), WAYS)
 @pytest.mark.parametrize("iterations", [1, 2, 200])
 def test_any_number_of_steps_is_allowed(gl, sample, solver, chain, iterations):
@@ -119,6 +121,7 @@ def test_any_number_of_steps_is_allowed(gl, sample, solver, chain, iterations):
         assert (((kind > 0) != (expected.kind[:500] > 0)) & ~graze).sum() == 0
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("kind", ["usual", "bent", "thick", "cone"])
 def test_rays_that_begin_inside_leave_where_the_reference_says(gl, sample, solver, kind):
@@ -168,6 +171,7 @@ RARE = {
 """Half, origin and direction where a chain of derivatives breaks easily: a few in a hundred thousand."""
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("name", RARE)
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_the_chain_misses_no_root(gl, solver, name):
@@ -280,6 +284,7 @@ def table():
     return rows
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
 @pytest.mark.parametrize(("solver", "chain"), WAYS)
 def test_degenerate_halves(gl, table, solver, chain, scale):

@@ -108,6 +108,7 @@ def orbit(angle, radius=200.0, height=60.0):
     return {"eye": (radius * np.sin(angle), -radius * np.cos(angle), height)}
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("style", STYLES)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 def test_turns(both, brain, camera, style, parallel):
@@ -118,6 +119,7 @@ def test_turns(both, brain, camera, style, parallel):
     assert pair.hidden > 0.02 * pair.tested
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("guess", [True, False])
 @pytest.mark.parametrize("style", STYLES)
 def test_much_is_hidden(both, onion, camera, request, style, guess):
@@ -208,6 +210,7 @@ def test_data_swapped(both, brain, onion, camera):
     assert differences(pictures[0], pictures[1])
 
 
+@pytest.mark.every("value")
 @pytest.mark.usefixtures("unguessed")
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
 @pytest.mark.parametrize("kind", [1, 2, 3])
@@ -252,7 +255,7 @@ def random_views(rng, count, camera):
 
 
 @pytest.mark.usefixtures("unguessed")
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.exhaustive)])
 def test_random_cameras(both, brain, onion, camera, seed):
     rng = np.random.default_rng(seed)
     for fiblets in (brain, onion):
@@ -271,6 +274,7 @@ MUTATIONS = {
 }
 
 
+@pytest.mark.exhaustive
 @pytest.mark.usefixtures("unguessed")
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(both, onion, camera, monkeypatch, mutation):

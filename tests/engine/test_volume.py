@@ -85,6 +85,7 @@ def read(buffer):
     return Shown(buffer)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("dtype", [np.uint8, np.int16, np.uint16, np.float32])
 @pytest.mark.parametrize("refine", ["regula-falsi", "newton"])
 def test_surfaces(cast, matrix, dtype, refine):
@@ -134,6 +135,7 @@ def ramp(k=64, most=0.4):
     return table.astype(np.float32)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize(
     ("integrator", "bound"),
     [("preintegrated", 0.012), ("exponential", 0.012), ("simpson", 0.012), ("rk4", 0.012), ("riemann", 0.05)],
@@ -149,6 +151,7 @@ def test_light(cast, matrix, integrator, bound):
     assert np.abs(shown.light - wanted).max() < bound
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("mode", ["isosurface", "composite", "mip", "local-mip"])
 def test_without_skipping_there_is_no_octree(cast, matrix, monkeypatch, mode):
     made = []
@@ -171,6 +174,7 @@ def test_without_skipping_there_is_no_octree(cast, matrix, monkeypatch, mode):
     assert renderer.explain()["octree"]["bytes"] == 0
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize(
     "casting",
     [
@@ -216,6 +220,7 @@ def test_a_plane_is_as_deep_at_the_pictures_edges_as_without_sparse_rays(cast, c
     np.testing.assert_allclose(sparse.depth, plain.depth, atol=2e-6)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("stride", [2, 4])
 @pytest.mark.parametrize("mode", ["isosurface", "mip", "composite"])
 def test_sparse_casting(cast, matrix, mode, stride):

@@ -86,6 +86,7 @@ def overlap(through, span):
     return np.maximum(np.minimum(span[1], far) - np.maximum(span[0], near), 0.0)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("shapes", ["spheres", "meshes"])
 @pytest.mark.parametrize("inside", [True, False])
 def test_light_is_that_of_all_parts(cast, matrix, shapes, inside):

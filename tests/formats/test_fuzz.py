@@ -1,6 +1,6 @@
-"""Thousands of damaged files for every reader: an error of ours or a result, in bounded time and memory.
+"""Damaged files for every reader: an error of ours or a result, in bounded time and memory.
 
-``PVFIBLETS_FUZZ=N`` makes N damaged files per format instead of a few hundred, and ``PVFIBLETS_FUZZ_SEED`` others.
+``PVFIBLETS_FUZZ=N`` makes N damaged files per format instead of twenty, and ``PVFIBLETS_FUZZ_SEED`` others.
 ``fuzzing.py`` is the process that reads them.
 """
 
@@ -22,7 +22,7 @@ from pvfiblets.errors import FormatError
 
 from .samples import corpus, rich, values_corpus, volume_corpus
 
-N = int(os.environ.get("PVFIBLETS_FUZZ", "250"))
+N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 SEED = os.environ.get("PVFIBLETS_FUZZ_SEED", "1")
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -93,7 +93,7 @@ def fibres(kind: str, streamlines: Streamlines, values: Any = None) -> Fibres:
     return Fibres(kind, fiblets, fiblets.decompress())
 
 
-@pytest.fixture(params=["lines", "engine"])
+@pytest.fixture(params=["engine", pytest.param("lines", marks=pytest.mark.exhaustive)])
 def kind(request) -> str:
     """Return which renderer fills the G-buffer."""
     return request.param

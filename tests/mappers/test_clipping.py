@@ -45,6 +45,7 @@ CUTS = {
 }
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 def test_planes_cut_fiblets_as_they_cut_polylines(compare, make_fibres, tools, cut, parallel):

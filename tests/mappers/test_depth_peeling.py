@@ -61,6 +61,7 @@ def holds_layers(mapper):
     return engine_of(mapper)._layers is not None
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("peeling", [False, True])
 @pytest.mark.parametrize("layers", [2, 4, 5, 8])
 @pytest.mark.parametrize("width", [1.0, 6.0])

@@ -62,11 +62,11 @@ def test_the_older_opengl_of_these_tests_really_lacks_what_is_newer(older_opengl
     assert result.stdout.split() == ["plain"], result.stderr
 
 
-@pytest.mark.parametrize("version", ["4.1", "3.3"])
+@pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_mapper_windows_and_picking_run_there(older_opengl, version):
     """The mapper's own tests, with the renderer of plain lines."""
     files = [str(HERE / f"test_{name}.py") for name in ("picture", "picking", "passes", "windows")]
-    chosen = ("-k", "lines and not engine and not polylines", "-p", "no:cacheprovider", "-q")
+    chosen = ("-m", "", "-k", "lines and not engine and not polylines", "-p", "no:cacheprovider", "-q")
     result = run(older_opengl(version), "-m", "pytest", *files, *chosen)
     assert result.returncode == 0, result.stdout[-3000:]
     assert int(result.stdout.rsplit(" passed", 1)[0].split()[-1]) > 20
@@ -81,8 +81,11 @@ def test_the_scene_of_the_next_tests_is_drawn_by_this_opengl():
 # The pipeline is forced: that the picture is right shows that it drew, for compute shaders do not compile here.
 @pytest.mark.parametrize(
     ("version", "pipeline"),
-    [("4.1", "auto"), ("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "auto"), ("3.3", "geometry")],
-)
+    [
+        ("4.1", "auto"), ("4.1", "tessellation"), ("3.3", "auto"),
+        *(pytest.param(version, "geometry", marks=pytest.mark.exhaustive) for version in ("4.1", "3.3")),
+    ],
+)  # fmt: skip
 def test_a_plotter_draws_and_picks_there(older_opengl, version, pipeline):
     result = run(older_opengl(version), "-c", SCENE, pipeline)
     assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-2000:]

@@ -90,6 +90,7 @@ LOOKS = {
 }
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("look", [*LOOKS, "volume"])
 @pytest.mark.parametrize("name", SAME)
 def test_a_cut_by_planes_is_one_by_planes_of_vtk(scene, brain, name, look):

@@ -272,7 +272,7 @@ print("drawn", int(picture.min() < 100))
 """
 
 
-@pytest.mark.parametrize("version", ["4.1", "3.3"])
+@pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_older_opengl_draws_halos_too(older_opengl, version):
     """A process of its own: Mesa reads how old it has to be when it is loaded."""
     done = subprocess.run(

@@ -93,6 +93,7 @@ def brains(brain: Streamlines) -> dict[str, pf.FibletSet]:
     }
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("name", some_regions())
 @pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
 def test_flags_are_those_of_the_decoded_points(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:

@@ -15,7 +15,7 @@ import pyvista as pv
 from pvfiblets.web import session
 from pvfiblets.web.scene import Scene
 
-N = int(os.environ.get("PVFIBLETS_FUZZ", "100"))
+N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 
 
 @pytest.fixture
