@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
+from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
@@ -284,7 +285,10 @@ def _of_vtk(place: Path) -> Any:
     import pyvista as pv
 
     vtk_sizes.check_memory(place)
-    return pv.read(place)
+    try:
+        return pv.read(place)
+    except RuntimeError:  # by which PyVista says that VTK's reader gave nothing
+        raise FormatError(place, None, "what VTK's reader cannot read", "a whole file of this kind") from None
 
 
 def _mesh(place: Path) -> Any:

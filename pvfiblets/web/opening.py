@@ -237,8 +237,9 @@ class FileActions(Actions):
         limit, size = app.options.upload, 0
         try:
             target = app.confined.uploaded(name, tuple(known))
-            with app.notes.private(app.confined.root) as hidden:  # gone afterwards, even if this process is killed
-                part = hidden / "part"
+            with contextlib.ExitStack() as stack:
+                hidden = stack.enter_context(app.notes.private(target.parent))
+                part = hidden / target.name  # and so, if this process is killed before it is opened, it goes with that
                 with part.open("xb") as file:
                     async for piece in request.content.iter_chunked(PIECE):
                         size += len(piece)
@@ -248,6 +249,7 @@ class FileActions(Actions):
                 if request.content_length is not None and size != request.content_length:
                     raise web.HTTPBadRequest(text="the upload is incomplete")
                 _place(part, target)
+                held = stack.pop_all()
         except (TakenError, FileExistsError) as error:
             said = f"{name!r} exists already; choose another name"
             app.complain(said)
@@ -258,16 +260,17 @@ class FileActions(Actions):
         except OSError as error:
             app.complain(f"{name} could not be stored: {error.strerror}")
             raise web.HTTPInsufficientStorage from error
-        app.later(self._open_upload(target))
+        app.later(self._open_upload(target, held))
         return web.Response(text="stored")
 
-    async def _open_upload(self, target: Path) -> None:
-        """Open what was uploaded; what cannot be opened is not kept."""
-        try:
-            await self.open(self._app.confined.relative(target))
-        except Exception:
-            target.unlink(missing_ok=True)
-            raise
+    async def _open_upload(self, target: Path, held: contextlib.ExitStack) -> None:
+        """Open what was uploaded; what cannot be opened, or ends this process, is not kept."""
+        with held:
+            try:
+                await self.open(self._app.confined.relative(target))
+            except Exception:
+                target.unlink(missing_ok=True)
+                raise
 
     # Sessions and the script
 

@@ -69,7 +69,11 @@ class Notes:
 
     @contextlib.contextmanager
     def private(self, beside: Path) -> Iterator[Path]:
-        """Give a hidden folder in another, which is gone afterwards, whatever happens."""
+        """Give a hidden folder in another, which is gone afterwards, whatever happens.
+
+        If this process is killed before, files beside the folder that have a second name in it, the same one, go with
+        it. Where a file system has no hard links, they stay.
+        """
         found = Path(tempfile.mkdtemp(prefix=PRIVATE, dir=beside))
         self._open.append(found)
         self._write()
@@ -91,6 +95,11 @@ def remove(folder: Path) -> None:
     for line in notes.read_text(encoding="utf-8").splitlines() if notes.is_file() else ():
         noted = Path(line)
         if noted.name.startswith(PRIVATE) and not noted.is_symlink():
+            for part in noted.glob("*"):
+                other = noted.parent / part.name
+                with contextlib.suppress(OSError):
+                    if os.path.samestat(part.lstat(), other.lstat()):
+                        other.unlink()
             shutil.rmtree(noted, ignore_errors=True)
     shutil.rmtree(folder, ignore_errors=True)
 

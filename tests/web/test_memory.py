@@ -173,6 +173,8 @@ def test_what_a_session_may_have_is_said_at_the_start(tmp_path):
 
 async def _ending(server, browser):
     """Return the page of a session that ends by itself."""
+    await browser.get("/")
+    await browser.begin()  # as the script of the page does; until then there is no process
     for _ in range(600):
         status, text = await browser.get("/")
         if status == 410:
