@@ -1,6 +1,6 @@
-"""pvfiblets: massive line data, above all brain tractograms, compressed, culled and drawn live in VTK and PyVista.
+"""pvfiblets: massive line data, such as brain tractograms, compressed, culled and rendered in VTK and PyVista.
 
-Importing this package loads NumPy and nothing heavier; each name below brings what it needs when first used.
+This package itself imports only NumPy; each name below loads its module on first use.
 """
 
 from __future__ import annotations

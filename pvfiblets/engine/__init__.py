@@ -1,11 +1,11 @@
-"""Everything that speaks OpenGL: fiblets in, a G-buffer out, on a moderngl context. No VTK, no PyVista.
+"""The OpenGL engine: it renders fiblets to a G-buffer on a moderngl context. No VTK, no PyVista.
 
 >>> renderer = FibletRenderer(ctx, fiblets)                                             # doctest: +SKIP
 >>> gbuffer = renderer.render(View((1920, 1080), model_view_projection), FibletStyle())       # doctest: +SKIP
 
-Life cycle: a renderer copies the fiblets to the GPU when made and holds them until :meth:`FibletRenderer.release`;
-:meth:`FibletRenderer.render` redraws only when the view or the style changed, and returns the G-buffer, which the
-mappers resolve into VTK's picture. The shader sources are in the repository's ``shaders`` folder.
+Life cycle: a new renderer copies the fiblets to the GPU and keeps them until :meth:`FibletRenderer.release`.
+:meth:`FibletRenderer.render` renders again only after a change of the view or the style. It returns the G-buffer,
+which the mappers resolve into VTK's image. The shader sources are in the repository's ``shaders`` folder.
 """
 
 from __future__ import annotations

@@ -14,9 +14,9 @@ suffix     reads writes streams in small memory carries
 .fiblets   yes   yes    yes                     everything
 ========== ===== ====== ======================= ================================================
 
-Whatever a file holds, reading ends in one of three ways: Streamlines; Streamlines whose
-``dropped`` tells what was left out and how often; or :class:`~pvfiblets.errors.FormatError` with
-the byte, what stands there and what should.
+Reading a file has one of three results: Streamlines; Streamlines whose ``dropped`` counts the
+omitted parts by reason; or a :class:`~pvfiblets.errors.FormatError` with the byte, the value found
+and the value expected.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     Returns
     -------
     Streamlines
-        RAS+ mm. ``dropped`` tells what was left out.
+        RAS+ mm. ``dropped`` counts the omitted parts.
 
     Raises
     ------

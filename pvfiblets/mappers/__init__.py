@@ -1,4 +1,4 @@
-"""Hangs the engine on VTK: a ``vtkPolyDataMapper`` of fiblets, spline tubes, what has halos, volumes. No PyVista here.
+"""Connects the engine to VTK: ``vtkPolyDataMapper`` classes for fiblets, tubes, halos and volumes. No PyVista here.
 
 >>> from pvfiblets.mappers import FibletMapper            # doctest: +SKIP
 >>> FibletMapper(fiblets).attach(actor)                    # doctest: +SKIP

@@ -1,4 +1,4 @@
-"""PyVista's side: what a user of :class:`pyvista.Plotter` sees.
+"""The PyVista interface: the components that :class:`pyvista.Plotter` offers to its users.
 
 ``plotter.add_fiblets(...)``, ``plotter.fiblets``, ``plotter.add_spline_tubes(...)``,
 ``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
@@ -9,8 +9,8 @@ points (see ``pyproject.toml``), which name the modules ``component`` of each dr
 declared once, in the ``settings`` of its folder. The actor's colours are found in ``scalars`` and made
 into a look-up table in ``colours``; the drawing is the mapper's.
 
-Importing this package registers the components, which import actors, mappers and the engine when
-something is added: a scene of lines loads no volumes, and a file that is compressed already no compiler.
+Importing this package registers the components. They import actors, mappers and the engine with the
+first ``add_*``: a scene of lines loads no volumes, and a compressed file no compiler.
 """
 
 from __future__ import annotations

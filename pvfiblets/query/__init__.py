@@ -1,1 +1,1 @@
-"""Questions asked of positions and of compressed streamlines: which lie where, how near, how long. No GL, no VTK."""
+"""Spatial queries of positions and of compressed streamlines: inside, distance, length. No OpenGL, no VTK."""

@@ -1,4 +1,4 @@
-"""Made-up tractograms that look and measure like tracking on a whole brain: points, or compressed sets of any size."""
+"""Synthetic tractograms with the look and statistics of whole-brain tracking: points, or compressed sets."""
 
 from __future__ import annotations
 
