@@ -48,7 +48,8 @@ PLAIN = {
             plotting.halos, plotting.halos.component, plotting.halos.defaults, plotting.halos.point_component,
             plotting.mapper, plotting.region_sources, plotting.report, plotting.screenshot, plotting.shading,
             plotting.tubes, plotting.tubes.component, plotting.volumes, plotting.volumes.component, pvfiblets,
-            query, query.bits, query.measures, query.placement, query.predicates, query.region, ragged, streamlines
+            query, query.bits, query.measures, query.placement, query.point_flags, query.predicates, query.region,
+            ragged, streamlines
         """,
     ),
     "spline tubes": What(
@@ -76,7 +77,7 @@ PLAIN = {
             plotting.mapper, plotting.region_sources, plotting.report, plotting.screenshot, plotting.shading,
             plotting.tubes, plotting.tubes.actor, plotting.tubes.component, plotting.tubes.scalars,
             plotting.volumes, plotting.volumes.component, pvfiblets, query, query.measures, query.placement,
-            query.predicates, query.region, ragged, streamlines, tubes, tubes.build, tubes.curves,
+            query.point_flags, query.predicates, query.region, ragged, streamlines, tubes, tubes.build, tubes.curves,
             tubes.spline_tubes, tubes.tangents
         """,
     ),
@@ -105,7 +106,7 @@ PLAIN = {
             plotting.halos.point_component, plotting.halos.scalars, plotting.halos.style, plotting.mapper,
             plotting.region_sources, plotting.report, plotting.screenshot, plotting.tubes, plotting.tubes.component,
             plotting.volumes, plotting.volumes.component, pvfiblets, query, query.measures, query.placement,
-            query.predicates, query.region, ragged, streamlines, tubes, tubes.spline_tubes
+            query.point_flags, query.predicates, query.region, ragged, streamlines
         """,
     ),
     "volume: mip": What(
@@ -131,7 +132,8 @@ PLAIN = {
             plotting.report, plotting.screenshot, plotting.shading, plotting.tubes, plotting.tubes.component,
             plotting.volumes, plotting.volumes.actor, plotting.volumes.component, plotting.volumes.opacity,
             plotting.volumes.settings, plotting.volumes.shading, pvfiblets, query, query.measures, query.placement,
-            query.predicates, query.region, volumes, volumes.interactive_quality, volumes.octree, volumes.options,
+            query.point_flags, query.predicates, query.region, volumes, volumes.interactive_quality, volumes.octree,
+            volumes.options,
             volumes.smoothing, volumes.sources, volumes.steepness, volumes.transfer, volumes.volume
         """,
     ),
