@@ -102,8 +102,8 @@ def info(path: str, *, json: bool) -> None:
 def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
     """Check a compressed file's checksums and, given the original, every point."""
     from pvfiblets.codec.convert import measure_file_error
+    from pvfiblets.codec.fiblets_format import verify_file
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.codec.storage import verify_file
 
     if Path(path).suffix.lower() != COMPRESSED:
         raise ValueError(f"{path} is no {COMPRESSED} file; give the compressed file first, then its original")

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
 
-from .tubes.spline_tubes import Ints
-
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 __all__ = ["Lines", "flat", "gather", "joined"]
+
+Ints = npt.NDArray[np.int64]
 
 _EXPECTED = "a PolyData with lines, Streamlines, a FibletSet, an (n, 3) array, a list of them or (points, segments)"
 

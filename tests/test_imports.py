@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from importlib.metadata import entry_points
 from pathlib import Path
 
+import grimp
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -48,6 +50,29 @@ def test_imports_follow_the_flow():
     program = Path(sys.executable).with_name("lint-imports")
     done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def circles(imports: dict[str, set[str]]) -> list[list[str]]:
+    """Modules that import each other, straight or by way of others, as far as they cannot be put in an order."""
+    sorter = TopologicalSorter(imports)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        return [error.args[1]]
+    return []
+
+
+def test_a_circle_is_seen():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+    assert not circles({"a": {"b", "c"}, "b": {"c"}, "d": {"a"}})
+
+
+def test_no_modules_import_each_other():
+    """Imports within functions count; those for type checkers do not."""
+    graph = grimp.build_graph("pvfiblets", exclude_type_checking_imports=True, cache_dir=None)
+    assert len(graph.modules) > 300
+    found = circles({name: graph.find_modules_directly_imported_by(name) for name in graph.modules})
+    assert not found, " imports ".join(reversed(found[0]))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import synthetic
-from pvfiblets.codec import copies, layout, storage
+from pvfiblets.codec import copies, fiblets_format, layout
 from pvfiblets.synthetic import tracking
 
 
@@ -141,7 +141,7 @@ def test_copies_of_one_variant_are_the_same_points_moved(small_pool):
 def test_a_brain_is_the_same_in_memory_in_a_file_and_in_other_chunks(small_pool, monkeypatch, tmp_path):
     whole = synthetic.brain(203, 0.5, seed=2)
     mapped = synthetic.brain(203, 0.5, seed=2, path=tmp_path / "a.fiblets", progress=True)
-    storage.verify_file(tmp_path / "a.fiblets")
+    fiblets_format.verify_file(tmp_path / "a.fiblets")
     monkeypatch.setattr(copies, "CHUNK", 61)
     again = synthetic.brain(203, 0.5, seed=2)
     other = synthetic.brain(203, 0.5, seed=3)

@@ -25,7 +25,7 @@ from .ordering import Order, check_order
 from .parameters import Parameters, survey
 from .quantised import QuantisedPoints
 from .resample import resample
-from .storage import make_header, open_fiblets
+from .storage import make_header
 
 __all__ = ["compress_file", "measure_file_error"]
 
@@ -162,7 +162,7 @@ def measure_file_error(
     ValueError
         If the two do not hold the same streamlines and points.
     """
-    total = open_fiblets(fiblets).n_points
+    total = FibletSet.open(fiblets).n_points
     return _compare(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
 
 
@@ -173,7 +173,7 @@ def _compare(
     progress: bool | Callable[[str, float], None],
 ) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
-    coded = open_fiblets(target)
+    coded = FibletSet.open(target)
     tally = ErrorTally(coded.promise, coded.step, by_streamline=False)
     decoded = coded.iter_chunks(CHUNK_POINTS)
     rest: Streamlines | None = None

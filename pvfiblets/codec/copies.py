@@ -26,7 +26,7 @@ from . import copy_kernels
 from .archive import Member, array_member, write_archive
 from .fibletset import FibletSet
 from .layout import PAGE, unpack
-from .storage import make_header, open_fiblets
+from .storage import make_header
 
 __all__ = ["CHUNK", "Copies"]
 
@@ -288,7 +288,7 @@ class Copies:
             header, more = make_header(replace(whole, anchors=np.empty((n, 0), np.uint32)), {})
             files = {f"{name}.npy": member for name, member in members.items()}
             write_archive(path, header, files | {"pages.npy": array_member(pages)} | more)
-        return open_fiblets(path)
+        return FibletSet.open(path)
 
 
 def _filled(member: Member) -> npt.NDArray[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,14 @@ from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
 from .quantised import QuantisedPoints
 
-if TYPE_CHECKING:
-    from ..query.predicates import FlagsOf, Predicate
-
 __all__ = ["FibletSet"]
+
+
+class Condition(Protocol):
+    """A condition on streamlines, such as :mod:`pvfiblets.query.predicates` makes; this room knows none itself."""
+
+    def choose(self, fiblets: FibletSet, *, flags: Any = None) -> npt.NDArray[np.bool_]:
+        """Return the streamlines for which it holds, ``(n_streamlines,)`` bool."""
 
 
 @dataclass(eq=False)
@@ -265,7 +269,7 @@ class FibletSet:
 
         return extract(self, ids)
 
-    def select(self, predicate: Predicate, *, flags: FlagsOf | None = None) -> npt.NDArray[np.bool_]:
+    def select(self, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
         """Choose streamlines by where their points lie; see :func:`pvfiblets.query.predicates.select`.
 
         Parameters
@@ -280,9 +284,12 @@ class FibletSet:
         numpy.ndarray
             ``(n_streamlines,)`` bool.
         """
-        from ..query.predicates import select
-
-        return select(self, predicate, flags=flags)
+        if not hasattr(predicate, "choose"):
+            raise TypeError(
+                f"a {type(predicate).__name__} is no condition on streamlines; "
+                "ask passes(region), ends_in(region) or stays_in(region)"
+            )
+        return predicate.choose(self, flags=flags)
 
     # ----------------------------------------------------------------------------------------------------- decoding
 
@@ -378,12 +385,12 @@ class FibletSet:
         """
         from .storage import open_fiblets
 
-        return open_fiblets(path)
+        return open_fiblets(path, cls)
 
     def verify(self) -> None:
         """Check that all records agree with each other.
 
-        The bytes of a file are checked by :func:`pvfiblets.codec.storage.verify_file`.
+        The bytes of a file are checked by :func:`pvfiblets.codec.fiblets_format.verify_file`.
 
         Raises
         ------

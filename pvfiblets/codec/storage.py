@@ -1,4 +1,4 @@
-"""``.fiblets`` files: a FibletSet on disk, and the functions that the formats room calls for that suffix.
+"""``.fiblets`` files: a FibletSet on disk.
 
 The file is a stored zip (:mod:`.archive`): ``header.json``, then ``anchors.npy``, ``decoding.npy``, ``reach.npy``,
 ``codes.npy``, ``ends.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json``
@@ -8,23 +8,23 @@ file's size.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict, fields
-from os import PathLike, fspath
-from typing import Any
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
-from ..streamlines import Streamlines
-from .archive import Member, array_member, check_members, open_archive, write_archive
-from .fibletset import FibletSet
+from .archive import Member, array_member, open_archive, write_archive
 from .layout import PAGE
 from .parameters import Parameters
 from .quantised import QuantisedPoints
 
-__all__ = ["VERSION", "info", "iter_chunks", "make_header", "open_fiblets", "read", "save", "verify_file", "write"]
+if TYPE_CHECKING:
+    from .fibletset import FibletSet
+
+__all__ = ["VERSION", "make_header", "open_fiblets", "save"]
 
 VERSION = 2
 _CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
@@ -97,13 +97,15 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
     return header, members
 
 
-def open_fiblets(path: str | PathLike[str]) -> FibletSet:
+def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
     """Map a ``.fiblets`` file.
 
     Parameters
     ----------
     path : str or PathLike
         The file. It must stay as it is while the set is in use.
+    kind : type
+        :class:`FibletSet`, or a class derived from it.
 
     Returns
     -------
@@ -135,7 +137,7 @@ def open_fiblets(path: str | PathLike[str]) -> FibletSet:
             f"version {VERSION}: compress the original again",
         )
     try:
-        fiblets = _assemble(header, arrays)
+        fiblets = _assemble(kind, header, arrays)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise FormatError(
             path, 0, f"a header.json that does not fit its members ({error!r})", "a whole .fiblets file"
@@ -144,7 +146,7 @@ def open_fiblets(path: str | PathLike[str]) -> FibletSet:
     return fiblets
 
 
-def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
+def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
     values = header["parameters"]
     chosen: dict[str, Any] = {
         f.name: tuple(values[f.name]) if isinstance(values[f.name], list) else values[f.name]
@@ -160,7 +162,7 @@ def _assemble(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> Fi
     b = [float(v) for v in header["bounds"]]
     plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in _CORE}
     plain |= {name: arrays.get(f"{name}.npy") for name in _OPTIONAL}
-    return FibletSet(
+    return kind(
         parameters=parameters,
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
         n_streamlines=int(header["n_streamlines"]),
@@ -218,67 +220,6 @@ def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any
         expect(
             rows.ndim > 0 and len(rows) == f.n_streamlines, f"per-streamline {name} {rows.shape}", f"{f.n_streamlines}"
         )
-
-
-def verify_file(path: str | PathLike[str]) -> None:
-    """Check a file's every byte against its checksums, and its records for sense.
-
-    Raises
-    ------
-    FormatError
-        Naming what is damaged.
-    """
-    from .check import check_records
-
-    fiblets = open_fiblets(path)
-    damaged = check_members(path)
-    if damaged:
-        raise FormatError(
-            path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again"
-        )
-    check_records(fiblets, path)
-
-
-# ---------------------------------------------------------------------------------- what the formats room calls
-
-
-def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
-    """Decode a whole file; see :func:`pvfiblets.read`."""
-    del progress  # decoding outruns the bar
-    return open_fiblets(path).decompress()
-
-
-def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
-    """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
-    yield from open_fiblets(path).iter_chunks(max_points)
-
-
-def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Compress with default settings, every per-point array kept at one byte a point, and save."""
-    from .compress import compress
-
-    compress(streamlines, per_point=tuple(streamlines.per_point)).save(path)
-
-
-def info(path: str | PathLike[str]) -> dict[str, Any]:
-    """Header facts, in constant time."""
-    f = open_fiblets(path)
-    return {
-        "format": "fiblets",
-        "path": fspath(path),
-        "streamlines": f.n_streamlines,
-        "points": f.n_points,
-        "fiblets": f.n_fiblets,
-        "bytes": f.nbytes,
-        "step_mm": f.step,
-        "promise_mm": f.promise,
-        "bounds_mm": list(f.bounds),
-        "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
-        "per_streamline": sorted(f.per_streamline),
-        "groups": {k: len(v) for k, v in f.groups.items()},
-        "affine": f.affine.tolist(),
-        "dropped": f.dropped,
-    }
 
 
 def _jsonable(value: Any) -> Any:

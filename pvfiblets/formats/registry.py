@@ -24,7 +24,7 @@ _MODULES: dict[str, str] = {
     ".vtk": "pvfiblets.formats.vtk_legacy",
     ".vtp": "pvfiblets.formats.vtp",
     ".tt.gz": "pvfiblets.formats.tinytrack",
-    ".fiblets": "pvfiblets.codec.storage",
+    ".fiblets": "pvfiblets.codec.fiblets_format",
 }
 
 

@@ -34,7 +34,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codec.jit import kernel, parallel_kernel
-from .region import positions
+from .placement import positions
 from .shape_kernels import unit
 
 if TYPE_CHECKING:

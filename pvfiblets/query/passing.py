@@ -11,7 +11,6 @@ Sets of any size are gone through by a few pages at a time; of a mapped one, the
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -25,14 +24,14 @@ from ..codec.layout import PAGE, unpack
 from . import passing_kernels as kernels
 from .classify import classify
 from .endpoints import anchor_points
-from .predicates import ALL, ANY, FIRST, LAST
+from .point_flags import ALL, check_sampling
 from .shapes import SURFACE
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
     from .region import Region
 
-__all__ = ["ALL", "ANY", "FIRST", "LAST", "FibletBalls", "check_sampling", "iter_balls", "region_flags"]
+__all__ = ["FibletBalls", "iter_balls", "region_flags"]
 
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
@@ -130,16 +129,6 @@ def region_flags(
     out = np.zeros(fiblets.n_streamlines, np.uint8)
     out[fiblets.rank_to_id] = flags
     return out
-
-
-def check_sampling(sampling: float | None) -> float:
-    """Return the sampling, 0 for None, or raise a ValueError that names it."""
-    if sampling is None:
-        return 0.0
-    spacing = float(sampling)
-    if not (math.isfinite(spacing) and spacing > 0.0):
-        raise ValueError(f"sampling is {spacing}; a length in mm above 0 is needed, or None to test the points only")
-    return spacing
 
 
 def _wanted(fiblets: FibletSet, ids: Any) -> Mask:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..codec.capsule_kernels import end_part
 from ..codec.jit import kernel, parallel_kernel
-from .predicates import ALL, ANY, FIRST, LAST
+from .point_flags import ALL, ANY, FIRST, LAST
 
 __all__ = ["balls", "count_samples", "fill_samples", "merge", "reduce_fiblets", "run_balls", "settle"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Bounds", "affine", "finite_vector", "frame_about", "invert_affine", "positive"]
+__all__ = ["Bounds", "affine", "finite_vector", "frame_about", "invert_affine", "positions", "positive"]
 
 Array = npt.NDArray[np.float64]
 
@@ -21,6 +21,18 @@ def finite_vector(value: npt.ArrayLike, name: str, length: int = 3) -> Array:
     found = np.array(value, np.float64)
     if found.shape != (length,) or not np.isfinite(found).all():
         raise ValueError(f"{name} is {np.asarray(value).tolist()}; give {length} finite numbers")
+    return found
+
+
+def positions(points: npt.ArrayLike) -> Array:
+    """Return `points` as ``(n, 3)`` float64; a ValueError unless they are three numbers each."""
+    found = np.asarray(points, np.float64)
+    if found.ndim == 1 and found.size == 3:
+        found = found[None]
+    if found.size == 0:
+        found = found.reshape(0, 3)
+    if found.ndim != 2 or found.shape[1] != 3:
+        raise ValueError(f"points have shape {found.shape}; give (n, 3): x, y, z in mm")
     return found
 
 

@@ -15,16 +15,13 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
+from .point_flags import ALL, ANY, FIRST, LAST, check_sampling
 from .region import Region
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
 __all__ = [
-    "ALL",
-    "ANY",
-    "FIRST",
-    "LAST",
     "Condition",
     "Ends",
     "FlagsOf",
@@ -34,9 +31,6 @@ __all__ = [
     "select",
     "stays_in",
 ]
-
-ANY, ALL, FIRST, LAST = 1, 2, 4, 8
-"""Flags of a streamline for a region: some point lies in it, every point does, the first does, the last does."""
 
 Mask = npt.NDArray[np.bool_]
 Flags = npt.NDArray[np.uint8]
@@ -69,6 +63,10 @@ class Predicate:
     def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
         """Return where it holds, ``(n_streamlines,)`` bool, from the flags of the conditions' regions."""
         raise NotImplementedError
+
+    def choose(self, fiblets: FibletSet, *, flags: FlagsOf | None = None) -> Mask:
+        """Return the streamlines of a set for which it holds; see :func:`select`."""
+        return select(fiblets, self, flags=flags)
 
 
 @dataclass(frozen=True)
@@ -240,6 +238,4 @@ def _region(region: Any, name: str) -> Region:
 
 
 def _sampling(sampling: float | None) -> float | None:
-    from .passing import check_sampling
-
     return check_sampling(sampling) or None

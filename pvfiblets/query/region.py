@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .placement import Bounds, affine, invert_affine
+from .placement import Bounds, affine, invert_affine, positions
 
 if TYPE_CHECKING:
     from .shapes import Shape
@@ -202,18 +202,6 @@ class Region:
                 b, a = stack.pop(), stack.pop()
                 stack.append(f"({a} {'&' if op == AND else '|'} {b})")
         return stack[0]
-
-
-def positions(points: npt.ArrayLike) -> Array:
-    """Return `points` as ``(n, 3)`` float64; a ValueError unless they are three numbers each."""
-    found = np.asarray(points, np.float64)
-    if found.ndim == 1 and found.size == 3:
-        found = found[None]
-    if found.size == 0:
-        found = found.reshape(0, 3)
-    if found.ndim != 2 or found.shape[1] != 3:
-        raise ValueError(f"points have shape {found.shape}; give (n, 3): x, y, z in mm")
-    return found
 
 
 def _depth(program: tuple[int, ...]) -> int:

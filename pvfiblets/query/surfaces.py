@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .placement import Bounds
-from .region import positions
+from .placement import Bounds, positions
 from .shapes import SURFACE, Shape
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec import archive, layout, storage
+from pvfiblets.codec import archive, fiblets_format, layout, storage
 from pvfiblets.codec.convert import measure_file_error
 from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
@@ -75,7 +75,7 @@ def test_a_rich_set_survives_the_disk(tmp_path: Path) -> None:
     assert_equal_sets(fiblets, again)
     assert again.space["voxel_order"] == "RAS"
     assert again.per_group["AF left"]["colour"].tolist() == [1, 2, 3]
-    storage.verify_file(tmp_path / "a.fiblets")
+    fiblets_format.verify_file(tmp_path / "a.fiblets")
     assert os.listdir(tmp_path) == ["a.fiblets"], "nothing else may be left behind"
 
 
@@ -84,7 +84,7 @@ def test_every_extreme_survives_the_disk(tmp_path: Path, name: str) -> None:
     fiblets = pf.compress(extremes()[name])
     fiblets.save(tmp_path / "a.fiblets")
     assert_equal_sets(fiblets, pf.FibletSet.open(tmp_path / "a.fiblets"))
-    storage.verify_file(tmp_path / "a.fiblets")
+    fiblets_format.verify_file(tmp_path / "a.fiblets")
 
 
 @given(st.data())
@@ -108,7 +108,7 @@ def test_any_set_survives_the_disk(tmp_path_factory: pytest.TempPathFactory, dat
     fiblets.save(path)
     again = pf.FibletSet.open(path)
     assert_equal_sets(fiblets, again)
-    storage.verify_file(path)
+    fiblets_format.verify_file(path)
     decoded = again.decompress()
     np.testing.assert_array_equal(decoded.offsets, lines.offsets)
     assert np.linalg.norm(decoded.points.astype(float) - lines.points, axis=1).max(initial=0.0) <= again.promise
@@ -148,7 +148,7 @@ def test_opening_reads_no_array(tmp_path: Path) -> None:
     path.write_bytes(data)
     assert pf.FibletSet.open(path).n_points == 500
     with pytest.raises(FormatError):
-        storage.verify_file(path)
+        fiblets_format.verify_file(path)
 
 
 def test_values_come_back_within_their_measured_error() -> None:
@@ -252,7 +252,7 @@ def test_conversion_writes_what_compressing_gives(tmp_path: Path, monkeypatch: p
     pf.write(tmp_path / "a.trx", rich("cluster"))
     monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
     report = pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets", per_point=["fa"])
-    storage.verify_file(tmp_path / "a.fiblets")
+    fiblets_format.verify_file(tmp_path / "a.fiblets")
     source = pf.read(tmp_path / "a.trx")
     assert_equal_sets(pf.compress(source, per_point=["fa"]), pf.FibletSet.open(tmp_path / "a.fiblets"))
     error = pf.measure_error(source, pf.FibletSet.open(tmp_path / "a.fiblets"))
@@ -345,7 +345,7 @@ def test_verify_finds_bounds_that_do_not_hold(tmp_path: Path, name: str) -> None
     arrays[f"{name}.npy"][5] = 0
     archive.write_archive(tmp_path / "b.fiblets", header, {k: archive.array_member(v) for k, v in arrays.items()})
     with pytest.raises(FormatError, match=r"fiblet \d+ with points outside its capsule"):
-        storage.verify_file(tmp_path / "b.fiblets")
+        fiblets_format.verify_file(tmp_path / "b.fiblets")
 
 
 def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
@@ -354,7 +354,7 @@ def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
     members = {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
     archive.write_archive(tmp_path / "b.fiblets", header, members)
     with pytest.raises(FormatError, match="beyond the set's largest radius"):
-        storage.verify_file(tmp_path / "b.fiblets")
+        fiblets_format.verify_file(tmp_path / "b.fiblets")
 
 def test_a_header_that_says_it_is_larger_than_its_file(tmp_path: Path) -> None:
     path = tmp_path / "a.fiblets"
@@ -397,4 +397,4 @@ def test_verify_names_the_changed_member(tmp_path: Path) -> None:
     data[codes.offset + 3] ^= 0xFF
     path.write_bytes(data)
     with pytest.raises(FormatError, match=r"changed bytes in codes.npy"):
-        storage.verify_file(path)
+        fiblets_format.verify_file(path)

@@ -12,7 +12,7 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import regions
-from pvfiblets.query import passing
+from pvfiblets.query import passing, point_flags
 from pvfiblets.query.passing import region_flags
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
@@ -74,7 +74,8 @@ def assert_flags(whole: pf.FibletSet, region: regions.Region, sampling: float | 
     found = region_flags(whole, region, sampling)
     assert found.dtype == np.uint8
     np.testing.assert_array_equal(found, wanted)
-    for bits in (passing.ANY, passing.ALL, passing.FIRST, passing.LAST, passing.FIRST | passing.LAST):
+    flags = point_flags
+    for bits in (flags.ANY, flags.ALL, flags.FIRST, flags.LAST, flags.FIRST | flags.LAST):
         np.testing.assert_array_equal(region_flags(whole, region, sampling, bits=bits) & bits, wanted & bits)
     return found
 
@@ -172,7 +173,7 @@ def test_a_small_region_between_points_is_found_by_sampling_only() -> None:
     whole = pf.compress(Streamlines.from_list([line, line + [0, 5, 0]]))
     speck = regions.Sphere((595.0, 0.0, 0.0), 1.0)  # between the last point of a fiblet and the first of the next
     assert region_flags(whole, speck).tolist() == [0, 0]
-    assert region_flags(whole, speck, 2.0).tolist() == [passing.ANY, 0]
+    assert region_flags(whole, speck, 2.0).tolist() == [point_flags.ANY, 0]
     assert whole.select(regions.passes(speck, sampling=1.0)).tolist() == [True, False]
 
 

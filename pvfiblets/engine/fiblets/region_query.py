@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.predicates import ALL, ANY, FIRST, LAST
+from ...query.point_flags import ALL, ANY, FIRST, LAST
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BYTES, Array
 from ..opengl import OpenGL

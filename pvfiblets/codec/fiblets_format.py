@@ -1,0 +1,71 @@
+"""``.fiblets`` as one of the formats: the functions that :mod:`pvfiblets.formats.registry` asks of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike, fspath
+from typing import Any
+
+from ..errors import FormatError
+from ..streamlines import Streamlines
+from .archive import check_members
+from .compress import compress
+from .fibletset import FibletSet
+
+__all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
+
+
+def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
+    """Decode a whole file; see :func:`pvfiblets.read`."""
+    del progress  # decoding outruns the bar
+    return FibletSet.open(path).decompress()
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+    """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
+    yield from FibletSet.open(path).iter_chunks(max_points)
+
+
+def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+    """Compress with default settings, every per-point array kept at one byte a point, and save."""
+    compress(streamlines, per_point=tuple(streamlines.per_point)).save(path)
+
+
+def info(path: str | PathLike[str]) -> dict[str, Any]:
+    """Header facts, in constant time."""
+    f = FibletSet.open(path)
+    return {
+        "format": "fiblets",
+        "path": fspath(path),
+        "streamlines": f.n_streamlines,
+        "points": f.n_points,
+        "fiblets": f.n_fiblets,
+        "bytes": f.nbytes,
+        "step_mm": f.step,
+        "promise_mm": f.promise,
+        "bounds_mm": list(f.bounds),
+        "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
+        "per_streamline": sorted(f.per_streamline),
+        "groups": {k: len(v) for k, v in f.groups.items()},
+        "affine": f.affine.tolist(),
+        "dropped": f.dropped,
+    }
+
+
+def verify_file(path: str | PathLike[str]) -> None:
+    """Check a file's every byte against its checksums, and its records for sense.
+
+    Raises
+    ------
+    FormatError
+        Naming what is damaged.
+    """
+    from .check import check_records
+
+    fiblets = FibletSet.open(path)
+    damaged = check_members(path)
+    if damaged:
+        raise FormatError(
+            path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again"
+        )
+    check_records(fiblets, path)
