@@ -22,14 +22,14 @@ CHANGED = {
         resolve="-colour_orientation, colour_point_value",
         buffers="fibletTable, starts",
         packages="numba",
-        modules="codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest",
+        modules="codec.decode_kernels",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
         resolve="-colour_orientation, colour_point_value",
         buffers="fibletTable, starts",
         packages="numba",
-        modules="codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest",
+        modules="codec.decode_kernels",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
@@ -57,14 +57,11 @@ CHANGED = {
             fiblets/raster/capsule.frag,
             fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+        features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, visibility_bits of tubes, tubes",
-        modules="""
-            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
-            engine.fiblets.pipelines.textured
-        """,
+        modules="engine.fiblets.pipelines.geometry",
     ),
     "tubes, shaded": What(
         ran="""
@@ -76,14 +73,11 @@ CHANGED = {
             fiblets/raster/capsule.frag,
             fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+        features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal, tube_shading",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
-        modules="""
-            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
-            engine.fiblets.pipelines.textured
-        """,
+        modules="engine.fiblets.pipelines.geometry",
     ),
     "opacity": What(),
     "layers": What(
@@ -100,9 +94,7 @@ CHANGED = {
         resolve="ambient_occlusion",
         passes="occlusion (effect), smooth (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
-        modules="""
-            engine.effects, engine.effects.ambient_occlusion, engine.effects.lens, engine.effects.screen
-        """,
+        modules="engine.effects.ambient_occlusion",
     ),
     "depth cue": What(
         resolve="depth_cue",
@@ -112,21 +104,19 @@ CHANGED = {
         resolve="halo",
         passes="distance (effect), halo (effect), nearest (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="engine.effects, engine.effects.halos, engine.effects.lens, engine.effects.screen",
+        modules="engine.effects.halos",
     ),
     "ink": What(
         ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
         resolve="halo, ink",
         passes="distance (effect), halo (effect), nearest (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="""
-            engine.effects, engine.effects.halos, engine.effects.lens, engine.effects.screen
-        """,
+        modules="engine.effects.halos",
     ),
     "clip: plane": What(
         features="CLIP_PLANES",
         buffers="clip_planes",
-        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
+        modules="engine.regions.clip_planes, regions",
     ),
     "clip: planes of VTK": What(
         features="CLIP_PLANES",
@@ -135,27 +125,19 @@ CHANGED = {
     "clip: box": What(
         features="CLIP_PLANES",
         buffers="clip_planes",
-        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
+        modules="engine.regions.clip_planes, regions",
     ),
     "clip: plane and ball": What(
         ran="regions/combine.frag",
         features="CLIP_PLANES, CLIP_REGION",
         buffers="clip_planes, region, region shapes",
-        modules="""
-            engine.regions, engine.regions.clip_planes, engine.regions.convex_rays, engine.regions.layer_stack,
-            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
-            query.shapes, regions
-        """,
+        modules="engine.regions.ray_intervals, engine.regions.uniform_block, regions",
     ),
     "clip: outside a box": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",
         buffers="region, region shapes",
-        modules="""
-            engine.regions, engine.regions.clip_planes, engine.regions.convex_rays, engine.regions.layer_stack,
-            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
-            query.shapes, regions
-        """,
+        modules="engine.regions.ray_intervals, engine.regions.uniform_block, regions",
     ),
     "clip: mesh": What(
         ran="regions/combine.frag, regions/inspect.frag, regions/peel.frag, regions/surface.vert",
@@ -163,36 +145,27 @@ CHANGED = {
         buffers="region, region shapes",
         packages="numba",
         modules="""
-            engine.regions, codec.jit, engine.regions.clip_planes, engine.regions.convex_rays,
-            engine.regions.layer_stack,
-            engine.regions.ray_intervals, engine.regions.surface_crossings, engine.regions.uniform_block,
-            query.field_kernels, query.fields, query.shapes, query.surface_kernels, query.surfaces, regions
+            engine.regions.ray_intervals, engine.regions.uniform_block, query.fields, query.surface_kernels,
+            query.surfaces, regions
         """,
     ),
     "criterion: per streamline": What(
         features="STREAMLINE_MASK",
         buffers="filter",
         packages="numba",
-        modules="""
-            codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest,
-            query.measure_kernels
-        """,
+        modules="codec.decode_kernels, query.measure_kernels",
     ),
     "criterion: per point": What(
         features="POINT_MASK",
         buffers="filter",
         packages="numba",
-        modules="codec.jit, query.bit_kernels",
+        modules="query.bit_kernels",
     ),
     "include": What(
         features="STREAMLINE_MASK",
         buffers="filter, query",
         packages="numba",
-        modules="""
-            engine.regions, codec.capsule_kernels, codec.jit, engine.fiblets.region_query, engine.regions.uniform_block,
-            query.classify, query.endpoints, query.passing, query.passing_kernels, query.shape_kernels,
-            query.shapes, regions
-        """,
+        modules="engine.fiblets.region_query, query.passing, regions",
     ),
     "selection": What(
         resolve="highlight",
@@ -205,11 +178,8 @@ CHANGED = {
         buffers="fibletChosenMap",
         packages="numba",
         modules="""
-            codec.capsule_kernels, codec.decode_kernels, codec.jit, codec.kernels, codec.nearest,
-            engine.culling.listing, engine.depth_texture, engine.hit_target, engine.lattice, engine.tubes,
-            engine.tubes.eye_inside, engine.tubes.nodes, engine.tubes.options, engine.tubes.proxy_geometry,
-            engine.tubes.renderer, engine.tubes.uniform_blocks, engine.vertex_pulling, lines, mappers.tubes,
-            plotting.fiblets.selection_overlay, tubes, tubes.build, tubes.curves, tubes.spline_tubes, tubes.tangents
+            codec.decode_kernels, engine.tubes.renderer, mappers.tubes, plotting.fiblets.selection_overlay,
+            tubes.build
         """,
     ),
     "selection outlined": What(
@@ -217,9 +187,7 @@ CHANGED = {
         resolve="highlight, silhouette",
         passes="selection_mask (effect), outline (effect)",
         buffers="chosen pixels (effect), chosen streamlines (effect), fibletChosenMap, outline (effect)",
-        modules="""
-            engine.effects, engine.effects.halos, engine.effects.lens, engine.effects.outline, engine.effects.screen
-        """,
+        modules="engine.effects.halos, engine.effects.outline",
     ),
     "picking": What(),
     "culling: none": What(
@@ -248,13 +216,10 @@ CHANGED = {
             fiblets/raster/line.frag, fiblets/raster/visible.frag,
             fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
+        features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
-        modules="""
-            engine.depth_texture, engine.fiblets.pipelines.geometry, engine.fiblets.pipelines.raster,
-            engine.fiblets.pipelines.textured
-        """,
+        modules="engine.fiblets.pipelines.geometry",
     ),
     "pipeline: tessellation": What(
         ran="""
@@ -266,13 +231,10 @@ CHANGED = {
             fiblets/raster/visible.frag, fiblets/raster/visible.vert,
             fiblets/raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
         """,
-        features="-CLIPPING_DEPTH, -ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
+        features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
-        modules="""
-            engine.depth_texture, engine.fiblets.pipelines.raster, engine.fiblets.pipelines.tessellation,
-            engine.fiblets.pipelines.textured
-        """,
+        modules="engine.fiblets.pipelines.tessellation",
     ),
     "picture: depth of field": What(
         ran="""
@@ -281,21 +243,13 @@ CHANGED = {
         """,
         features="PICTURE_DEPTH, PICTURE_SAMPLES",
         buffers="picture",
-        modules="""
-            engine.effects, engine.effects.depth_of_field, engine.effects.lens, engine.effects.picture,
-            engine.effects.screen, engine.effects.tone, mappers.lens_focus, mappers.overlays, mappers.picture,
-            mappers.tiles, plotting.picture_component
-        """,
+        modules="plotting.picture_component",
     ),
     "picture: tone": What(
         ran="effects/picture/copy.frag, effects/picture/tone.frag",
         features="PICTURE_SAMPLES, TONE_ACES",
         buffers="picture",
-        modules="""
-            engine.effects, engine.effects.depth_of_field, engine.effects.lens, engine.effects.picture,
-            engine.effects.screen, engine.effects.tone, mappers.lens_focus, mappers.overlays, mappers.picture,
-            mappers.tiles, plotting.picture_component
-        """,
+        modules="plotting.picture_component",
     ),
     "spline tubes: values": What(
         features="TUBE_VALUES",
@@ -355,14 +309,14 @@ CHANGED = {
         resolve="-colour_point_value, colour_point",
         buffers="-fibletTable, colours, segments",
         packages="numba",
-        modules="codec.jit, volumes.preintegration",
+        modules="volumes.preintegration",
     ),
     "volume: light": What(
         features="VOLUME_FINER, VOLUME_LIGHT, VOLUME_PREINTEGRATED",
         resolve="-colour_point_value, colour_point",
         buffers="-fibletTable, colours, segments",
         packages="numba",
-        modules="codec.jit, volumes.preintegration",
+        modules="volumes.preintegration",
     ),
     "volume: nearest": What(
         features="VOLUME_NEAREST",
@@ -383,17 +337,13 @@ CHANGED = {
         buffers="sparse",
     ),
     "volume: cut by planes": What(
-        modules="engine.regions, query.shapes, engine.regions.clip_planes, regions",
+        modules="engine.regions.clip_planes, regions",
     ),
     "volume: cut": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",
         buffers="region",
-        modules="""
-            engine.regions, engine.frame, engine.regions.clip_planes, engine.regions.convex_rays,
-            engine.regions.layer_stack,
-            engine.regions.ray_intervals, engine.regions.surface_crossings, query.shapes, regions
-        """,
+        modules="engine.regions.ray_intervals, regions",
     ),
     "volume: ray occlusion": What(
         ran="volumes/occlusion.frag, volumes/occlusion_mean.frag",
@@ -401,6 +351,6 @@ CHANGED = {
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.effects, engine.effects.screen, engine.volumes.occlusion, mappers.ray_occlusion",
+        modules="engine.volumes.occlusion, mappers.ray_occlusion",
     ),
 }

@@ -1,16 +1,24 @@
 """What each scene is made of: the plain ones (``plain.py``), and the others by their differences (``changed.py``).
 
-Whoever adds a module, a pass or a buffer says there which scenes ask for it.
+Whoever adds a pass or a buffer says there which scenes ask for it. Of modules a scene names only those that it loads
+for itself; what these import when they are imported is found in their text.
 """
 
 from __future__ import annotations
 
 from .changed import CHANGED
+from .imports import closure
 from .plain import PLAIN
 
 
 def expected(name: str, kind: str) -> set[str]:
-    """Return what a scene has of one kind."""
+    """Return what a scene has of one kind; of modules, those that it asks for and all that these import."""
+    asked = asked_for(name, kind)
+    return closure(asked) if kind == "modules" else asked
+
+
+def asked_for(name: str, kind: str) -> set[str]:
+    """Return what is written down of a scene."""
     if name in PLAIN:
         return PLAIN[name].names(kind)
     changed = CHANGED[name].names(kind)

@@ -24,7 +24,7 @@ class What:
     packages : str
         Of others, that were imported.
     modules : str
-        Of this package, that were imported.
+        Of this package, that the scene asked for; those that they import come with them.
     """
 
     ran: str = ""
