@@ -147,7 +147,7 @@ HALOS = Scope(
     "halos",
     {
         "hits": 10, "depths": 11, "place_texels": 13, "mask_texels": 14, "filter_texels": 15, "value_texels": 16,
-        "colour_texels": 17, "start_texels": 18,
+        "colour_texels": 17, "offset_texels": 18,
     },
 )  # fmt: skip
 together(HALOS, ITEMS, ITEMS_SHOWN)
