@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import moderngl
 
+from .bindings import HIT_KEYS
 from .culling.listing import LEAST_SEGMENTS, Listing, supports_listing
 from .depth_texture import depth_texture
 from .drawable import AnyStyle, Drawable
@@ -18,9 +19,8 @@ from .gbuffer import EMPTY, GBuffer
 from .opengl import OpenGL
 from .shaders import Programs
 
-__all__ = ["KEYS_UNIT", "HitDrawable", "HitTarget"]
+__all__ = ["HitDrawable", "HitTarget"]
 
-KEYS_UNIT = 12
 
 
 class HitTarget:
@@ -92,8 +92,8 @@ class HitTarget:
     def write_keys(self, programs: Programs) -> None:
         """Write the depth so far into the G-buffer."""
         program, array = programs.screen("screen/keys.frag")
-        self.depths.use(KEYS_UNIT)
-        program["depths"] = KEYS_UNIT
+        self.depths.use(HIT_KEYS["depths"])
+        program["depths"] = HIT_KEYS["depths"]
         self.keys.use()
         self._ctx.enable_only(moderngl.NOTHING)
         array.render(moderngl.TRIANGLES, vertices=3)

@@ -26,9 +26,10 @@ from typing import Any
 import moderngl
 
 from ..codec import layout
+from .bindings import BLOCKS, CONSTANTS
 from .errors import EngineError
 
-__all__ = ["BLOCKS", "EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
+__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
 
 FEATURES: dict[str, str] = {
     "ANCHORS_LOW": "anchors of 32 bits per axis",
@@ -113,21 +114,6 @@ NEWEST = 430
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
 
-BLOCKS = {
-    "Frame": 0,
-    "Coding": 1,
-    "Chunk": 2,
-    "ClipPlanes": 3,
-    "Rotations": 4,
-    "Regions": 5,
-    "Sampling": 6,
-    "Tubes": 7,
-    "Splines": 8,
-    "Raycast": 10,
-    "Halos": 9,
-}
-"""Bindings of the uniform blocks, as the sources state them."""
-
 _VERSION = re.compile(r"^#version \d+$", re.MULTILINE)
 _BINDING = re.compile(r",\s*binding\s*=\s*\d+")
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[ \t]*$', re.MULTILINE)
@@ -177,7 +163,7 @@ def assemble(
     features : iterable of str
         Keys of :data:`FEATURES` that are on.
     constants : mapping, optional
-        Values of ``{{ name }}``.
+        Values of ``{{ name }}``, beside the numbers of :mod:`.bindings`.
     source : str, optional
         The stage's text, instead of a file; ``name`` then only serves messages.
     version : int
@@ -194,7 +180,7 @@ def assemble(
     EngineError
         If a file, a feature or a constant is not known.
     """
-    active, constants = set(features), constants or {}
+    active, constants = set(features), {**CONSTANTS, **(constants or {})}
     if unknown := active - set(FEATURES):
         raise EngineError(f"unknown features {sorted(unknown)}; there are {sorted(FEATURES)}")
     included: set[str] = {name}

@@ -4,8 +4,8 @@
 #version 430
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 2) readonly buffer Counts { uint counts[]; };
-layout(std430, binding = 3) writeonly buffer Commands { uint commands[]; };    // five words each, as OpenGL has them
+layout(std430, binding = {{ items_counts }}) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = {{ items_commands }}) writeonly buffer Commands { uint commands[]; };    // five words each, as OpenGL has them
 
 uniform int calls;
 uniform int batch;               // items of a call

@@ -9,7 +9,7 @@ uniform usampler2D shown;        // the number of a quad; 0xFFFFFFFF where nothi
 uniform int count;               // items
 uniform int shift;               // an item is 1 << shift quads
 
-layout(std430, binding = 0) buffer SeenBits { uint seen[]; };
+layout(std430, binding = {{ items_seen }}) buffer SeenBits { uint seen[]; };
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -17,9 +17,9 @@ layout(local_size_x = 64) in;
 #include "culling/squares.glsl"
 #include "frame/groups.glsl"
 
-layout(std430, binding = 0) readonly buffer SeenBits { uint seen[]; };
-layout(std430, binding = 1) writeonly buffer Listed { uint listed[]; };
-layout(std430, binding = 2) buffer Counts { uint counts[]; };      // how many are listed
+layout(std430, binding = {{ items_seen }}) readonly buffer SeenBits { uint seen[]; };
+layout(std430, binding = {{ items_listed }}) writeonly buffer Listed { uint listed[]; };
+layout(std430, binding = {{ items_counts }}) buffer Counts { uint counts[]; };      // how many are listed
 
 uniform int second_round;
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
+from pvfiblets.engine.bindings import FIBLET_ROUNDS
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.fiblets.pipelines.raster import FIRST_ROUND_UNIT
 from pvfiblets.engine.shaders import assemble
 
 TASK_WORDS, VERTICES, INDICES, VARYING, MOST = 16, 480, 180, 24, 60
@@ -196,8 +196,8 @@ class EmulatedMesh(MeshPipeline):
             meshes.bind_to_storage_buffer(9)
             self._bind(task, job, features)
             if "first_round" in program:
-                self._target.kept.use(FIRST_ROUND_UNIT)
-                program["first_round"] = FIRST_ROUND_UNIT
+                self._target.kept.use(FIBLET_ROUNDS["first_round"])
+                program["first_round"] = FIBLET_ROUNDS["first_round"]
             for first in range(0, groups, self._max_tasks):
                 task["first_group"] = first
                 task.run(min(self._max_tasks, groups - first))

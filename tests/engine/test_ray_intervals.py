@@ -407,7 +407,7 @@ import moderngl, numpy as np
 here = sys.argv[1]
 load = lambda name: importlib.util.spec_from_file_location(name, f"{here}/{name}.py")
 modules = []
-for name in ("conftest", "test_cutting"):
+for name in ("conftest", "test_ray_intervals"):
     spec = load(name)
     modules.append(importlib.util.module_from_spec(spec))
     spec.loader.exec_module(modules[-1])

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from pvfiblets import regions
+from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.passes import nowhere
 from pvfiblets.engine.regions.uniform_block import BLOCK_BYTES, FieldTextures, RegionBlock, region_block
-from pvfiblets.engine.shaders import BLOCKS, assemble
+from pvfiblets.engine.shaders import assemble
 
 from .region_shapes import NAMES, made, torus
 

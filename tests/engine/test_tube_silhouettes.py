@@ -8,10 +8,11 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.engine import View
+from pvfiblets.engine.bindings import TUBES
 from pvfiblets.engine.lattice import TOP
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.shaders import Programs
-from pvfiblets.engine.tubes.nodes import UNITS, Nodes
+from pvfiblets.engine.tubes.nodes import Nodes
 from pvfiblets.engine.tubes.uniform_blocks import CONSTANTS, TubeBlocks
 from pvfiblets.tubes import SplineTubes
 from pvfiblets.tubes.curves import MIDDLE, boxes, controls, sample_spheres
@@ -42,7 +43,7 @@ def vertices(gl):
                 view, reach=100.0, middle=MIDDLE, min_width=min_width, iterations=9, n_segments=tubes.n_segments
             )
             nodes.bind()
-            for sampler, unit in UNITS.items():
+            for sampler, unit in TUBES.items():
                 library.set_sampler(program, sampler, unit)
             program["first_segment"] = 0
             if planes:

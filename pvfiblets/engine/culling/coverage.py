@@ -32,13 +32,13 @@ import moderngl
 import numpy as np
 
 from ...codec import layout
+from ..bindings import CULLING
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..gbuffer import GBuffer
 from ..opengl import OpenGL
 from ..shaders import Programs
 from ..view import Style, View
-from .occlusion import OCCLUSION_UNIT
 from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
@@ -195,8 +195,8 @@ class CoverageBuffer:
 
     def bind(self, program: Any) -> None:
         """Bind the buffer and tell a program where it is."""
-        self._textures[1].use(OCCLUSION_UNIT)
-        program["coverage"] = OCCLUSION_UNIT
+        self._textures[1].use(CULLING["occlusion"])
+        program["coverage"] = CULLING["occlusion"]
         program["coverage_axis"] = (*self._axis, self.radius + self._thicker)
         program["coverage_side"] = float(self._side)
 
@@ -263,10 +263,10 @@ class CoverageBuffer:
             )
         d, b, a, c = camera.depth
         far = (d - b) / (a - c) if a > c else _EMPTY
-        self._pyramid.texture.use(OCCLUSION_UNIT)
+        self._pyramid.texture.use(CULLING["occlusion"])
         level = self._side.bit_length() - 2
         for name, value in {
-            "pyramid": OCCLUSION_UNIT,
+            "pyramid": CULLING["occlusion"],
             "first_level": level,
             "last_level": self._pyramid.levels - 1,
             "texels": texels,
@@ -298,8 +298,8 @@ class CoverageBuffer:
         place[3, 3] = 1.0
         x, y, z, w = now.window
         clip = np.array([2 / (self._side * columns) * x - w, 2 / (self._side * rows) * y - w, z, w])
-        self._textures[0].use(OCCLUSION_UNIT)
-        program["dilated"] = OCCLUSION_UNIT
+        self._textures[0].use(CULLING["occlusion"])
+        program["dilated"] = CULLING["occlusion"]
         program["texels"] = texels
         program["perspective"] = before.perspective
         program["eye"] = before.eye

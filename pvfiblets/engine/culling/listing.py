@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import moderngl
 
+from ..bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
 from ..opengl import BufferTexture, OpenGL
 from ..passes import dispatch
 from ..shaders import Programs
@@ -31,7 +32,6 @@ __all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
 
 LEAST_SEGMENTS = 16000
 """With fewer, two rounds and a pyramid cost more than what they spare: for 3,500 segments as much again."""
-LISTED_UNIT, SHOWN_UNIT = 20, 12
 _QUAD = 4  # vertices
 _GROUP = 64
 
@@ -104,9 +104,9 @@ class Listing:
         if not target.buffer.generation:
             return
         program = self._programs.compute("culling/visible_items.comp")
-        seen.bind_to_storage_buffer(0)
-        shown.use(SHOWN_UNIT)
-        program["shown"], program["count"], program["shift"] = SHOWN_UNIT, self._n, self._shift
+        seen.bind_to_storage_buffer(ITEM_STORAGE["seen"])
+        shown.use(ITEMS_SHOWN["shown"])
+        program["shown"], program["count"], program["shift"] = ITEMS_SHOWN["shown"], self._n, self._shift
         width, height = target.size
         program.run(-(-width // 8), -(-height // 8))
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -142,7 +142,7 @@ class Listing:
     def _list(self, prepare: Callable[[moderngl.ComputeShader], None], *, second: bool) -> None:
         ctx = self._ctx
         self.buffers["counts"].write(bytes(16))
-        for binding, name in enumerate(("seen", "listed", "counts", "commands")):
+        for name, binding in ITEM_STORAGE.items():
             self.buffers[name].bind_to_storage_buffer(binding)
         cull = self._programs.compute(self._cull, self.features)
         prepare(cull)
@@ -163,8 +163,8 @@ class Listing:
     def bind(self, program: moderngl.Program) -> None:
         """Tell a drawing program where the list is."""
         assert self._texture is not None
-        self._texture.bind(LISTED_UNIT)
-        self._gl.set_sampler(program, "listed_texels", LISTED_UNIT)
+        self._texture.bind(ITEMS["listed"])
+        self._gl.set_sampler(program, "listed_texels", ITEMS["listed"])
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""

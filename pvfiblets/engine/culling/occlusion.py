@@ -10,16 +10,7 @@ from ..view import Style, View
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["LAST_UNIT", "OCCLUSION_UNIT", "OUTSIDE_UNIT", "Occlusion"]
-
-OCCLUSION_UNIT = 11
-"""Texture unit of what fiblets are tested against."""
-
-LAST_UNIT = 9
-"""Texture unit of the last picture's pyramid."""
-
-OUTSIDE_UNIT = 10
-"""Texture unit of the depth of other things in the scene."""
+__all__ = ["Occlusion"]
 
 
 class Occlusion(Protocol):

@@ -11,11 +11,11 @@ from typing import Any
 
 import moderngl
 
+from ..bindings import CULLING
 from ..gbuffer import GBuffer
 from ..opengl import OpenGL
 from ..shaders import Programs
 from ..view import Style, View
-from .occlusion import LAST_UNIT, OCCLUSION_UNIT, OUTSIDE_UNIT
 
 __all__ = ["DepthPyramid"]
 
@@ -120,11 +120,11 @@ class DepthPyramid:
                 outside = self.outside if level == 0 else None
                 program, array = self._programs.screen("culling/reduce.frag", ["SCENE_DEPTH"] if outside else [])
                 if outside is not None:
-                    outside.use(OUTSIDE_UNIT)
-                    program["outside"] = OUTSIDE_UNIT
+                    outside.use(CULLING["outside"])
+                    program["outside"] = CULLING["outside"]
                 source = target.depth if level == 0 else levels.texture
-                source.use(OCCLUSION_UNIT)
-                program["source"] = OCCLUSION_UNIT
+                source.use(CULLING["occlusion"])
+                program["source"] = CULLING["occlusion"]
                 program["last"] = width - 1, height - 1
                 if level:
                     self._gl.limit_levels(levels.texture, level - 1, level - 1)
@@ -138,12 +138,12 @@ class DepthPyramid:
         """Bind what a program looks at, and tell it where it is."""
         assert self._now is not None
         last = self._last if self.guesses else None
-        self._now.texture.use(OCCLUSION_UNIT)
-        (last or self._now).texture.use(LAST_UNIT)
+        self._now.texture.use(CULLING["occlusion"])
+        (last or self._now).texture.use(CULLING["last"])
         values = {
-            "pyramid": OCCLUSION_UNIT,
+            "pyramid": CULLING["occlusion"],
             "pyramid_levels": self._now.count,
-            "last_pyramid": LAST_UNIT,
+            "last_pyramid": CULLING["last"],
             "guess_level": -1 if last is None else min(GUESS_LEVEL, last.count - 1),
         }
         for name, value in values.items():

@@ -14,12 +14,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import FIRST_UNIT
 from ..errors import EngineError
 from ..opengl import OpenGL
 from ..shaders import Programs
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
 from .lens import Lens
-from .screen import FIRST_UNIT
 from .tone import Tone
 
 __all__ = ["Attachment", "PictureEffects"]

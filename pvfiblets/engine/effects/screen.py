@@ -7,14 +7,12 @@ from typing import Any
 
 import moderngl
 
+from ..bindings import FIRST_UNIT
 from ..errors import EngineError
 from ..opengl import OpenGL
 from ..shaders import Programs
 
-__all__ = ["FIRST_UNIT", "ScreenEffect"]
-
-FIRST_UNIT = 9
-"""Texture units from here on are free to effects: the engine binds its own to them again when it draws."""
+__all__ = ["ScreenEffect"]
 
 
 class ScreenEffect:

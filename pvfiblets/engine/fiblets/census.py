@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
+from ..bindings import BLOCKS, STORAGE
 from ..gbuffer import EMPTY, GBuffer
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, nowhere
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Census", "count_fiblets", "no_counts"]
 
-_MARKS, _COUNTS = 5, 7  # storage bindings
 
 
 class Census:
@@ -79,11 +79,11 @@ class Census:
         counts = storage_buffer(self._ctx, np.zeros(2, np.uint32), "counts")
         program["marked"] = marks is not None
         if marks is not None:
-            marks.bind_to_storage_buffer(_MARKS)
+            marks.bind_to_storage_buffer(STORAGE["visibility_bits"])
         for index, chunk in enumerate(chunks):
             chunk.bind_storage()
             kept.bind(program, index)
-            counts.bind_to_storage_buffer(_COUNTS)  # in the place of per-point values
+            counts.bind_to_storage_buffer(STORAGE["values"])  # in the place of per-point values
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
         in_view, drawn = np.frombuffer(counts.read(8), "<u4").tolist()
@@ -105,7 +105,7 @@ class Census:
                 kept.bind(program, index)
                 data, query = DataTextures(self._gl, chunk), self._ctx.query(samples=True)
                 data.bind()
-                chunk.buffers["chunk"].bind_to_uniform_block(2)
+                chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
                 with query:
                     array.render(moderngl.POINTS, vertices=chunk.n_fiblets)
                 total += int(query.samples)

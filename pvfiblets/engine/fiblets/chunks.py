@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec import layout
+from ..bindings import BLOCKS, STORAGE
 from ..errors import EngineError, GPUMemoryError
 
 if TYPE_CHECKING:
@@ -63,17 +64,9 @@ class ChunkPlan:
         return sum(self.sizes.values()) + CHUNK_BLOCK_BYTES
 
 
-BINDINGS = {
-    "anchors": 0,
-    "decoding": 1,
-    "codes": 2,
-    "bounds": 3,
-    "pages": 4,
-    "anchors_low": 6,
-    "values": 7,
-    "starts": 7,
-}
-"""Storage bindings of a chunk's buffers; 5 is left to passes. OpenGL promises eight."""
+_STORED = ("anchors", "decoding", "codes", "bounds", "pages", "anchors_low", "values")
+BINDINGS = {**{name: STORAGE[name] for name in _STORED}, "starts": STORAGE["values"]}
+"""Storage bindings of a chunk's buffers."""
 
 
 @dataclass
@@ -91,7 +84,7 @@ class Chunk:
 
     def bind_storage(self) -> None:
         """Bind its uniform block, and what there is of its buffers to their storage bindings."""
-        self.buffers["chunk"].bind_to_uniform_block(2)
+        self.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
         for name, binding in BINDINGS.items():
             if name in self.buffers:
                 self.buffers[name].bind_to_storage_buffer(binding)

@@ -2,22 +2,17 @@
 
 Buffer textures hold no copies: both ways read the same buffers. The names of the samplers stand in ``shaders/data``.
 
-Texture units are counted from :data:`FIRST_UNIT`, so that those that VTK hands out, from 0 upwards, stay as they are.
 """
 
 from __future__ import annotations
 
 import moderngl
 
+from ..bindings import FIBLET_DATA, PEELING, SAMPLED
 from ..opengl import BufferTexture, OpenGL
 from .chunks import Chunk
-from .depth_peeling import PEEL_UNITS
-from .sampled_volume import VOLUME_UNIT
 
-__all__ = ["FIRST_UNIT", "SAMPLERS", "UNITS", "DataTextures", "set_data_samplers"]
-
-FIRST_UNIT = 16
-"""First unit for data; ``culling`` and ``pipelines`` use some below."""
+__all__ = ["SAMPLERS", "DataTextures", "set_data_samplers"]
 
 SAMPLERS = {
     "anchors": ("anchor_texels", "rg32ui"),
@@ -30,9 +25,6 @@ SAMPLERS = {
     "starts": ("start_texels", "r32f"),
 }
 """Of a chunk's buffers: sampler and format of a texel. Before OpenGL 4.0 none has three components."""
-
-UNITS = {name: FIRST_UNIT + index for index, name in enumerate(SAMPLERS)}
-"""Texture unit of each."""
 
 
 class DataTextures:
@@ -59,7 +51,7 @@ class DataTextures:
             If a buffer has more texels than this OpenGL reads.
         """
         buffers = self._chunk.buffers
-        for name, unit in UNITS.items():
+        for name, unit in FIBLET_DATA.items():
             held = self._textures.get(name)
             if held is not None and held[0] is not buffers.get(name):
                 self._textures.pop(name)[1].release()
@@ -80,7 +72,7 @@ class DataTextures:
 def set_data_samplers(gl: OpenGL, program: moderngl.Program) -> None:
     """Tell a program where :meth:`DataTextures.bind` puts what it reads."""
     for name, (sampler, _) in SAMPLERS.items():
-        gl.set_sampler(program, sampler, UNITS[name])
-    gl.set_sampler(program, "sampled_volume", VOLUME_UNIT)
-    for sampler, unit in PEEL_UNITS.items():
+        gl.set_sampler(program, sampler, FIBLET_DATA[name])
+    gl.set_sampler(program, "sampled_volume", SAMPLED["sampled_volume"])
+    for sampler, unit in PEELING.items():
         gl.set_sampler(program, sampler, unit)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
+from ..bindings import LAYER_COPY, PEELING
 from ..errors import EngineError, GPUMemoryError
 from ..gbuffer import RELIEF, GBuffer
 
@@ -29,14 +30,11 @@ if TYPE_CHECKING:
     from .pipelines import DrawRequest, Pipeline
     from .style import FibletStyle
 
-__all__ = ["MOST_LAYERS", "PEEL_UNITS", "LayeredBuffer", "Layers", "Peel"]
+__all__ = ["MOST_LAYERS", "LayeredBuffer", "Layers", "Peel"]
 
 MOST_LAYERS = 64
 
-PEEL_UNITS = {"peeled_depth": 29, "peeled_ids": 30, "peeled_position": 31}
-"""Texture units of the layers drawn so far, by the names of their samplers."""
 
-_COPY_UNITS = {"depth": 12, "ids": 13, "position": 14, "across": 15}  # as the raster pipelines between their rounds
 
 
 class LayeredBuffer:
@@ -110,8 +108,8 @@ class LayeredBuffer:
         features = {None: [], "across": ["CROSS_LINE"], "normal": ["CROSS_LINE", "TUBES"]}[self.relief]
         program, array = programs.screen("fiblets/layers/copy.frag", features)
         for name in self.arrays:
-            getattr(drawn, name).use(_COPY_UNITS[name])
-            program[f"drawn_{name}"] = _COPY_UNITS[name]
+            getattr(drawn, name).use(LAYER_COPY[name])
+            program[f"drawn_{name}"] = LAYER_COPY[name]
         with gl.framebuffers_kept():
             ctx.enable_only(moderngl.NOTHING)
             self._framebuffers[layer].use()
@@ -142,9 +140,9 @@ class Peel:
         """Bind the layers, and tell a program how many count."""
         if "peeled_layers" in program:
             program["peeled_layers"] = self.drawn
-            self.layers.depth.use(PEEL_UNITS["peeled_depth"])
-            self.layers.ids.use(PEEL_UNITS["peeled_ids"])
-            self.layers.position.use(PEEL_UNITS["peeled_position"])
+            self.layers.depth.use(PEELING["peeled_depth"])
+            self.layers.ids.use(PEELING["peeled_ids"])
+            self.layers.position.use(PEELING["peeled_position"])
 
 
 class _Stage:

@@ -18,16 +18,15 @@ import numpy.typing as npt
 
 from ...codec.places import Places
 from ...query.bits import rank_words
+from ..bindings import MASKS
 from ..errors import EngineError, GPUMemoryError
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from .chunks import Chunk
 
-__all__ = ["MASK_BITS", "POINT_UNIT", "STREAMLINE_UNIT", "Filter", "FilterTextures"]
+__all__ = ["MASK_BITS", "Filter", "FilterTextures"]
 
-STREAMLINE_UNIT, POINT_UNIT = 24, 25
-"""Texture units."""
 
 MASK_BITS = 12
 """A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too."""
@@ -189,11 +188,11 @@ class FilterTextures:
     def bind(self, program: Any, chunk: int) -> None:
         """Bind what a program looks at when it goes through a chunk, and tell it where that is."""
         if self._streamlines is not None and "streamline_mask" in program:
-            self._streamlines.use(STREAMLINE_UNIT)
-            program["streamline_mask"] = STREAMLINE_UNIT
+            self._streamlines.use(MASKS["streamline_mask"])
+            program["streamline_mask"] = MASKS["streamline_mask"]
         if self._points and "point_mask" in program:
-            self._points[chunk].use(POINT_UNIT)
-            program["point_mask"] = POINT_UNIT
+            self._points[chunk].use(MASKS["point_mask"])
+            program["point_mask"] = MASKS["point_mask"]
 
     @property
     def nbytes(self) -> int:

@@ -14,6 +14,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import BLOCKS, STORAGE
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
@@ -82,7 +83,7 @@ class ComputeMeasurer:
         chunk.bind_storage()
         rows = np.empty((chunk.n_fiblets, ROW), "<f4")
         with _batches(self._ctx, chunk.n_fiblets) as (scratch, starts):
-            scratch.bind_to_storage_buffer(5)
+            scratch.bind_to_storage_buffer(STORAGE["visibility_bits"])  # in their place
             for first in starts:
                 size = min(BATCH, chunk.n_fiblets - first)
                 program["batch_first"], program["batch_size"] = first, size
@@ -118,7 +119,7 @@ class FeedbackMeasurer:
         rows = np.empty((chunk.n_fiblets, ROW), "<f4")
         try:
             with nowhere(self._ctx, self._gl), _batches(self._ctx, chunk.n_fiblets) as (scratch, starts):
-                chunk.buffers["chunk"].bind_to_uniform_block(2)
+                chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
                 data.bind()
                 for first in starts:
                     size = min(BATCH, chunk.n_fiblets - first)

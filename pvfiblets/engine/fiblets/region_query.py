@@ -16,12 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...query.point_flags import ALL, ANY, FIRST, LAST
+from ..bindings import ANSWER_STORAGE, BLOCKS
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BYTES, Array
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch
 from ..regions.uniform_block import RegionBlock
-from ..shaders import BLOCKS, Programs
+from ..shaders import Programs
 from .chunks import Chunk, reserve_buffer, storage_buffer
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
 BATCH = 1 << 20
 """Fiblets asked at a time, so that no dispatch runs for long."""
 
-_ANSWERS, _LISTS = 5, 7  # storage bindings
 _STAGES = 3
 _REFERENCE_AT = 160  # bytes into the block `Frame`, see shaders/frame/blocks.glsl
 
@@ -174,8 +174,8 @@ class RegionQuery:
             lists = reserve_buffer(self._ctx, 4 * (2 + 2 * batch), "lists of fiblets")
             stack.callback(lists.release)
             chunk.bind_storage()
-            answers.bind_to_storage_buffer(_ANSWERS)
-            lists.bind_to_storage_buffer(_LISTS)  # in the place of per-point values
+            answers.bind_to_storage_buffer(ANSWER_STORAGE["answers"])
+            lists.bind_to_storage_buffer(ANSWER_STORAGE["lists"])  # in the place of per-point values
             for first in range(0, chunk.n_fiblets, batch):
                 size = min(batch, chunk.n_fiblets - first)
                 program["batch_first"], program["batch_size"] = first, size

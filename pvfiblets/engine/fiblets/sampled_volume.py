@@ -32,15 +32,13 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import BLOCKS, SAMPLED
 from ..errors import EngineError, GPUMemoryError
 
-__all__ = ["SAMPLING_BYTES", "VOLUME_UNIT", "VolumeSource", "VolumeTexture"]
+__all__ = ["SAMPLING_BYTES", "VolumeSource", "VolumeTexture"]
 
-VOLUME_UNIT = 28
-"""Texture unit of the volume."""
 
 SAMPLING_BYTES = 96
-SAMPLING_BINDING = 6
 LARGEST_WHOLE = 2**24
 """Up to here float32 holds every whole number."""
 
@@ -204,8 +202,8 @@ class VolumeTexture:
         block[4] = *self.source.values.shape, bool(self.source.nearest)
         block[5] = self._low, self._scale, self._whole, 0.0
         self._block.write(block.tobytes())
-        self._block.bind_to_uniform_block(SAMPLING_BINDING)
-        self._texture.use(VOLUME_UNIT)
+        self._block.bind_to_uniform_block(BLOCKS["Sampling"])
+        self._texture.use(SAMPLED["sampled_volume"])
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""

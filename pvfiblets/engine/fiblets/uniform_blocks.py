@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec import layout, tables
+from ..bindings import BLOCKS
 from ..clipping import BLOCK_BYTES, clip_planes_block
 from ..frame import FRAME_BYTES, frame_block, segment_pixels
-from ..shaders import BLOCKS
 from .line_tubes import TUBES_BYTES, tubes_block
 
 if TYPE_CHECKING:

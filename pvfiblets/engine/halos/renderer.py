@@ -9,12 +9,13 @@ import moderngl
 import numpy as np
 
 from ...halos.geometry import HaloLines, HaloPoints
+from ..bindings import HALOS
 from ..gbuffer import EMPTY, GBuffer
 from ..hit_target import HitDrawable, HitTarget
 from ..vertex_pulling import PulledShapes
 from ..view import Style, View
 from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
-from .vertices import UNITS, Vertices
+from .vertices import Vertices
 
 if TYPE_CHECKING:
     from ...halos.style import HaloStyle
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
-HITS_UNIT, DEPTHS_UNIT = 10, 11
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     """
 
     STYLE = HaloDrawStyle
-    SAMPLERS = UNITS
+    SAMPLERS = HALOS
     RELIEF = "ink"
 
     def __init__(
@@ -158,7 +158,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             "halos/attributes.frag",
             [*self._kind, *([reads] if reads else [])],
             self._shapes.whole,
-            [("hits", target.hits, HITS_UNIT), ("depths", target.depths, DEPTHS_UNIT)],
+            [("hits", target.hits, HALOS["hits"]), ("depths", target.depths, HALOS["depths"])],
             lines=self._n_lines,
         )
         return target.buffer

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
+from ..bindings import BLOCKS
 from ..clipping import BLOCK_BYTES, clip_planes_block
 from ..frame import FRAME_BYTES, frame_block, local_frame
 from ..lattice import TOP
-from ..shaders import BLOCKS
 from ..view import Style, View
 from .vertices import MOST
 

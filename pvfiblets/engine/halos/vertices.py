@@ -14,15 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.geometry import HaloLines, HaloPoints
+from ..bindings import HALOS
 from ..errors import EngineError
 from ..lattice import lattice, places
 from ..opengl import TEXEL_FORMATS, BufferTexture, OpenGL
 
-__all__ = ["LAST", "MOST", "UNITS", "Vertices", "mask_places"]
+__all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 
-UNITS = {"place_texels": 13, "mask_texels": 14, "filter_texels": 15, "value_texels": 16, "colour_texels": 17,
-         "offset_texels": 18}  # fmt: skip
-"""Texture units of the samplers."""
 
 LAST = 65535
 """Place on the mask of a line's last vertex, and of no other."""
@@ -141,7 +139,7 @@ class Vertices:
     def bind(self) -> None:
         """Bind all to their units."""
         for sampler, texture in self._textures.items():
-            texture.bind(UNITS[sampler])
+            texture.bind(HALOS[sampler])
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""

@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...query.shapes import SURFACE
+from ..bindings import BLOCKS, REGIONS
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..opengl import OpenGL
@@ -38,12 +39,9 @@ if TYPE_CHECKING:
     from ...query.shapes import Region
     from ...query.surfaces import Surface
 
-__all__ = ["BOUNDARIES_UNIT", "Cutter"]
+__all__ = ["Cutter"]
 
-BOUNDARIES_UNIT = 26
-"""Texture unit of the boundaries."""
 
-RAYS_BINDING = 11
 """Binding of the uniform block ``Rays``, of this module's own programs only: no other of `BLOCKS`, which stay
 bound meanwhile."""
 
@@ -181,8 +179,8 @@ class Cutter:
         if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
             return False  # no pixel has any
         program = self._squares.program("regions/overflow.frag", rectangle)
-        stack.textures[0].use(BOUNDARIES_UNIT)
-        program["region_boundaries"], program["last"] = BOUNDARIES_UNIT, stack.layers - 1
+        stack.textures[0].use(REGIONS["region_boundaries"])
+        program["region_boundaries"], program["last"] = REGIONS["region_boundaries"], stack.layers - 1
         return bool(self._squares.ask("regions/overflow.frag", rectangle).any())
 
     def _draw_surfaces(
@@ -210,7 +208,7 @@ class Cutter:
         program, array = self._program(form, stack.together)
         if self._surfaces is not None:
             self._surfaces.bind(program)
-        self._block.bind_to_uniform_block(RAYS_BINDING)
+        self._block.bind_to_uniform_block(BLOCKS["Rays"])
         program["room"] = 4 * stack.layers
         left, lower, right, upper = rectangle
         whole = right - left == stack.size[0] and upper - lower == stack.size[1]
@@ -246,7 +244,7 @@ class Cutter:
                 raise EngineError(f"regions/combine.frag does not compile: {error}\n{fragment}") from error
             block = program["Rays"]
             assert isinstance(block, moderngl.UniformBlock)
-            block.binding = RAYS_BINDING
+            block.binding = BLOCKS["Rays"]
             self._forms[key] = program, self._ctx.vertex_array(program, []), switched_on(fragment)
         program, array, on = self._forms[key]
         self._programs.note(on)
@@ -271,8 +269,8 @@ class Cutter:
         """Bind the boundaries and tell a program where they are, if it asks."""
         if self._stack is None:
             return
-        self._stack.textures[0].use(BOUNDARIES_UNIT)
-        for name, value in {"region_boundaries": BOUNDARIES_UNIT, "region_layers": self.layers}.items():
+        self._stack.textures[0].use(REGIONS["region_boundaries"])
+        for name, value in {"region_boundaries": REGIONS["region_boundaries"], "region_layers": self.layers}.items():
             if name in program:
                 program[name] = value
 

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
+from ..bindings import CROSSINGS
 from ..errors import EngineError, GPUMemoryError
 from ..frame import Array
 from ..opengl import OpenGL
@@ -32,10 +33,6 @@ if TYPE_CHECKING:
     from ...query.surfaces import Surface
 
 __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
-
-UNITS = {name: 11 + k for k, name in enumerate(("layers_even", "layers_even_end", "layers_odd", "layers_odd_end"))}
-UNITS["tallies"] = 15
-"""Texture units, which the pipelines bind anew for each of their own programs."""
 
 MOST = 4095
 """Fragments of front or of back faces that a count holds."""
@@ -257,8 +254,8 @@ class SurfaceLayers:
             if layer > first:
                 before = self._stacks[(layer - 1) & 1]
                 for texture, name in zip(before.textures, ("before", "before_end"), strict=True):
-                    texture.use(UNITS["layers_even"] + (name == "before_end"))
-                    program[name] = UNITS["layers_even"] + (name == "before_end")
+                    texture.use(CROSSINGS["layers_even"] + (name == "before_end"))
+                    program[name] = CROSSINGS["layers_even"] + (name == "before_end")
                 program["layer"] = (layer - 1) >> 1
             framebuffer = self._stacks[layer & 1].framebuffers[layer >> 1]
             self._clear(framebuffer, rectangle, ((_NONE, _NONE, _NONE, 0.0), (_NONE,)))
@@ -297,7 +294,7 @@ class SurfaceLayers:
         """Bind the layers and tell a program of this module's kind where they are."""
         even, odd = self._stacks
         textures = [*even.textures, *odd.textures, (self._tallies or even).textures[0]]
-        for (name, unit), texture in zip(UNITS.items(), textures, strict=True):
+        for (name, unit), texture in zip(CROSSINGS.items(), textures, strict=True):
             texture.use(unit)
             if name in program:
                 program[name] = unit

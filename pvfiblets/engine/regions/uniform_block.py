@@ -19,8 +19,8 @@ import numpy.typing as npt
 
 from ...query.region import MAX_LEAVES, MAX_OPS
 from ...query.shapes import LABELS, SURFACE
+from ..bindings import BLOCKS, REGIONS
 from ..errors import GPUMemoryError
-from ..shaders import BLOCKS
 
 if TYPE_CHECKING:
     from ...query.fields import Field
@@ -28,13 +28,9 @@ if TYPE_CHECKING:
     from ...query.shapes import Shape
     from ..opengl import OpenGL
 
-__all__ = ["BLOCK_BYTES", "FIELDS_UNIT", "FieldTextures", "RegionBlock", "region_block", "region_features"]
+__all__ = ["BLOCK_BYTES", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
-REGIONS_BINDING = BLOCKS["Regions"]
-"""Binding of the uniform block ``Regions``."""
 
-FIELDS_UNIT = 27
-"""Texture unit of ``region_fields``."""
 
 UNDECIDED = -1
 """Kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it."""
@@ -184,7 +180,7 @@ class FieldTextures:
     def bind(self) -> None:
         """Bind the texture to its unit."""
         if self._texture is not None:
-            self._texture.use(FIELDS_UNIT)
+            self._texture.use(REGIONS["region_fields"])
 
     def release(self) -> None:
         """Give the texture back; twice is harmless."""
@@ -262,15 +258,15 @@ class RegionBlock:
             self._buffer.write(packed)
             self._packed = packed
         self.features = region_features(region)
-        self._buffer.bind_to_uniform_block(REGIONS_BINDING)
+        self._buffer.bind_to_uniform_block(BLOCKS["Regions"])
 
     def bind(self, program: Any = None) -> None:
         """Bind block and fields, and tell a program, if one is given, where the fields are."""
         if self._buffer is not None:
-            self._buffer.bind_to_uniform_block(REGIONS_BINDING)
+            self._buffer.bind_to_uniform_block(BLOCKS["Regions"])
         self._textures.bind()
         if program is not None and "REGION_FIELDS" in self.features:
-            self._gl.set_sampler(program, "region_fields", FIELDS_UNIT)
+            self._gl.set_sampler(program, "region_fields", REGIONS["region_fields"])
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""

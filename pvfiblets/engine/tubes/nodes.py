@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import TUBES
 from ..errors import EngineError
 from ..lattice import lattice, places
 from ..opengl import BufferTexture, OpenGL
@@ -20,10 +21,8 @@ from ..opengl import BufferTexture, OpenGL
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["UNITS", "Nodes"]
+__all__ = ["Nodes"]
 
-UNITS = {"node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19}
-"""Texture units of the samplers."""
 
 _LARGEST = float(np.finfo(np.float32).max)
 
@@ -120,7 +119,7 @@ class Nodes:
     def bind(self) -> None:
         """Bind all to their units."""
         for sampler, texture in self._textures.items():
-            texture.bind(UNITS[sampler])
+            texture.bind(TUBES[sampler])
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""

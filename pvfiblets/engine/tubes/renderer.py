@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from ...tubes.curves import MIDDLE
+from ..bindings import TUBES
 from ..errors import EngineError
 from ..gbuffer import GBuffer
 from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
 from ..view import View
 from .eye_inside import Inside
-from .nodes import UNITS, Nodes
+from .nodes import Nodes
 from .options import AUTO, SOLVERS, TubeStyle, check_choices
 from .proxy_geometry import Silhouettes
 from .uniform_blocks import CONSTANTS, TubeBlocks
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["TubeRenderer"]
 
-HITS_UNIT = 10
 
 
 class TubeRenderer(HitDrawable[TubeStyle]):
@@ -71,7 +71,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
     """
 
     STYLE = TubeStyle
-    SAMPLERS = UNITS
+    SAMPLERS = TUBES
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             listing=self._listing,
         )
         features = [*common, *([reads] if reads else [])]
-        hits = [("hits", target.hits, HITS_UNIT)]
+        hits = [("hits", target.hits, TUBES["hits"])]
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer
 

@@ -13,8 +13,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import BLOCKS, TUBE_PROBE
 from ..opengl import OpenGL
-from ..shaders import BLOCKS, Programs
+from ..shaders import Programs
 from .options import SOLVERS, check_choices
 from .uniform_blocks import CONSTANTS, SPLINES_BYTES
 
@@ -23,7 +24,6 @@ __all__ = ["SolverProbe"]
 Array = npt.NDArray[np.float64]
 
 _ROW = 1024
-_UNIT = 16
 
 
 class SolverProbe:
@@ -135,8 +135,8 @@ class SolverProbe:
         framebuffer = ctx.framebuffer([target])
         try:
             self._block.bind_to_uniform_block(BLOCKS["Splines"])
-            cases.bind(_UNIT)
-            self._gl.set_sampler(self._program, "cases", _UNIT)
+            cases.bind(TUBE_PROBE["cases"])
+            self._gl.set_sampler(self._program, "cases", TUBE_PROBE["cases"])
             self._program["row"], self._program["count"] = _ROW, count
             with self._gl.framebuffers_kept():
                 framebuffer.use()

@@ -6,10 +6,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..bindings import BLOCKS
 from ..clipping import BLOCK_BYTES, clip_planes_block
 from ..fiblets.line_tubes import TUBES_BYTES, tubes_block
 from ..frame import FRAME_BYTES, frame_block, local_frame
-from ..shaders import BLOCKS
 from ..view import Style, View
 
 __all__ = ["CONSTANTS", "SPLINES_BYTES", "TubeBlocks"]

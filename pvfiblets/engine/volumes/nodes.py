@@ -12,12 +12,12 @@ import numpy.typing as npt
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
 from ...volumes.options import RaycastOptions
 from ...volumes.volume import RaycastVolume
+from ..bindings import VOLUMES
 from ..errors import EngineError
 from ..opengl import BufferTexture, OpenGL
 
 __all__ = ["NodeList", "takes_means"]
 
-NODES_UNIT, MEANS_UNIT = 11, 15
 
 
 class NodeList:
@@ -104,7 +104,7 @@ class NodeList:
 
     def bind(self, program: moderngl.Program) -> None:
         """Bind all, and tell a program where they are."""
-        for name, unit in (("nodes", NODES_UNIT), ("means", MEANS_UNIT)):
+        for name, unit in ((name, VOLUMES[name]) for name in ("nodes", "means")):
             if name in self._lists:
                 self._lists[name][1].bind(unit)
             self._gl.set_sampler(program, name, unit)

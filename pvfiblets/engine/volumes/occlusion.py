@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import LEAF
-from ..effects.screen import FIRST_UNIT, ScreenEffect
+from ..bindings import VOLUME_OCCLUSION
+from ..effects.screen import ScreenEffect
 from ..errors import EngineError
 from .renderer import FEATURES_OF_FILTER, VolumeRenderer
 from .uniform_blocks import CONSTANTS
@@ -127,7 +128,7 @@ class RayOcclusionPass(ScreenEffect):
         read = {"surface_depth": buffer.depth, "surface_position": buffer.position}
 
         def bound(program: moderngl.Program, textures: Mapping[str, Any]) -> None:
-            for unit, (name, of_picture) in enumerate(textures.items(), start=FIRST_UNIT + 8):
+            for unit, (name, of_picture) in enumerate(textures.items(), start=VOLUME_OCCLUSION["first"]):
                 of_picture.use(unit)
                 program[name] = unit
 

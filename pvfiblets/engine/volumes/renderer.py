@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
+from ..bindings import BLOCKS, VOLUME_COARSE, VOLUMES
 from ..drawable import Drawable
 from ..gbuffer import GBuffer
-from ..shaders import BLOCKS
 from ..view import Style, View
 from .nodes import NodeList, takes_means
 from .ray_parts import RayCuts
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["VolumeRenderer", "VolumeStyle"]
 
-VOXELS_UNIT, OUTSIDE_UNIT, COARSE_UNIT = 10, 14, 16
 
 _OF_MODE = {
     "isosurface": ["VOLUME_SURFACE"],
@@ -146,7 +145,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
                 "coarse_normal": coarse.across,
                 "coarse_colour": coarse.colours,
             }
-            for unit, (name, texture) in enumerate(textures.items(), COARSE_UNIT):
+            for name, texture in textures.items():
+                unit = VOLUME_COARSE[name]
                 if name in program and texture is not None:
                     texture.use(unit)
                     program[name] = unit
@@ -176,7 +176,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     ) -> None:
         """Cast a ray for every pixel of a picture, or those that pass the test of depth."""
         program, array = self._programs.screen("volumes/cast.frag", features)
-        bound = (("voxels", self._voxels.texture, VOXELS_UNIT), ("outside", outside, OUTSIDE_UNIT))
+        bound = (("voxels", self._voxels.texture, VOLUMES["voxels"]), ("outside", outside, VOLUMES["outside"]))
         for name, texture, unit in bound:
             if name in program and texture is not None:
                 texture.use(unit)
@@ -199,8 +199,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         self._check_alive()
         self._cuts.bind(program)
         self._block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
-        self._voxels.texture.use(VOXELS_UNIT)
-        program["voxels"] = VOXELS_UNIT
+        self._voxels.texture.use(VOLUMES["voxels"])
+        program["voxels"] = VOLUMES["voxels"]
         self._nodes.bind(program)
 
     @staticmethod

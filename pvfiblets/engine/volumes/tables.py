@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ...volumes.options import LARGEST
 from ...volumes.steepness import KINKS, PARTS, allowed_bend, is_steep, largest_bend, typical_bend
+from ..bindings import VOLUMES
 
 if TYPE_CHECKING:
     from ...volumes.options import RaycastOptions
@@ -21,7 +22,6 @@ __all__ = ["Tables"]
 SIZE = 1024
 """Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
 
-_UNITS = {"colours": 12, "segments": 13, "media": 9}
 
 
 class Tables:
@@ -102,8 +102,8 @@ class Tables:
         """Bind all, and tell a program where they are."""
         for name, texture in self._textures.items():
             if name in program:
-                texture.use(_UNITS[name])
-                program[name] = _UNITS[name]
+                texture.use(VOLUMES[name])
+                program[name] = VOLUMES[name]
         for name, number in self._numbers.items():
             if name in program:
                 program[name] = number

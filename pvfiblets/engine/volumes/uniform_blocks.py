@@ -12,8 +12,8 @@ from ...volumes.options import MAX_VALUES, RaycastOptions
 from ...volumes.steepness import PARTS
 from ...volumes.transfer import ALLOWED, FINEST
 from ...volumes.volume import RaycastVolume
+from ..bindings import BLOCKS
 from ..errors import EngineError
-from ..shaders import BLOCKS
 from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "RayBlock"]

@@ -15,8 +15,8 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/nearest.glsl"
 #endif
 
-layout(r32ui, binding = 0) writeonly uniform uimage2D depth_image;
-layout(r32ui, binding = 1) writeonly uniform uimage2D owner_image;
+layout(r32ui, binding = {{ image_depth }}) writeonly uniform uimage2D depth_image;
+layout(r32ui, binding = {{ image_owner }}) writeonly uniform uimage2D owner_image;
 
 uniform uint argument_count;  // words
 

@@ -3,10 +3,10 @@
 
 #if FEATURE_CROSS_LINE && FEATURE_TUBES
 #include "frame/tangent.glsl"
-layout(r32ui, binding = 4) writeonly uniform uimage2D across_image;
+layout(r32ui, binding = {{ image_across }}) writeonly uniform uimage2D across_image;
 void store_relief(ivec2 pixel, vec3 normal) { imageStore(across_image, pixel, uvec4(packed_direction(normal))); }
 #elif FEATURE_CROSS_LINE
-layout(r16f, binding = 4) writeonly uniform image2D across_image;
+layout(r16f, binding = {{ image_across }}) writeonly uniform image2D across_image;
 void store_relief(ivec2 pixel, vec3 across) { imageStore(across_image, pixel, vec4(across.x)); }
 #else
 void store_relief(ivec2 pixel, vec3 relief) {}

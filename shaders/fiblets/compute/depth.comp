@@ -24,7 +24,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/nearest.glsl"
 uint owner;
 #else
-layout(r32ui, binding = 0) coherent uniform uimage2D depth_image;
+layout(r32ui, binding = {{ image_depth }}) coherent uniform uimage2D depth_image;
 bool won;
 #endif
 

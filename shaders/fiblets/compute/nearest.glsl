@@ -4,7 +4,7 @@
 //
 // A ninth storage buffer, but no shader has more than eight. Drivers with these atomics have the bindings.
 
-layout(std430, binding = 8) coherent buffer Nearest { uint64_t nearest[]; };  // row by row
+layout(std430, binding = {{ storage_nearest }}) coherent buffer Nearest { uint64_t nearest[]; };  // row by row
 
 uint pixel_index(ivec2 pixel) { return uint(pixel.y) * uint(viewport.x) + uint(pixel.x); }
 

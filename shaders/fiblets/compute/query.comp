@@ -22,8 +22,8 @@ layout(local_size_x = {{ group_size }}) in;
 #include "regions/classify.glsl"
 #include "frame/groups.glsl"
 
-layout(std430, binding = 5) buffer Answers { uint answers[]; };
-layout(std430, binding = 7) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size; an entry may have the bit
+layout(std430, binding = {{ storage_answers }}) buffer Answers { uint answers[]; };
+layout(std430, binding = {{ storage_lists }}) buffer Lists { uint counts[2]; uint lists[]; };  // the second one starts at batch_size; an entry may have the bit
 
 const uint LAST_ASKED = 0x80000000u;  // a chunk has fewer fiblets
 const uint CLASSIFY = 0u, SIFT = 1u, DECODE = 2u;

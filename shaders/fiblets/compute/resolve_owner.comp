@@ -18,10 +18,10 @@ layout(local_size_x = {{ group_size }}) in;
 
 uint bits_of(uint word) { return taken_again(word, part); }
 
-layout(r32ui, binding = 0) readonly uniform uimage2D depth_image;
-layout(r32ui, binding = 1) coherent uniform uimage2D owner_image;
-layout(rg32ui, binding = 2) writeonly uniform uimage2D ids_image;
-layout(rg32f, binding = 3) writeonly uniform image2D position_image;
+layout(r32ui, binding = {{ image_depth }}) readonly uniform uimage2D depth_image;
+layout(r32ui, binding = {{ image_owner }}) coherent uniform uimage2D owner_image;
+layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;
+layout(rg32f, binding = {{ image_position }}) writeonly uniform image2D position_image;
 #include "fiblets/compute/cross_line.glsl"
 
 uint owner;

@@ -13,8 +13,8 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/nearest.glsl"
 
-layout(r32ui, binding = 0) writeonly uniform uimage2D depth_image;
-layout(r32ui, binding = 1) writeonly uniform uimage2D owner_image;
+layout(r32ui, binding = {{ image_depth }}) writeonly uniform uimage2D depth_image;
+layout(r32ui, binding = {{ image_owner }}) writeonly uniform uimage2D owner_image;
 
 uniform uint marking;
 

@@ -13,7 +13,7 @@
 // Lists: of each class, as many words as there are groups of 32, a chunk's at its own first. Arguments: of each round of
 // drawing, chunk and class, four words: work groups along x and y, 1, length of the list.
 
-layout(std430, binding = 5) buffer Marks { uint marks[]; };
+layout(std430, binding = {{ storage_visibility_bits }}) buffer Marks { uint marks[]; };
 
 const uint WORDS = {{ mark_words }}u, CLASSES = 4u, GUESSED = 4u, REST = 8u, CANDIDATES = 12u, SEEN = 13u, TIED = 14u, KEPT = TIED;
 

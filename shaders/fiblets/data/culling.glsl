@@ -24,14 +24,14 @@ uint anchor_low_word(uint index) { return texelFetch(anchor_low_texels, int(inde
 #endif
 
 #else
-layout(std430, binding = 0) readonly buffer Anchors { uvec2 anchors[]; };
-layout(std430, binding = 4) readonly buffer Pages { uvec4 pages[]; };
-layout(std430, binding = 3) readonly buffer Bounds { uint bounds[]; };
+layout(std430, binding = {{ storage_anchors }}) readonly buffer Anchors { uvec2 anchors[]; };
+layout(std430, binding = {{ storage_pages }}) readonly buffer Pages { uvec4 pages[]; };
+layout(std430, binding = {{ storage_bounds }}) readonly buffer Bounds { uint bounds[]; };
 uvec2 anchor_words(uint f) { return anchors[f]; }
 uvec4 page_words(uint row) { return pages[row]; }
 uint bound_word(uint index) { return bounds[index]; }
 #if FEATURE_ANCHORS_LOW
-layout(std430, binding = 6) readonly buffer AnchorsLow { uint anchors_low[]; };
+layout(std430, binding = {{ storage_anchors_low }}) readonly buffer AnchorsLow { uint anchors_low[]; };
 uint anchor_low_word(uint index) { return anchors_low[index]; }
 #endif
 #endif

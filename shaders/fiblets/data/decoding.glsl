@@ -8,8 +8,8 @@ uint decoding_word(uint index) { return texelFetch(decoding_texels, int(index)).
 uint code_word(uint index) { return texelFetch(code_texels, int(index)).x; }
 
 #else
-layout(std430, binding = 1) readonly buffer Decoding { uint decoding[]; };
-layout(std430, binding = 2) readonly buffer Codes { uint codes[]; };
+layout(std430, binding = {{ storage_decoding }}) readonly buffer Decoding { uint decoding[]; };
+layout(std430, binding = {{ storage_codes }}) readonly buffer Codes { uint codes[]; };
 uint decoding_word(uint index) { return decoding[index]; }
 uint code_word(uint index) { return codes[index]; }
 #endif

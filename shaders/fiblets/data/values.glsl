@@ -6,7 +6,7 @@
 uniform usamplerBuffer value_texels;  // r32ui
 uint value_word(uint index) { return texelFetch(value_texels, int(index)).x; }
 #else
-layout(std430, binding = 7) readonly buffer Values { uint values[]; };
+layout(std430, binding = {{ storage_values }}) readonly buffer Values { uint values[]; };
 uint value_word(uint index) { return values[index]; }
 #endif
 #elif FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
@@ -14,7 +14,7 @@ uint value_word(uint index) { return values[index]; }
 uniform samplerBuffer start_texels;   // r32f
 float start_value(uint f) { return texelFetch(start_texels, int(f)).x; }
 #else
-layout(std430, binding = 7) readonly buffer Starts { float starts[]; };
+layout(std430, binding = {{ storage_values }}) readonly buffer Starts { float starts[]; };
 float start_value(uint f) { return starts[f]; }
 #endif
 #endif

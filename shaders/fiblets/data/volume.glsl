@@ -17,7 +17,7 @@ layout(std140, binding = 6) uniform Sampling {
 #if FEATURE_TEXTURE_DATA
 uniform sampler3D sampled_volume;  // pvfiblets/engine/fiblets/data_textures.py says where
 #else
-layout(binding = 28) uniform sampler3D sampled_volume;
+layout(binding = {{ unit_sampled_volume }}) uniform sampler3D sampled_volume;
 #endif
 
 const float LIGHT = 1e-4;

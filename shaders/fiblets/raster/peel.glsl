@@ -16,7 +16,7 @@
 #if FEATURE_TEXTURE_DATA
 uniform usampler2DArray peeled_depth;
 #else
-layout(binding = 29) uniform usampler2DArray peeled_depth;
+layout(binding = {{ unit_peeled_depth }}) uniform usampler2DArray peeled_depth;
 #endif
 uniform int peeled_layers;  // so far
 #if FEATURE_WIDE_LINES
@@ -24,8 +24,8 @@ uniform int peeled_layers;  // so far
 uniform usampler2DArray peeled_ids;
 uniform sampler2DArray peeled_position;
 #else
-layout(binding = 30) uniform usampler2DArray peeled_ids;
-layout(binding = 31) uniform sampler2DArray peeled_position;
+layout(binding = {{ unit_peeled_ids }}) uniform usampler2DArray peeled_ids;
+layout(binding = {{ unit_peeled_position }}) uniform sampler2DArray peeled_position;
 #endif
 #endif
 

@@ -43,6 +43,7 @@ import moderngl
 import numpy as np
 
 from ....codec.layout import MAX_POINTS
+from ...bindings import BLOCKS, IMAGES, STORAGE
 from ...errors import EngineError
 from ...opengl import OpenGL
 from ...passes import GROUP_SIZE, dispatch, is_software
@@ -61,7 +62,6 @@ ROUNDS = 6
 ARGUMENT_BYTES = 16
 SEEN, GUESSED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
 
-NEAREST_BINDING = 8
 
 SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
@@ -141,10 +141,10 @@ class ComputePipeline:
         if self._software:
             self._shares = _shares(1.0 if request.tubes else request.line_width, request.segment)
         target, occlusion = request.target, request.occlusion
-        images = (target.depth, target.owner, target.ids, target.position, target.across)
-        for index, texture in enumerate(image for image in images if image is not None):
-            texture.bind_to_image(index, read=True, write=True)
-        self._own["visibility_bits"].bind_to_storage_buffer(5)
+        for name, index in IMAGES.items():
+            if (texture := getattr(target, name)) is not None:
+                texture.bind_to_image(index, read=True, write=True)
+        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         passes = request.passes
         if self._int64:
             self._bind_nearest(8 * target.size[0] * target.size[1])
@@ -203,7 +203,7 @@ class ComputePipeline:
                 held = self._own["nearest"] = self._ctx.buffer(reserve=size)
             except moderngl.Error as error:
                 raise EngineError(f"no GPU memory for {size} bytes of depths and owners") from error
-        held.bind_to_storage_buffer(NEAREST_BINDING)
+        held.bind_to_storage_buffer(STORAGE["nearest"])
 
     def _split(self, request: DrawRequest, *, marking: bool) -> None:
         """Make depth and owners of the words, if there are any; mark owners as seen, and to be drawn."""
@@ -247,7 +247,7 @@ class ComputePipeline:
         self._set(plan, drawing=number, refined=int(refined))
         for index, chunk in enumerate(chunks):
             self._set(plan, argument_base=self._arguments(number, index))
-            chunk.buffers["chunk"].bind_to_uniform_block(2)
+            chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
             dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._barrier()
         arguments = self._program("arguments", ())
@@ -326,7 +326,7 @@ def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     wanted = {"GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"}
     if ctx.version_code < EXTENDED or not wanted <= set(ctx.extensions):
         return False
-    return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > NEAREST_BINDING
+    return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > STORAGE["nearest"]
 
 
 def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:

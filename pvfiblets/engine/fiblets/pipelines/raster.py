@@ -29,7 +29,7 @@ from typing import TypeVar
 
 import moderngl
 
-from ...culling.occlusion import OCCLUSION_UNIT
+from ...bindings import BETWEEN_ROUNDS, BLOCKS, FIBLET_ROUNDS
 from ...depth_texture import depth_texture
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
@@ -40,8 +40,6 @@ from .draw_request import DrawRequest
 
 __all__ = ["RasterPipeline", "RasterTarget", "SeenTexture"]
 
-FIRST_ROUND_UNIT, SEEN_UNIT, OWNER_UNIT, DEPTH_UNIT = (OCCLUSION_UNIT + k for k in (1, 2, 3, 4))
-"""Texture units, between that of culling and those of data."""
 
 
 Thing = TypeVar("Thing", moderngl.Texture, moderngl.Framebuffer)
@@ -176,8 +174,8 @@ class SeenTexture:
         if self._array is None:
             self._array = self._ctx.vertex_array(program, [])
         width, height = target.size
-        target.owner.use(OWNER_UNIT)
-        program["owner"] = OWNER_UNIT
+        target.owner.use(FIBLET_ROUNDS["owner"])
+        program["owner"] = FIBLET_ROUNDS["owner"]
         program["width"], program["seen_bits"], program["seen_size"] = width, self.bits, self.size
         self._framebuffer.use()
         self._ctx.enable_only(moderngl.NOTHING)
@@ -300,7 +298,7 @@ class RasterPipeline(abc.ABC):
         ctx.enable_only(moderngl.DEPTH_TEST)
         ctx.depth_func = "<"
         for index, chunk in enumerate(request.chunks):
-            chunk.buffers["chunk"].bind_to_uniform_block(2)
+            chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
             request.kept.bind(program, index)
             self._draw(array, program, chunk, request)
 
@@ -327,21 +325,21 @@ class RasterPipeline(abc.ABC):
         if request.peel is not None:
             request.peel.bind(program)
         if self._seen is not None and "seen" in program:
-            self._seen.texture.use(SEEN_UNIT)
-            program["seen"], program["seen_bits"] = SEEN_UNIT, self._seen.bits
+            self._seen.texture.use(FIBLET_ROUNDS["seen"])
+            program["seen"], program["seen_bits"] = FIBLET_ROUNDS["seen"], self._seen.bits
             program["second_round"] = "SECOND_ROUND" in features
         if self._target is not None and self._target.kept is not None and "first_round" in program:
-            self._target.kept.use(FIRST_ROUND_UNIT)
-            program["first_round"] = FIRST_ROUND_UNIT
+            self._target.kept.use(FIBLET_ROUNDS["first_round"])
+            program["first_round"] = FIBLET_ROUNDS["first_round"]
 
     def _keep_first_round(self, target: RasterTarget) -> None:
         """Keep depth and owner after the first round, and make the depth that the second begins with."""
         ctx = self._ctx
         program, array = self._programs.screen("fiblets/raster/between.frag")
         for name, texture, unit in (
-            ("depth", target.depth, DEPTH_UNIT),
-            ("depth_key", target.target.depth, SEEN_UNIT),
-            ("owner", target.target.owner, OWNER_UNIT),
+            ("depth", target.depth, BETWEEN_ROUNDS["depth"]),
+            ("depth_key", target.target.depth, BETWEEN_ROUNDS["depth_key"]),
+            ("owner", target.target.owner, BETWEEN_ROUNDS["owner"]),
         ):
             texture.use(unit)
             program[name] = unit
