@@ -5,8 +5,8 @@ use at once: two names for one number among them are an error when this module i
 with the same bindings may use the same numbers. Sources take the numbers as constants, ``{{ storage_anchors }}``
 (:data:`CONSTANTS`).
 
-Texture units begin at :data:`FIRST_UNIT`: VTK hands out its own from 0 upwards. OpenGL 3.3 promises 48 units, 4.3 eight
-storage buffers and eight images.
+The mappers' resolve has no fixed units: it asks VTK for free ones. Texture units begin at :data:`FIRST_UNIT`: VTK
+hands out its own from 0 upwards. OpenGL 3.3 promises 48 units, 4.3 eight storage buffers and eight images.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 __all__ = [
+    "ANSWER_STORAGE",
     "BETWEEN_ROUNDS",
     "BLOCKS",
     "CONSTANTS",
+    "COUNT_STORAGE",
     "CROSSINGS",
     "CULLING",
     "FIBLET_DATA",
@@ -26,9 +28,11 @@ __all__ = [
     "HIT_KEYS",
     "IMAGES",
     "ITEMS",
+    "ITEMS_SHOWN",
     "ITEM_STORAGE",
     "LAYER_COPY",
     "MASKS",
+    "MEASURE_STORAGE",
     "PEELING",
     "REGIONS",
     "SAMPLED",
@@ -151,6 +155,7 @@ HALOS = Scope(
     },
 )  # fmt: skip
 together(HALOS, ITEMS, ITEMS_SHOWN)
+together(Scope("halos' vertices", {k: v for k, v in HALOS.items() if k.endswith("_texels")}), CULLING, ITEMS)
 
 # Volumes.
 VOLUMES = Scope(
@@ -161,8 +166,11 @@ VOLUME_COARSE = Scope(
     "coarse rays",
     {"coarse_depth": 16, "coarse_owner": 17, "coarse_position": 18, "coarse_normal": 19, "coarse_colour": 20},
 )
-VOLUME_OCCLUSION = Scope("occlusion by rays", {"first": 17})  # and those that follow
+VOLUME_OCCLUSION = Scope(
+    "occlusion by rays", {"surface_depth": 17, "surface_position": 18, "surface_normal": 19, "rough": 20}
+)
 together(VOLUMES, VOLUME_COARSE, REGIONS)
+together(VOLUMES, VOLUME_OCCLUSION, REGIONS)
 
 STORAGE = _storage(
     "fiblets' records", anchors=0, decoding=1, codes=2, bounds=3, pages=4, visibility_bits=5, anchors_low=6, values=7,
@@ -170,6 +178,8 @@ STORAGE = _storage(
 )  # fmt: skip
 """Storage buffers of a chunk and of a picture. Passes that need no bits or no values bind their own buffers there."""
 
+MEASURE_STORAGE = _storage("measures of fiblets", measures=STORAGE["visibility_bits"])
+COUNT_STORAGE = _storage("counts of fiblets", fiblet_counts=STORAGE["values"])
 ANSWER_STORAGE = _storage("answers about fiblets", answers=STORAGE["visibility_bits"], lists=STORAGE["values"])
 ITEM_STORAGE = _storage("items", seen=0, listed=1, counts=2, commands=3)
 
@@ -189,7 +199,10 @@ BLOCKS = Scope(
 
 CONSTANTS = {
     **{f"storage_{name}": number for name, number in STORAGE.items()},
-    **{f"storage_{name}": number for name, number in ANSWER_STORAGE.items()},
+    **{
+        f"storage_{name}": number
+        for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE}.items()
+    },
     **{f"items_{name}": number for name, number in ITEM_STORAGE.items()},
     **{f"image_{name}": number for name, number in IMAGES.items()},
     **{f"unit_{name}": number for name, number in {**PEELING, **SAMPLED}.items()},

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..bindings import BLOCKS, STORAGE
+from ..bindings import BLOCKS, COUNT_STORAGE, STORAGE
 from ..gbuffer import EMPTY, GBuffer
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, nowhere
@@ -83,7 +83,7 @@ class Census:
         for index, chunk in enumerate(chunks):
             chunk.bind_storage()
             kept.bind(program, index)
-            counts.bind_to_storage_buffer(STORAGE["values"])  # in the place of per-point values
+            counts.bind_to_storage_buffer(COUNT_STORAGE["fiblet_counts"])  # in the place of per-point values
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
         in_view, drawn = np.frombuffer(counts.read(8), "<u4").tolist()

@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import BLOCKS, STORAGE
+from ..bindings import BLOCKS, MEASURE_STORAGE
 from ..opengl import OpenGL
 from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
@@ -83,7 +83,7 @@ class ComputeMeasurer:
         chunk.bind_storage()
         rows = np.empty((chunk.n_fiblets, ROW), "<f4")
         with _batches(self._ctx, chunk.n_fiblets) as (scratch, starts):
-            scratch.bind_to_storage_buffer(STORAGE["visibility_bits"])  # in their place
+            scratch.bind_to_storage_buffer(MEASURE_STORAGE["measures"])
             for first in starts:
                 size = min(BATCH, chunk.n_fiblets - first)
                 program["batch_first"], program["batch_size"] = first, size

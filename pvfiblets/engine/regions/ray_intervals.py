@@ -42,9 +42,6 @@ if TYPE_CHECKING:
 __all__ = ["Cutter"]
 
 
-"""Binding of the uniform block ``Rays``, of this module's own programs only: no other of `BLOCKS`, which stay
-bound meanwhile."""
-
 _SCISSOR_TEST = 0x0C11
 
 _FORMS = 8

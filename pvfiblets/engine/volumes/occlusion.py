@@ -128,9 +128,9 @@ class RayOcclusionPass(ScreenEffect):
         read = {"surface_depth": buffer.depth, "surface_position": buffer.position}
 
         def bound(program: moderngl.Program, textures: Mapping[str, Any]) -> None:
-            for unit, (name, of_picture) in enumerate(textures.items(), start=VOLUME_OCCLUSION["first"]):
-                of_picture.use(unit)
-                program[name] = unit
+            for name, of_picture in textures.items():
+                of_picture.use(VOLUME_OCCLUSION[name])
+                program[name] = VOLUME_OCCLUSION[name]
 
         def mean() -> None:
             program, array = self._programs.screen("volumes/occlusion_mean.frag")

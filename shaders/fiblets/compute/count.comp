@@ -10,7 +10,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
-layout(std430, binding = {{ storage_values }}) buffer Counts { uint in_view; uint drawn; };
+layout(std430, binding = {{ storage_fiblet_counts }}) buffer Counts { uint in_view; uint drawn; };
 
 uniform bool marked;  // whether there are marks
 

@@ -6,7 +6,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/attributes/measure.glsl"
 #include "frame/groups.glsl"
 
-layout(std430, binding = {{ storage_visibility_bits }}) writeonly buffer Measures { Measure measures[]; };
+layout(std430, binding = {{ storage_measures }}) writeonly buffer Measures { Measure measures[]; };
 
 uniform uint batch_first;
 uniform uint batch_size;
