@@ -85,7 +85,7 @@ def _run(options: Any, named: str | None) -> int:
 
     kept: list[Path] = []
 
-    def ready(gate: server.Gate) -> None:
+    def ready(gate: server.FrontServer) -> None:
         # What is written into a file or to another program others may read, some day.
         if options.token is None or sys.stdout.isatty():
             print(f"Open {gate.url}", flush=True)

@@ -1,4 +1,4 @@
-"""Who may ask the gate, and for what. Plain functions of what came in, so that they are tested without a network."""
+"""Who may ask the front server, and for what: plain functions of requests, tested without a network."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The application of one session: a scene, its page, and what the page's controls do.
 
-What browsers send has passed :mod:`pvfiblets.web.wire` and is checked again by the scene, for what it means. An error
-becomes a sentence on the page; the scene is then as it was.
+Calls of browsers have passed :mod:`pvfiblets.web.rpc_allowlist`; the scene checks their meaning. An error becomes a
+sentence on the page, and the scene stays as it was.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.picks import SelectionActions
+from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
-from pvfiblets.web.sliding import SlideActions
+from pvfiblets.web.sliders import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
-from pvfiblets.web.wire import EXPECTED, Doors, sentence
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -66,7 +66,7 @@ class Explorer(TrameApp):
         self.page.shared = options.shared
         self.page.upload_limit = options.upload
         self.state.trame__title = "pvfiblets"
-        self.doors = Doors(WRITABLE, self._is_trigger, self.complain)
+        self.doors = AllowedCalls(WRITABLE, self._is_trigger, self.complain)
         self.stream = PictureStream(
             self.plotter,
             layout.VIEW,

@@ -1,7 +1,7 @@
 """Streamlines as files: into the served folder, or for the browser to fetch.
 
 What is only fetched lies in a folder of the session's own until newer exports or the session's end take it away. Names
-that browsers fetch by are random and known to this session alone; the gate's checks stand before them.
+that browsers fetch by are random and known to this session alone; the front server's checks stand before them.
 """
 
 from __future__ import annotations

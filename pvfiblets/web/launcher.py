@@ -2,7 +2,7 @@
 
 A session lives while a browser is connected, and for `timeout` seconds after the last one has gone: a reload or a lost
 connection finds it as it was. Its process ends with it, and what it held on the GPU goes back. The process ends by
-itself when its standard input closes, so that none is left behind when the gate dies.
+itself when its standard input closes, so that none is left behind when the front server dies.
 """
 
 from __future__ import annotations

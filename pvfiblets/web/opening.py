@@ -20,7 +20,7 @@ from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
-from pvfiblets.web.wire import EXPECTED, sentence
+from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
 
 if TYPE_CHECKING:
     from pvfiblets.web.document import Source

@@ -1,4 +1,4 @@
-"""The gate's own pages: asking for the token, opening, full, ended, refused. Only the one that opens needs a script."""
+"""The front server's own pages: token, opening, full, ended, refused. Only the opening page needs a script."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Temporary files of sessions: where they are, and how they go when a session did not take them away itself.
 
-The gate has a folder, and each session's process a folder in it, which is the temporary folder of all that runs there.
-A process that is killed cleans nothing up, so the gate does when it has ended; what a gate left that was killed itself,
-the next one takes away. What a session writes elsewhere until it is whole, it notes before.
+The front server has a folder, and each session's process a folder in it, the temporary folder of all that runs there.
+A killed process cleans nothing up, so the front server does; what a killed front server left, the next one removes.
+A session notes beforehand what it writes elsewhere until it is whole.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _LOCK, _NOTES = "lock", "notes"
 
 
 class Scratch:
-    """The gate's folder: the sessions' folders are in it."""
+    """The front server's folder: the sessions' folders are in it."""
 
     def __init__(self) -> None:
         remove_abandoned()

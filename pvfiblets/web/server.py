@@ -1,4 +1,4 @@
-"""The gate: the one public port of ``pvfiblets serve``.
+"""The front server: the one public port of ``pvfiblets serve``.
 
 Every request passes the same checks in the same order: host, path, method, origin, token. What is left is passed on to
 the process of the browser's session, HTTP and WebSocket alike. The browser's cookies, and nothing in addresses, say
@@ -37,7 +37,7 @@ DOWNLOAD = "/download/"
 LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
-class Gate:
+class FrontServer:
     """The public server.
 
     Parameters
@@ -346,9 +346,9 @@ class Gate:
         return await self._relay.connect(request, session, lambda reason: self._log(request, reason))
 
 
-async def serve(options: Options, ready: Callable[[Gate], None]) -> None:
+async def serve(options: Options, ready: Callable[[FrontServer], None]) -> None:
     """Serve until cancelled; `ready` is called once the port is open."""
-    gate = Gate(options)
+    gate = FrontServer(options)
     try:
         await gate.start()
         ready(gate)

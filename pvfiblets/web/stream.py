@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvfiblets.web.fingers import Fingers
-from pvfiblets.web.wire import MOST_PIXELS
+from pvfiblets.web.rpc_allowlist import MOST_PIXELS
+from pvfiblets.web.touch import Fingers
 
 logger = logging.getLogger("pvfiblets.web")
 

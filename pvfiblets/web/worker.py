@@ -1,7 +1,7 @@
-"""The process of one session: ``python -m pvfiblets.web.worker``, started by the gate and by nothing else.
+"""The process of one session: ``python -m pvfiblets.web.worker``, started by the front server and by nothing else.
 
 It reads its settings from standard input, says on standard output where it listens, and ends when standard input
-closes. Every request must carry the gate's key, so that nobody else on this machine can speak to it.
+closes. Every request must carry the front server's key, so that nobody else on this machine can speak to it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LEAST = 256 << 20  # bytes that must be left for pictures and files
 def main() -> int:
     """Run a session until its gate has gone."""
     told = json.loads(sys.stdin.readline())
-    # What others print goes to standard error: standard output is for the gate.
+    # What others print goes to standard error: standard output is for the front server.
     speaker = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
     sys.argv = sys.argv[:1]  # trame reads the command line too
@@ -52,11 +52,11 @@ def main() -> int:
 
 def _run(told: dict[str, Any], speaker: TextIO) -> None:
     from pvfiblets.web.options import Options
-    from pvfiblets.web.wire import guard_messages
+    from pvfiblets.web.rpc_allowlist import guard_messages
 
     options = Options.from_dict(told["options"])
     folder = Path(told["folder"])
-    tempfile.tempdir = str(folder)  # of all that runs here: the gate takes it away where this process cannot
+    tempfile.tempdir = str(folder)  # of all that runs here: the front server takes it away where this process cannot
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # VTK need not try X and complain
     loop = asyncio.new_event_loop()
@@ -134,7 +134,7 @@ def make_app(options: Options, folder: Path) -> Any:
 
 
 def key_check(key: str) -> Callable[..., Awaitable[Any]]:
-    """Return a middleware of aiohttp that lets in only requests with the gate's key."""
+    """Return a middleware of aiohttp that lets in only requests with the front server's key."""
     from aiohttp import web
 
     @web.middleware

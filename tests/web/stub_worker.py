@@ -1,4 +1,4 @@
-"""A session's process that draws nothing: it answers as a worker does, so that the gate is tested without OpenGL."""
+"""A session's process that draws nothing and answers as a worker does: the front server is tested without OpenGL."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Many who come at once and finish nothing: the gate answers others meanwhile, and its log stays short."""
+"""Many who come at once and finish nothing: the front server answers others meanwhile, and its log stays short."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import pytest
 
 from pvfiblets.web.access import Access, RefusedError
 from pvfiblets.web.options import Options
-from pvfiblets.web.wire import MalformedError, check_call, guard_messages
+from pvfiblets.web.rpc_allowlist import MalformedError, check_call, guard_messages
 from tests.web.visitors import TOKEN, Browser, gate, message, raw, run
 
 HOST = "Host: 127.0.0.1\r\nConnection: close\r\n"

@@ -20,7 +20,7 @@ from pvfiblets.cli_serve import memory_of
 from pvfiblets.web import endings
 from pvfiblets.web.launcher import WORKER
 from pvfiblets.web.options import SMALLEST_MEMORY, Options, chosen_memory
-from pvfiblets.web.server import Gate
+from pvfiblets.web.server import FrontServer
 from tests.web import bombs
 from tests.web.desk import Desk
 from tests.web.test_server import Browser, gate, run
@@ -185,7 +185,7 @@ async def _ending(server, browser):
 
 def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
     async def test():
-        server = Gate(Options(port=0, root=str(tmp_path), memory=300 << 20), WORKER)
+        server = FrontServer(Options(port=0, root=str(tmp_path), memory=300 << 20), WORKER)
         try:
             await server.start()
             async with Browser(server) as browser:
@@ -202,7 +202,7 @@ def test_a_file_with_which_vtk_ends_the_process_is_named(tmp_path):
 
     async def test():
         options = Options(port=0, root=str(tmp_path), mesh=[str(tmp_path / "points.gltf")], memory=768 << 20)
-        server = Gate(options, WORKER)
+        server = FrontServer(options, WORKER)
         try:
             await server.start()
             async with Browser(server) as browser:

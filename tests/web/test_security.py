@@ -10,7 +10,7 @@ import pytest
 from pvfiblets.web.access import LARGEST_MESSAGE, Access, RefusedError, check_message
 from pvfiblets.web.confined import Confined, ConfinedError
 from pvfiblets.web.options import Options, is_loopback
-from pvfiblets.web.wire import Doors, MalformedError, plain, pointer_event, view_size
+from pvfiblets.web.rpc_allowlist import AllowedCalls, MalformedError, plain, pointer_event, view_size
 
 TOKEN = "correct-horse-battery"
 
@@ -241,7 +241,7 @@ class Table:
         known = ("trame.state.update", "trame.state.get", "trame.trigger", "trame.lifecycle.update", "trame.rca.event",
                  "trame.rca.size", "trame.force.push", "unknown.method")  # fmt: skip
         self.functions = {name: (self, self.make(name)) for name in known}
-        Doors({"tab": str, "dark": bool, "share": float}, {"go"}.__contains__, self.complaints.append).guard(
+        AllowedCalls({"tab": str, "dark": bool, "share": float}, {"go"}.__contains__, self.complaints.append).guard(
             self.functions
         )
 

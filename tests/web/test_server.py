@@ -1,4 +1,4 @@
-"""The gate, by real HTTP and WebSocket clients; the sessions behind it draw nothing (stub_worker.py)."""
+"""The front server, by real HTTP and WebSocket clients; the sessions behind it draw nothing (stub_worker.py)."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ import sys
 from pvfiblets import cli
 from pvfiblets.web import launcher, server
 
-server.Gate.__init__.__defaults__ = (tuple(sys.argv[1:3]), *server.Gate.__init__.__defaults__[1:])
+server.FrontServer.__init__.__defaults__ = (tuple(sys.argv[1:3]), *server.FrontServer.__init__.__defaults__[1:])
 sys.exit(cli.main(["serve", "--port", "0", *sys.argv[3:]]))
 """
 

@@ -1,4 +1,4 @@
-"""Uploads through the gate, by real sockets, to a session's real process."""
+"""Uploads through the front server, by real sockets, to a session's real process."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pvfiblets import memory
 from pvfiblets.web.launcher import WORKER
 from pvfiblets.web.options import Options
 from pvfiblets.web.scratch import Notes, remove
-from pvfiblets.web.server import Gate
+from pvfiblets.web.server import FrontServer
 from tests.web import bombs
 from tests.web.visitors import Browser
 
@@ -65,7 +65,7 @@ def test_uploads_by_a_real_session(tmp_path):
         return sorted(path.name for path in root.rglob("*"))
 
     async def test():
-        server = Gate(Options(port=0, root=str(root), memory=768 << 20), WORKER)
+        server = FrontServer(Options(port=0, root=str(root), memory=768 << 20), WORKER)
         try:
             await server.start()
             async with Browser(server) as browser:

@@ -10,7 +10,7 @@ from pathlib import Path
 import aiohttp
 
 from pvfiblets.web.options import Options
-from pvfiblets.web.server import Gate
+from pvfiblets.web.server import FrontServer
 
 TOKEN = "correct-horse-battery"
 STUB = (sys.executable, str(Path(__file__).with_name("stub_worker.py")))
@@ -18,7 +18,7 @@ STUB = (sys.executable, str(Path(__file__).with_name("stub_worker.py")))
 
 @contextlib.asynccontextmanager
 async def gate(tmp_path, patience=30.0, **options):
-    found = Gate(Options(port=0, root=str(tmp_path), **{"token": TOKEN} | options), STUB, patience)
+    found = FrontServer(Options(port=0, root=str(tmp_path), **{"token": TOKEN} | options), STUB, patience)
     try:
         await found.start()
         yield found

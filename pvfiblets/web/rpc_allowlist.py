@@ -176,7 +176,7 @@ def guard_messages(handler: Any) -> None:
     handler.onMessage, handler.onCompleteMessage = on_message, on_complete
 
 
-class Doors:
+class AllowedCalls:
     """Stands between wslink's messages and what they call.
 
     Parameters
@@ -213,7 +213,7 @@ class Doors:
             for name, check in checks.items()
             if (found := functions.get(name)) is not None
         }
-        # Said by the client when it leaves; the gate decides when a session ends.
+        # Said by the client when it leaves; the front server decides when a session ends.
         functions.clear()
         functions.update(kept)
         functions["application.exit.later"] = (None, lambda *_: None)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web.fingers import Fingers
+from pvfiblets.web.touch import Fingers
 
 CENTRE = np.array([100.0, 80.0])  # of the plotter's 200 by 160 pixels
 

@@ -6,8 +6,8 @@ import asyncio
 
 import pytest
 
-from pvfiblets.web import sliding
-from pvfiblets.web.sliding import SlideActions
+from pvfiblets.web import sliders
+from pvfiblets.web.sliders import SlideActions
 from tests.web.desk import Desk
 
 
@@ -28,7 +28,7 @@ def drag(desk, *moves, release=True):
         if release:
             desk.sliders.release()
         else:
-            await asyncio.sleep(2.0 * sliding.SETTLED)
+            await asyncio.sleep(2.0 * sliders.SETTLED)
 
     before = desk.refreshed
     asyncio.run(test())
@@ -49,7 +49,7 @@ def test_every_value_acts_and_the_page_is_brought_in_step_once(desk, scene):
 
 
 def test_a_slider_that_rests_without_being_let_go_is_shown_as_it_is(desk, scene, monkeypatch):
-    monkeypatch.setattr(sliding, "SETTLED", 0.05)
+    monkeypatch.setattr(sliders, "SETTLED", 0.05)
     assert drag(desk, ("property", scene.layers[0].id, "line_width", 3.0), release=False) == 1
 
 
