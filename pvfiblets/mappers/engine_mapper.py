@@ -30,6 +30,7 @@ from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, world_planes
 from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms, styled
+from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
@@ -279,6 +280,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_extra_uniforms(slot, self._extras, program, draw)
+        if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
+            return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
