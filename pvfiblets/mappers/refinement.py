@@ -5,8 +5,9 @@ Each sample is a picture of its own, whose camera's window is shifted by a part 
 on the picture and before what lies over it. A frame is one of three:
 
 - *plain*: of the camera as it is. The first after each change, and all while the camera moves.
-- *sample*: of the shifted camera, added to those before. Only frames that were asked for (`Refinement.due`) are.
-- *mean*: of the camera as it is, in whose place the mean of the samples is shown: others of a scene that is unchanged.
+- *sample*: of the shifted camera, added to those before. The first is asked for (`Refinement.due`); after it any frame
+  is one, until there are enough.
+- *mean*: of the camera as it is, in whose place the mean of the samples is shown.
 
 The last frame is of the camera as it is: the last sample, or a frame of the mean after it. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
@@ -24,7 +25,7 @@ from typing import Any
 from pvfiblets.engine.effects.accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
-from pvfiblets.mappers.shifted_cameras import note_depths, shift
+from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, shift
 from pvfiblets.mappers.windows import Slot
 
 __all__ = ["SHOWN_FROM", "Refinement"]
@@ -57,16 +58,16 @@ class Refinement:
     Attributes
     ----------
     due : bool
-        Whether the next frame is to be a sample, if one is left and nothing has changed.
-    seen : bool
-        Whether somebody looks at each frame, not at the last only.
+        Whether the next frame is to be the first sample, if nothing has changed.
+    seen : callable
+        Says whether somebody looks at each frame, not at the last only.
     """
 
     def __init__(self, samples: int, seconds: float | None = None) -> None:
         self.positions = sample_positions(samples)
         self.seconds = seconds
         self.due = False
-        self.seen = False
+        self.seen: Callable[[], bool] = lambda: False
         self._frame = _Frame.PLAIN
         self._name = _WHOLE
         self._state: Hashable = None
@@ -115,9 +116,9 @@ class Refinement:
             # What changes whenever a sample is to be drawn never comes to rest.
             self._left = [] if due or state is None else list(self.positions)
             return
-        if due and self.seconds is not None and self._spent >= self.seconds and self._taken:
+        if self.seconds is not None and self._spent >= self.seconds and self._taken:
             self._left = []
-        if due and self._left:
+        if self._left and (due or self._taken) and not exact_wanted(renderer):
             self._frame = _Frame.SAMPLE
             self._shift(renderer, self._left[0])
         elif self._taken >= (SHOWN_FROM if self._left else 1):
@@ -155,7 +156,7 @@ class Refinement:
     @property
     def idle(self) -> bool:
         """Whether the frame stays as it is drawn, and nothing of it is taken."""
-        return self._frame is _Frame.PLAIN and not (self._changed and self.seen and self._left)
+        return self._frame is _Frame.PLAIN and not (self._changed and self._left and self.seen())
 
     def paint(self, ctx: Any, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]) -> None:
         """Take the picture that has been drawn, and draw what is to be seen instead.

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["is_shifted", "note_depths", "shift", "shifted", "with_exact_depths"]
+__all__ = ["exact_wanted", "is_shifted", "note_depths", "shift", "shifted", "with_exact_depths"]
 
 _cameras: set[str] = set()
 _renderers: set[str] = set()
+_exact: set[str] = set()
 
 
 def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callable[[], None]:
@@ -73,5 +74,14 @@ def with_exact_depths(window: Any) -> Any:
     found = window.GetRenderers()
     shown = {found.GetItemAsObject(index).GetAddressAsString("") for index in range(found.GetNumberOfItems())}
     if shown & _renderers:
-        window.Render()
+        _exact.update(shown)
+        try:
+            window.Render()
+        finally:
+            _exact.difference_update(shown)
     return window
+
+
+def exact_wanted(renderer: Any) -> bool:
+    """Say whether a renderer is asked for depths of its camera unshifted."""
+    return renderer.GetAddressAsString("") in _exact

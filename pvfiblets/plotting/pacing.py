@@ -23,7 +23,7 @@ class Pacer:
     """Has the pictures of a plotter refined while nothing happens.
 
     A window with an event loop is asked for a timer of one shot after each frame: of `REST` after a plain one, of
-    `PAUSE` after a sample. A frame that somebody else draws meanwhile puts it off. A window whose interactor must not
+    `PAUSE` after a sample. A window whose interactor must not
     render is a server's, such as a notebook's: there the steps are taken by the ``asyncio`` loop that is running, and
     in the end the plotter renders once more, for those that send its pictures.
 
@@ -33,7 +33,7 @@ class Pacer:
     step : callable
         Draws a sample; says whether another one is wanted.
     wanted : callable
-        Says whether one is.
+        Says whether one is, and how many have been taken.
 
     Attributes
     ----------
@@ -41,11 +41,10 @@ class Pacer:
         Whether somebody else calls for the samples.
     """
 
-    def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], bool]) -> None:
+    def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]) -> None:
         self._plotter = weakref.proxy(plotter)
         self._step, self._wanted = step, wanted
         self.by_hand = False
-        self._stepping = False
         self._timer: int | None = None
         self._due = 0.0
         self._tag: int | None = None
@@ -61,9 +60,12 @@ class Pacer:
     def frame_drawn(self) -> None:
         """Ask to be called again; a frame has been drawn, by ourselves or by others."""
         interactor = self._interactor()
-        if self.by_hand or interactor is None or not self._wanted():
+        if self.by_hand or interactor is None:
             return
-        wait = PAUSE / 1000.0 if self._stepping else REST
+        wanted, taken = self._wanted()
+        if not wanted:
+            return
+        wait = PAUSE / 1000.0 if taken else REST
         if not interactor.GetEnableRender():
             self._ask_loop(wait)
         elif self.seen:
@@ -80,7 +82,8 @@ class Pacer:
             self._tag = interactor.AddObserver("TimerEvent", _weakly(self._heard))
         self._due = time.monotonic() + wait
         # PyVista calls what `add_timer_event` was given at every timer's event: its own are those to wait for.
-        if getattr(self._plotter.iren, "_timer", None) is None:
+        theirs = getattr(self._plotter.iren, "_timer", None)
+        if theirs is None or theirs.step + 1 >= theirs.max_steps:
             self._timer = interactor.CreateOneShotTimer(max(round(1000.0 * wait), 1))
 
     def _stop_timer(self, interactor: Any) -> None:
@@ -97,14 +100,7 @@ class Pacer:
         style = interactor.GetInteractorStyle()
         if style is not None and hasattr(style, "GetState") and style.GetState() != 0:
             return  # the mouse turns something: a frame will come of it
-        self._take_step()
-
-    def _take_step(self) -> bool:
-        self._stepping = True
-        try:
-            return self._step()
-        finally:
-            self._stepping = False
+        self._step()
 
     # A server's loop
 
@@ -123,7 +119,7 @@ class Pacer:
 
     def _called(self) -> None:
         self._call = None
-        if self._wanted() and not self._take_step():
+        if self._wanted()[0] and not self._step():
             self._plotter.render()
 
     def release(self) -> None:

@@ -12,11 +12,11 @@ from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.picture import DepthOfField, Picture, refine
 from pvfiblets.mappers.refinement import Refinement
-from pvfiblets.plotting.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.plotting.pacing import Pacer
 from pvfiblets.plotting.setting_places import OWN, Place
 from pvfiblets.plotting.settings import Setting, number
@@ -245,19 +245,23 @@ class PictureComponent:
             return
         if wanted is not None and picture.refinement is not None and wanted.same_as(picture.refinement):
             return
+        if wanted is not None:
+            wanted.seen = self._seen
         picture.refinement = wanted
         picture.drawn = self._drawn
         self._keep()
 
-    def _unfinished(self) -> bool:
-        return any(picture.unfinished for picture in self._pictures.values())
+    def _unfinished(self) -> tuple[bool, int]:
+        """Say whether samples are wanted, and how many the picture has that has most."""
+        pictures = [picture for picture in self._pictures.values() if picture.unfinished]
+        return bool(pictures), max((picture.refinement.taken for picture in pictures if picture.refinement), default=0)
 
     def _drawn(self) -> None:
         """Be told that a renderer has drawn a frame."""
-        for picture in self._pictures.values():
-            if picture.refinement is not None:
-                picture.refinement.seen = self._pacer.seen
         self._pacer.frame_drawn()
+
+    def _seen(self) -> bool:
+        return self._pacer.seen
 
     def _set_tone(self, **changes: Any) -> None:
         picture = self._picture()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import shutil
 import subprocess
 import sys
 import time
@@ -15,11 +17,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
+from pvfiblets.antialias import VARIABLE
 from pvfiblets.engine.effects.sample_positions import sample_positions
-from pvfiblets.mappers import picture as picture_module
 from pvfiblets.mappers import windows
 from pvfiblets.mappers.shifted_cameras import shifted
-from pvfiblets.plotting.antialias import VARIABLE
 
 SIZE = (150, 110)
 
@@ -336,16 +337,7 @@ def test_what_lies_over_the_picture_is_drawn_once(plotter):
     plotter.render()
     shown = []
     while plotter.picture.refine():
-        plotter.picture.pace_by_hand()
-        plotter.iren.interactor.EnableRenderOff()  # so that a look does not finish it
-        grab = vtkWindowToImageFilter()
-        grab.SetInput(plotter.render_window)
-        grab.ShouldRerenderOff()
-        grab.ReadFrontBufferOff()
-        grab.Update()
-        data = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(before.shape)
-        shown.append(data[::-1].astype(int))
-    plotter.iren.interactor.EnableRenderOn()
+        shown.append(grabbed(plotter))
     after = shot(plotter)
     assert len(shown) == 15
     over = np.ones(before.shape[:2], bool)
@@ -423,3 +415,158 @@ def test_frames_of_movies_and_pictures_that_shows_return_are_finished(scene, tmp
     image = plotter.show(screenshot=str(tmp_path / "shown.png"), return_img=True)
     assert len(np.unique(image[..., 1])) > 10
     assert np.array_equal(pv.read(tmp_path / "shown.png").point_data.values()[0].shape, (SIZE[0] * SIZE[1], 3))
+
+
+def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
+    """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.05)
+    interactor, asked = scene.iren.interactor, []
+    interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
+    renders = Renders(scene)
+    interactor.InvokeEvent("TimerEvent")
+    assert renders.since() == 0
+    scene.camera.Azimuth(3.0)
+    scene.render()
+    assert renders.since() == 1
+    plain = grabbed(scene)
+    interactor.InvokeEvent("TimerEvent")  # too early: somebody else's
+    assert renders.since() == 0
+    time.sleep(0.06)
+    for count in range(1, 17):
+        interactor.InvokeEvent("TimerEvent")
+        assert (renders.since(), scene.picture.samples) == (1, count)
+        assert np.array_equal(grabbed(scene), plain) == (count < 4)
+        time.sleep(0.002)
+    for _ in range(3):
+        interactor.InvokeEvent("TimerEvent")
+        time.sleep(0.06)
+    assert renders.since() == 0
+    finished = grabbed(scene)
+    assert np.array_equal(shot(scene), finished)
+
+
+def grabbed(plotter):
+    """Return the picture as it is, unfinished or not."""
+    interactor = plotter.iren.interactor
+    interactor.EnableRenderOff()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(plotter.render_window)
+    grab.ShouldRerenderOff()
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    interactor.EnableRenderOn()
+    width, height, _ = grab.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
+    return pixels[::-1].astype(int)
+
+
+def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    scene.enable_trackball_style()
+    interactor, renders = scene.iren.interactor, Renders(scene)
+    interactor.SetEventInformation(60, 60)
+    interactor.LeftButtonPressEvent()
+    for x in (70, 80, 90):
+        interactor.SetEventInformation(x, 65)
+        interactor.MouseMoveEvent()
+        assert scene.picture.samples == 1
+        assert scene.picture._pacer._due == 0.0
+        assert not scene.picture.refine()
+    assert renders.since() == 3
+    interactor.LeftButtonReleaseEvent()
+    assert scene.picture._pacer._due > 0.0
+    assert renders.since() == 1
+    time.sleep(0.2)
+    interactor.InvokeEvent("TimerEvent")
+    assert (renders.since(), scene.picture.samples) == (1, 1)
+    assert scene.picture.refine()
+
+
+def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
+    """As in a notebook: the interactor must not render, pictures are sent when the plotter renders."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.02)
+    sent = []
+    scene.add_on_render_callback(lambda _: sent.append(scene.picture.samples))
+    scene.iren.interactor.EnableRenderOff()
+    renders = Renders(scene)
+
+    async def look():
+        scene.camera.Azimuth(3.0)
+        scene.render()
+        assert sent == [1]
+        async with asyncio.timeout(20):
+            while len(sent) < 2:
+                await asyncio.sleep(0.01)
+        await asyncio.sleep(0.1)
+
+    asyncio.run(look())
+    assert sent == [1, 16]
+    assert renders.since() == 18  # plain, samples, and one more to be sent
+    scene.iren.interactor.EnableRenderOn()
+
+
+WINDOW = """
+import sys, time
+import numpy as np, pyvista as pv
+plotter = pv.Plotter(window_size=(200, 150))
+plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
+frames = []
+plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(plotter.picture.samples))
+plotter.show(interactive_update=True, auto_close=False)
+def wait(seconds):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        plotter.iren.process_events()
+        time.sleep(0.002)
+def until_finished():
+    end = time.monotonic() + 20.0
+    while plotter.picture.samples < 16 and time.monotonic() < end:
+        wait(0.01)
+    count = len(frames)
+    wait(0.5)
+    return len(frames) - count
+until_finished()  # VTK draws once more when the window appears
+plotter.iren.interactor.SetEventInformation(90, 70)
+plotter.iren.interactor.MouseWheelForwardEvent()
+print("turned", plotter.picture.samples)
+print("at rest", until_finished(), frames[-1])
+plotter.close()
+"""
+
+
+def test_a_window_on_a_screen_refines_by_itself(tmp_path):
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
+    without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
+    environment = {name: value for name, value in os.environ.items() if name not in without}
+    command = ["xvfb-run", "-a", sys.executable, "-c", WINDOW]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
+    told = [line for line in done.stdout.splitlines() if not line.startswith("\x1b")]
+    assert told == ["turned 1", "at rest 0 16"], done.stderr
+
+
+@pytest.mark.parametrize("bad", ["on", 1, 0, 257, 3.5, True, None, "16"])
+def test_other_values_are_refused_and_change_nothing(plotter, bad):
+    plotter.picture.antialias = 4
+    with pytest.raises(ValueError, match="antialias is .*; give 'off', 'coverage', 'refined' or a number of samples"):
+        plotter.picture.antialias = bad
+    assert plotter.picture.antialias == 4
+    with pytest.raises(ValueError, match="antialias_seconds is -1; give seconds, 0 or more"):
+        plotter.picture.antialias_seconds = -1
+
+
+def test_the_environment_names_another_default(plotter, monkeypatch):
+    for text, value in (("off", "off"), ("8", 8), ("coverage", "coverage")):
+        monkeypatch.setenv(VARIABLE, text)
+        assert plotter.picture.antialias == value
+    monkeypatch.setenv(VARIABLE, "much")
+    with pytest.raises(ValueError, match="PVFIBLETS_ANTIALIAS is 'much'; give"):
+        plotter.add_fiblets([[(0, 0, 0), (1, 1, 1)]])
+
+
+def test_memory_is_told_and_given_back(scene):
+    assert scene.picture.explain()["buffers"] == [{"name": "refinement", "bytes": SIZE[0] * SIZE[1] * 16}]
+    scene.picture.antialias = "off"
+    scene.render()
+    assert scene.picture.explain() == {"buffers": []}
