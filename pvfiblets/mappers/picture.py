@@ -3,12 +3,13 @@
 VTK draws what is opaque, translucent, volumetric, and at last what lies over all of these: scalar bars, texts. Each of
 them a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
 frame, a ``vtkContextActor``, which draws in the last of these turns only, and calls Python there: that is when the
-picture is complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are read from the
-textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as they are.
+picture is complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are
+read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
+they are.
 
 Refinement (`pvfiblets.mappers.refinement`) takes the picture as the effects leave it. `refine` draws one more frame of
 all the pictures of a window, `finish` all that are left. Whoever reads a window's picture gets the finished one: all do
-that with ``vtkWindowToImageFilter``, PyVista's ``screenshot`` and ``image`` too, which gives each renderer a copy of its
+that with ``vtkWindowToImageFilter``, PyVista's ``screenshot`` and ``image`` too. It gives each renderer a copy of its
 camera before, and VTK tells of that (``ActiveCameraEvent``). Where an interactor must not render
 (``EnableRenderOff``), the window is a server's, whose pictures follow the camera: it calls `refine` itself.
 
