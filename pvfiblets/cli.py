@@ -169,8 +169,9 @@ def make_parser() -> argparse.ArgumentParser:
         description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
     )
     report.add_argument(
-        "--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volumes, halos, features, stability"
-    )
+        "--only", nargs="+", metavar="STUDY",
+        help="codec, decode, culling, tubes, volumes, halos, features, antialias, stability",
+    )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",
         help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
