@@ -6,7 +6,8 @@ PyVista finds this module by an entry point and imports it when a plotter is fir
 from __future__ import annotations
 
 import weakref
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
 from typing import Any
 
@@ -250,6 +251,18 @@ class PictureComponent:
         picture.refinement = wanted
         picture.drawn = self._drawn
         self._keep()
+
+    @contextmanager
+    def sampled_once(self) -> Iterator[None]:
+        """Have pictures drawn with one sample a pixel meanwhile."""
+        refined = [(picture, picture.refinement) for picture in self._pictures.values() if picture.refinement]
+        for picture, _ in refined:
+            picture.refinement = None
+        try:
+            yield
+        finally:
+            for picture, refinement in refined:
+                picture.refinement = refinement
 
     def _unfinished(self) -> tuple[bool, int]:
         """Say whether samples are wanted, and how many the picture has that has most."""
