@@ -20,7 +20,7 @@ const uint SHARE = {{ capsule_share }}u;
 #include "fiblets/geometry/share.glsl"
 
 vec3 points[SHARE + 1u];
-uint tangents[SHARE];
+uvec2 at_ends[SHARE];
 vec2 values[SHARE];
 
 void main() {
@@ -34,7 +34,7 @@ void main() {
         start_segment(i, walk_delta, polyline.steps);
         if (i + 1u >= first) points[i + 1u - first] = walk_point;
         if (i < first) continue;
-        tangents[i - first] = pixel_ids.y;
+        at_ends[i - first] = tangents();
         values[i - first] = vec2(before, value_of_point(i + 1u));
     }
     // Backwards, as shares are: of two segments with the same depth the later one stays, as with the compute pipeline.
@@ -43,7 +43,7 @@ void main() {
         ClippedSegment piece;
         bool start = segment == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
         if (!mask_segment(segment, start, cap) || !piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
-        Varyings varyings = Varyings(uvec2(pixel_ids.x, tangents[k]), chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
+        Varyings varyings = Varyings(pixel_streamline, at_ends[k], chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
         for (int corner = 0; corner < 4; ++corner) {
             gl_Position = corner_of(piece, corner);
             write_varyings(varyings, piece, points[k], points[k + 1u]);

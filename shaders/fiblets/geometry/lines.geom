@@ -8,12 +8,22 @@
 
 layout(points) in;
 
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_CLIPPING
+layout(line_strip, max_vertices = {{ cut_valued_line_vertices }}) out;
+const uint SHARE = {{ cut_valued_line_share }}u;
+#else
+layout(line_strip, max_vertices = {{ valued_line_vertices }}) out;
+const uint SHARE = {{ valued_line_share }}u;
+#endif
+#else
 #if FEATURE_CLIPPING
 layout(line_strip, max_vertices = {{ cut_line_vertices }}) out;
 const uint SHARE = {{ cut_line_share }}u;
 #else
 layout(line_strip, max_vertices = {{ line_vertices }}) out;
 const uint SHARE = {{ line_share }}u;
+#endif
 #endif
 
 #include "fiblets/raster/polyline.glsl"
@@ -39,7 +49,7 @@ void main() {
             open = false;
             continue;
         }
-        Varyings varyings = Varyings(pixel_ids, chunk.y + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
+        Varyings varyings = Varyings(pixel_streamline, tangents(), chunk.y + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
         Thin line = thin_line(piece);
         for (int side = open && piece.t0 == 0.0 ? 1 : 0; side < 2; ++side) {
             if (side == 0) EndPrimitive();

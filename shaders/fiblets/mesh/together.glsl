@@ -11,7 +11,8 @@
 #include "culling/bounds.glsl"
 #include "fiblets/data/point_mask.glsl"
 #include "fiblets/attributes/place.glsl"
-#include "frame/tangent.glsl"
+#include "fiblets/attributes/neighbours.glsl"
+#include "fiblets/attributes/tangent.glsl"
 #include "fiblets/data/values.glsl"
 #if FEATURE_VALUES_CURVATURE
 #include "fiblets/attributes/turn.glsl"
@@ -33,6 +34,8 @@ struct Group {
     vec3 far_to;
     float unit;      // mm that decoded steps are in units of: the step of a direction fiblet, or the lattice's edge
     bool moves;      // of direction codes
+    vec3 behind;     // directions before its first point, and after its last segment
+    vec3 beyond;
 };
 
 Group group;
@@ -56,13 +59,13 @@ vec3 delta_of(uint i) {
     return prefix_point[i + 1u] - prefix_point[i];
 }
 
-// A segment of no length has the tangent of the one before it, or +x.
-uint tangent_of(uint segment) {
-    for (uint i = segment + 1u; i > 0u; --i) {
-        vec3 delta = delta_of(i - 1u);
-        if (delta != vec3(0.0)) return packed_tangent(delta, 0u);
-    }
-    return 0u;
+uvec2 tangents_of(uint segment) {
+    vec3 before = vec3(0.0), after = vec3(0.0);
+    for (uint i = segment; i > 0u && before == vec3(0.0); --i) before = delta_of(i - 1u);
+    for (uint i = segment + 1u; i < group.count && after == vec3(0.0); ++i) after = delta_of(i);
+    if (segment == 0u) before = group.behind;
+    if (after == vec3(0.0)) after = group.beyond;
+    return tangents_at_ends(before, delta_of(segment), after, segment + 1u == group.count && !group.end && !group.whole);
 }
 
 #if FEATURE_VALUES_ARC_LENGTH
@@ -122,7 +125,7 @@ void draw_share(uint f, uint share) {
     begin_point_mask(f);
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words);
-    group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION);
+    group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION, vec3(0.0), vec3(0.0));
     if (group.end && last == 0u) group.spans = 0.0;
     group.count = last + (group.end && last > 0u ? 0u : 1u);
     group.unit = group.moves ? step_length(words) : steps.z * exp2(-float(fiblet_cap(words)));
@@ -141,6 +144,13 @@ void draw_share(uint f, uint share) {
         if (gl_LocalInvocationIndex == 0u) put_count(0u);
         return;
     }
+    if (!group.whole && group.spans == 0.0 && !group.begin && f > 0u) {  // a single point: the segment that leads to it
+        decode_together(f - 1u);
+        group.behind = anchor_local(f) - prefix_point[fiblet_last(decoding_words(f - 1u))];
+    } else {
+        group.behind = direction_before(f, group.whole);
+    }
+    group.beyond = direction_after(f, group.whole);
     if (!group.whole) decode_together(f);
 #if FEATURE_VALUES_ARC_LENGTH
     if (!group.whole) add_lengths();
@@ -148,7 +158,7 @@ void draw_share(uint f, uint share) {
     uint streamline = streamline_of(f);
     float first_point = float(points_before(f));
     for (uint i = first + gl_LocalInvocationIndex; i < end; i += PREFIX_THREADS) {
-        Varyings varyings = Varyings(uvec2(streamline, tangent_of(i)), chunk.y + f, first_point, i, group.spans, values_of(i));
+        Varyings varyings = Varyings(streamline, tangents_of(i), chunk.y + f, first_point, i, group.spans, values_of(i));
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
         draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }

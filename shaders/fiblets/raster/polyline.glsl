@@ -10,11 +10,13 @@
 #include "fiblets/data/point_mask.glsl"
 
 struct Polyline {
+    uint fiblet;
     uint last;     // points up to this one are decoded, the one after it is `next`
     uint count;    // segments; a single point is a segment of no length
     float steps;   // from point to point that a segment stands for: 1, or 0 for a single point, or all of a far fiblet's
     bool begin;    // the streamline begins here
     bool end;      // and ends here
+    bool whole;    // one segment stands for the fiblet
     vec3 next;
 };
 
@@ -25,12 +27,15 @@ void begin_one_segment(uint f, Capsule capsule) {
     walk_point = capsule.a;
     polyline.last = 0u;
     polyline.count = 1u;
+    polyline.whole = true;
     polyline.steps = float(fiblet_last(decoding_words(f)) + (polyline.end ? 0u : 1u));
     polyline.next = capsule.b;
 }
 
 void begin_polyline(uint f) {
     begin_point_mask(f);
+    polyline.fiblet = f;
+    polyline.whole = false;
     polyline.begin = begins(f);
     polyline.end = ends(f);
 #if FEATURE_ONE_SEGMENT

@@ -16,6 +16,7 @@
 #endif
 #include "fiblets/raster/varyings.glsl"
 #include "fiblets/raster/peel.glsl"
+#include "fiblets/attributes/tangent.glsl"
 #include "fiblets/attributes/fragment_value.glsl"
 
 layout(location = 0) out uint out_depth;
@@ -57,6 +58,6 @@ void shade(float s, float ratio, float depth) {
 #endif
     out_depth = key;
     out_owner = varying_ids.z;
-    out_ids = varying_ids.xy;
+    out_ids = uvec2(varying_ids.x, packed_tangent_between(uvec2(varying_ids.y, varying_tangent), t));
     out_position = vec2(varying_first + float(segment) + t * steps, value_at(segment, t, steps));
 }

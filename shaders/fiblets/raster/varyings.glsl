@@ -10,6 +10,7 @@
 //                      thin lines   wide lines   tubes
 //   position                4            4         4
 //   varying_ids              4            4         4
+//   varying_tangent          1            1         1
 //   varying_first            1            1         1
 //   varying_ends             4            8         0
 //   varying_ratio            1            0         0
@@ -21,8 +22,9 @@
 #define EACH
 #endif
 
-VARYING uvec4 varying_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
-                                   // and whether the streamline starts here in bit 16
+VARYING uvec4 varying_ids EACH;      // streamline; tangent at the segment's start; fiblet counted over all chunks; segment, its
+                                   // steps in bits 8 to 15, and whether the streamline starts here in bit 16, ends in bit 17
+VARYING uint varying_tangent EACH;   // at the segment's end
 VARYING float varying_first EACH;    // index of the fiblet's first point within the streamline
 #if FEATURE_TUBES
 VARYING vec3 varying_from EACH;      // ends of the segment, local mm

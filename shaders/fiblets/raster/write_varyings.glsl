@@ -9,7 +9,8 @@
 #include "fiblets/raster/varyings.glsl"
 
 struct Varyings {
-    uvec2 ids;      // streamline; tangent
+    uint streamline;
+    uvec2 tangents; // at the segment's start and end
     uint owner;     // fiblet counted over all chunks
     float first;    // index of its first point within the streamline
     uint segment;
@@ -18,8 +19,9 @@ struct Varyings {
 };
 
 void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
-    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u);
-    TO(varying_ids) = uvec4(varyings.ids, varyings.owner, flags);
+    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u) | (piece.cap ? 0x20000u : 0u);
+    TO(varying_ids) = uvec4(varyings.streamline, varyings.tangents.x, varyings.owner, flags);
+    TO(varying_tangent) = varyings.tangents.y;
     TO(varying_first) = varyings.first;
 #if FEATURE_TUBES
     TO(varying_from) = from;
