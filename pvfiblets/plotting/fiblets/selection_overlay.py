@@ -191,7 +191,7 @@ class Standout:
         if self._changed("planes", mapper.GetClippingPlanes()):
             self.mapper.SetClippingPlanes(mapper.GetClippingPlanes())
         extras = mapper.extras
-        for name in SHADES:
+        for name in SHADES if self._radius is not None else (*SHADES, "light"):
             if self._changed(name, extras.get(name)):
                 extra = extras.get(name)
                 self.mapper.set_extra(name, None if extra is None else _OfAll(extra, self._fiblets))
@@ -241,7 +241,7 @@ class Standout:
         self.mapper.detach()
         self.mapper, self._plan = mapper, plan
         self.mapper.attach(self.actor)
-        for name in ("options", "colouring", "planes", "region", "filtering", *SHADES):
+        for name in ("options", "colouring", "planes", "region", "filtering", "light", *SHADES):
             self._taken.pop(name, None)
 
     def _changed(self, name: str, value: Any, *, equal: bool = False) -> bool:
