@@ -8,15 +8,7 @@ import numpy as np
 
 from pvfiblets.mappers.shader_effects import Draw, Piece
 
-__all__ = ["LegendColours", "LineLight", "light_of"]
-
-
-def light_of(renderer: Any) -> tuple[float, float, float]:
-    """Return what the lights of a renderer that are on add up to, red, green and blue."""
-    lights = renderer.GetLights()
-    on = [light for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())) if light.GetSwitch()]
-    total = sum((light.GetIntensity() * np.array(light.GetDiffuseColor()) for light in on), np.zeros(3))
-    return float(total[0]), float(total[1]), float(total[2])
+__all__ = ["LegendColours", "LineLight"]
 
 
 class LineLight(Piece):
@@ -25,8 +17,13 @@ class LineLight(Piece):
     features = frozenset({"line_light"})
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
-        """Set what the lights of the scene add up to."""
-        program.SetUniform3f("fibletLights", light_of(draw.renderer))
+        """Set what the lights of the scene add up to, and whether one of them stands in it."""
+        lights = draw.renderer.GetLights()
+        every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
+        on = [light for light in every if light.GetSwitch() and light.GetIntensity() > 0.0]
+        total = sum((light.GetIntensity() * np.array(light.GetDiffuseColor()) for light in on), np.zeros(3))
+        program.SetUniform3f("fibletLights", [float(channel) for channel in total])
+        program.SetUniformf("fibletStanding", float(any(light.LightTypeIsSceneLight() for light in on)))
 
 
 class LegendColours(Piece):
