@@ -78,21 +78,3 @@ void walk_next(uint i) {
     walk_point += walk_delta;
 #endif
 }
-
-// Of the segments from point i to the last, the run of the first that has a length, in any unit; none if there is none. The
-// walk is at point i, at least the second, and stays there.
-vec3 walk_ahead(uint i) {
-#if FEATURE_LATTICE
-    if (walk.kind != KIND_DIRECTION) {
-        for (uint k = i; k < walk.last; ++k) {
-            ivec3 cell = lattice_cell(walk.byte + (k - i) * walk.width, walk.width, walk.lo, walk.n);
-            if (cell != ivec3(0)) return vec3(cell);
-        }
-        return vec3(0.0);
-    }
-#endif
-#if FEATURE_DIRECTION
-    if (i < walk.last) return rotated_x(turned(walk_frame, rotation(walk.cap, code_at(walk.byte + i - 1u), walk.scale)));
-#endif
-    return vec3(0.0);
-}

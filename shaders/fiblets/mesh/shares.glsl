@@ -7,7 +7,7 @@
 //                         segments   vertices      primitives   components   bytes
 //   thin, uncut              60      61            60           13           4,216
 //   thin, may be cut         60      120           60           14           5,400
-//   wide                     15      60            30           23           3,810    60 in four shares
+//   wide                     15      60            30           24           3,930    60 in four shares
 //
 // Sizes that are multiples of 32 fit into the driver's granularity; a wide line's share is as many rectangles as half a warp
 // has invocations, less one.

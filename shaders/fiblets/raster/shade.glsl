@@ -35,6 +35,8 @@ uniform usampler2D first_round;  // depth key and owner
 
 const float NEARLY_ONE = 0.99999988;  // the largest depth drawn: that of an empty pixel is 1
 
+Tangents varying_tangents() { return unpacked_tangents(uvec2(varying_ids.y, varying_tangent)); }
+
 // s: position along the part in the window, where depth is linear; ratio: clip w at its start over that at its end.
 void shade(float s, float ratio, float depth) {
     float z = clamp(depth, 0.0, NEARLY_ONE);
@@ -58,6 +60,6 @@ void shade(float s, float ratio, float depth) {
 #endif
     out_depth = key;
     out_owner = varying_ids.z;
-    out_ids = uvec2(varying_ids.x, packed_tangent_between(uvec2(varying_ids.y, varying_tangent), t));
+    out_ids = uvec2(varying_ids.x, packed_tangent(tangent_between(varying_tangents(), t), 0u));
     out_position = vec2(varying_first + float(segment) + t * steps, value_at(segment, t, steps));
 }

@@ -2,6 +2,7 @@
 // over: itself, or with a mesh stage an element of an array.
 
 #include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/raster/joint.glsl"
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
@@ -16,6 +17,7 @@ struct Varyings {
     uint segment;
     float steps;    // from point to point that the segment stands for
     vec2 values;    // per-point value at its ends, where that is not looked up by the fragments
+    vec3 ahead;     // of wide lines: fiblets/raster/joint.glsl
 };
 
 void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
@@ -30,6 +32,7 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
 #if FEATURE_WIDE_LINES
     TO(varying_start) = piece.a;
     TO(varying_end) = piece.b;
+    TO(varying_onward) = packed_onward(piece.cap ? vec2(0.0) : onward_at(piece.b, varyings.ahead));
 #else
     uvec2 p = uvec2(pixel_of(piece.a)), q = uvec2(pixel_of(piece.b));
     TO(varying_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));

@@ -13,6 +13,9 @@ in Half { vec4 points[HALF]; } halves[];
 patch in uvec4 patch_ids;
 patch in float patch_first;
 patch in uvec2 patch_around;
+#if FEATURE_WIDE_LINES
+patch in vec3 patch_beyond;
+#endif
 #if FEATURE_POINT_MASK
 patch in uvec4 patch_mask;
 #endif
@@ -36,13 +39,14 @@ vec3 around(uint word) { return word == NO_DIRECTION ? vec3(0.0) : unpacked_tang
 
 vec3 delta_of(uint segment) { return point_of(segment + 1u).xyz - point_of(segment).xyz; }
 
-uvec2 tangents_of(uint segment, uint count) {
-    vec3 before = vec3(0.0), after = vec3(0.0);
-    for (uint i = segment; i > 0u && before == vec3(0.0); --i) before = delta_of(i - 1u);
-    for (uint i = segment + 1u; i < count && after == vec3(0.0); ++i) after = delta_of(i);
-    if (segment == 0u) before = around(patch_around.x);
-    if (after == vec3(0.0)) after = around(patch_around.y);
-    return tangents_at_ends(before, delta_of(segment), after, segment + 1u == count && (patch_ids.w & 6u) == 0u);
+uvec2 tangents_of_segment(uint segment, uint count) {
+    vec3 before = around(patch_around.x), after = segment + 1u == count ? around(patch_around.y) : delta_of(segment + 1u);
+    for (uint i = segment; i > 0u; --i) {
+        before = delta_of(i - 1u);
+        if (before != vec3(0.0)) break;
+    }
+    bool leads = segment + 1u == count && (patch_ids.w & 4u) == 0u;
+    return packed_tangents(tangents_of(unit_or_none(before), unit_or_none(delta_of(segment)), unit_or_none(after), leads));
 }
 
 // Where segments are never cut, one isoline leads through all points, and a vertex ends a segment; the first begins one.
@@ -66,6 +70,6 @@ Segment this_segment() {
     mask_joined = (patch_mask.w & 2u) != 0u;
 #endif
     bool drawn = mask_segment(index, start, cap);
-    return Segment(index, point_of(index), point_of(index + 1u), tangents_of(index, count),
+    return Segment(index, point_of(index), point_of(index + 1u), tangents_of_segment(index, count),
                    float(patch_ids.z >> 8u), start, cap, drawn);
 }

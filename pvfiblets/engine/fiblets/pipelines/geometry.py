@@ -3,7 +3,7 @@
 Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/raster/varyings.glsl``; wide lines with per-point values among them, or without:
+components of ``shaders/fiblets/raster/varyings.glsl``, with per-point values among them or without:
 
 ==============================  ==========  ==============  =======================================================
 drawn                           components  vertices        segments of a share
@@ -12,8 +12,9 @@ thin, uncut                     15          1024 // 15: 68  60: all of them, by 
 thin, uncut, with values        17          1024 // 17: 60  30
 thin, may be cut                16          1024 // 16: 64  30: every segment may be a strip of its own
 thin, may be cut, with values   18          1024 // 18: 56  20
-wide                            21          1024 // 21: 48  12: four vertices each, 60 in five shares
-wide, caller's planes           27          1024 // 27: 37  9: four vertices each, 60 in seven shares
+wide                            20          1024 // 20: 51  12: four vertices each, 60 in five shares
+wide, with values               22          1024 // 22: 46  10: 60 in six shares
+wide, caller's planes, either   28          1024 // 28: 36  9: 60 in seven shares
 ==============================  ==========  ==============  =======================================================
 
 A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
@@ -53,9 +54,9 @@ class GeometryPipeline(TexturedPipeline):
 
     def _shares(self, request: DrawRequest) -> int:
         # The geometry stages choose by the same features.
+        valued = "valued_" if _HANDED_OVER.intersection(request.values) else ""
         if request.wide:
-            share = SHARES["cut_capsule" if request.planes else "capsule"]
+            share = SHARES["cut_capsule" if request.planes else f"{valued}capsule"]
         else:
-            valued = "valued_" if _HANDED_OVER.intersection(request.values) else ""
             share = SHARES[f"cut_{valued}line" if request.clipping else f"{valued}line"]
         return -(-MAX_POINTS // share)
