@@ -9,35 +9,35 @@ CHANGED = {
         resolve="-colour_orientation, colour_solid",
     ),
     "colours: per streamline": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "colours: stored": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_value",
         buffers="fibletTable, values",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_value",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_value",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_value",
         buffers="fibletTable, volume",
     ),
     "colours: logarithm": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "wide lines": What(
@@ -45,7 +45,7 @@ CHANGED = {
     ),
     "wide lines, shaded": What(
         features="CROSS_LINE, WIDE_LINES",
-        resolve="tube_shading",
+        resolve="-line_light, tube_shading",
     ),
     "tubes": What(
         ran="""
@@ -58,7 +58,7 @@ CHANGED = {
             fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal",
+        resolve="-line_light, tube_normal",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
@@ -74,7 +74,7 @@ CHANGED = {
             fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal, tube_shading",
+        resolve="-line_light, tube_normal, tube_shading",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
@@ -87,7 +87,7 @@ CHANGED = {
         buffers="across (no layer), layers, normal (no layer)",
     ),
     "illuminated": What(
-        resolve="illuminated",
+        resolve="-line_light, illuminated",
     ),
     "ambient occlusion": What(
         ran="effects/occlusion.frag, effects/smooth.frag",
@@ -108,7 +108,7 @@ CHANGED = {
     ),
     "ink": What(
         ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
-        resolve="halo, ink",
+        resolve="-line_light, halo, ink",
         passes="distance (effect), halo (effect), nearest (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",

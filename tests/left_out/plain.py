@@ -14,7 +14,7 @@ PLAIN = {
             culling/reduce.frag, screen/triangle.vert
         """,
         features="CLIPPING, CLIPPING_DEPTH, CULL_PYRAMID, DIRECTION, LEVEL_OF_DETAIL, ONE_SEGMENT",
-        resolve="colour_orientation, gbuffer, normal",
+        resolve="colour_orientation, gbuffer, line_light, normal",
         passes="""
             clear, cull, depth, guessed, last picture, occlusion, resolve_owner, pyramid, refine, visible, resolve_ties
         """,
