@@ -60,10 +60,12 @@ struct Hit {
 };
 
 // A chain of capsules bends at its joints, the line does not: a normal of its side is turned to be perpendicular to the line's
-// tangent (fiblets/attributes/tangent.glsl), which is continuous, and so are lights on it. Depth stays that of the capsules.
+// tangent (fiblets/attributes/tangent.glsl), which is continuous, and so are lights on it. Depth stays that of the capsules. On
+// the outer side of the sharpest bends normals nearly point along the tangent, and are left where they are.
 vec3 smooth_normal(Hit hit, vec3 tangent) {
-    vec3 n = hit.normal - tangent * (dot(tangent, hit.normal) / max(dot(tangent, tangent), 1e-12));
-    return hit.side && dot(n, n) > 0.25 ? normalize(n) : hit.normal;
+    vec3 t = normalize(tangent);
+    float along = dot(t, hit.normal), share = clamp((1.0 - along * along - 0.1) / 0.3, 0.0, 1.0);
+    return hit.side ? normalize(hit.normal - share * along * t) : hit.normal;
 }
 
 const float OUTLINE_ROUNDING = 0.05;
@@ -184,7 +186,7 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
 #if FEATURE_CLIP_PLANES
     if (y < 0.0 && !t.start) return false;  // only now: a plane may have cut the ball off, and the tube behind it shows
 #endif
-    hit.side = face == vec3(0.0) && (y >= 0.0 || !t.start) && (y <= t.size || !t.cap);
+    hit.side = face == vec3(0.0) && t.size > 0.0 && (y >= 0.0 || !t.start) && (y <= t.size || !t.cap);
     y = clamp(y, 0.0, t.size);
     hit.t = t.size > 0.0 ? y / t.size : 0.0;
     hit.normal = face != vec3(0.0) ? face : normalize(v - y * t.axis);
