@@ -114,15 +114,14 @@ class _Layout:
     def __init__(self, kind: str) -> None:
         match = _TYPE.fullmatch(kind)
         assert match is not None
-        columns = int(match["columns"] or 0)
-        lanes = columns or int(match["lanes"] or 1)
-        self.scalar = np.dtype("<f4" if columns else _SCALARS[match["scalar"] or match["of"]])
-        self.lanes, self.matrix = lanes, bool(columns)
-        self.count = int(match["count"] or 0)
-        padded = bool(columns or self.count)
+        self.matrix, self.count = match["columns"] is not None, int(match["count"] or 0)
+        self.scalar = np.dtype("<f4" if self.matrix else _SCALARS[match["scalar"] or match["of"]])
+        self.lanes = lanes = int(match["columns"] or match["lanes"] or 1)
+        numbers = (lanes, lanes) if self.matrix else (lanes,) if lanes > 1 else ()
         array = (self.count,) if self.count else ()
-        self.shape = (*array, *((columns,) if columns else ()), *((lanes,) if lanes > 1 else ()))
-        self.stored = (*array, *((columns,) if columns else ()), *((4,) if padded else (lanes,) if lanes > 1 else ()))
+        padded = self.matrix or bool(self.count)
+        self.shape = (*array, *numbers)
+        self.stored = (*array, *numbers[:-1], 4) if padded else numbers
         self.alignment = 16 if padded or lanes > 2 else 4 * lanes
 
     @property

@@ -3,7 +3,8 @@
 //
 // Symbols
 //   at           voxel indices; voxel centres lie at whole numbers, so that the volume reaches from -1/2 to n - 1/2
-//   texel        of a normalised texture 0..1, else the value itself: value = volume_least + texel * volume_per_unit, texel * volume_per_unit rounded where values are whole
+//   texel        of a normalised texture 0..1, else the value itself: value = volume_least + texel * volume_per_unit, of
+//                which the product is rounded where values are whole
 //
 // Trilinear: the sum of eight voxels, each with the product of its three weights. It is not left to the texture unit, whose
 // weights have eight bits, and which would let a NaN with no weight count. Coordinates carry float32's rounding: NaN counts
