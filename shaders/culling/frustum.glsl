@@ -23,7 +23,7 @@ float ball_of(Capsule c) { return 0.5 * distance(c.a, c.b) + body_of(c); }
 float above_planes(Capsule c, int first, int last, inout bool outside) {
     float least = 3.0e38;
     for (int side = first; side < last; ++side) {
-        float a = dot(planes[side].xyz, c.a) + planes[side].w, b = dot(planes[side].xyz, c.b) + planes[side].w;
+        float a = dot(view_planes[side].xyz, c.a) + view_planes[side].w, b = dot(view_planes[side].xyz, c.b) + view_planes[side].w;
         least = min(least, min(a, b));
         outside = outside || max(a, b) < -c.r;
     }
@@ -32,16 +32,16 @@ float above_planes(Capsule c, int first, int last, inout bool outside) {
 
 #if FEATURE_CLIP_PLANES
 // Whether a fiblet lies wholly beyond one of the caller's planes, by the ball around its capsule.
-bool beyond_clip_planes(Capsule c) { return clip_height(0.5 * (c.a + c.b)) + clip_info.y < -ball_of(c); }
+bool beyond_clip_planes(Capsule c) { return clip_height(0.5 * (c.a + c.b)) + clip_rounding < -ball_of(c); }
 #endif
 
 #if FEATURE_CLIP_REGION
 // 1: wholly within the caller's region, its brush included; -1: wholly outside; 0: who knows.
 int region_of_fiblet(Capsule c) {
     vec3 middle = 0.5 * (c.a + c.b);
-    float ball = ball_of(c), w = window_from_local[3].w + ball * detail.y;
+    float ball = ball_of(c), w = window_from_local[3].w + ball * w_per_mm;
     w += window_from_local[0].w * middle.x + window_from_local[1].w * middle.y + window_from_local[2].w * middle.z;
-    return region_of_capsule(c.a, c.b, c.r + max(w, 0.0) * guard.x);
+    return region_of_capsule(c.a, c.b, c.r + max(w, 0.0) * line_reach);
 }
 #endif
 

@@ -15,7 +15,7 @@ uniform usampler2D seen;  // a texel for each fiblet of all chunks
 uniform int seen_bits;    // its width is 2^seen_bits
 
 bool was_seen(uint f) {
-    int index = int(chunk.y + f);
+    int index = int(chunk_first + f);
     return texelFetch(seen, ivec2(index & ((1 << seen_bits) - 1), index >> seen_bits), 0).x != 0u;
 }
 #endif

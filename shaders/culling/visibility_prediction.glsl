@@ -20,7 +20,7 @@ bool probably_shows(Capsule c) {
     bool any = false;
 #if FEATURE_TUBES
     // From a tube's axis to where it shows.
-    vec3 v = tube_ray.xyz * (tube.x / max(length(tube_ray.xyz), 1e-30));
+    vec3 v = tube_ray * (tube_radius / max(length(tube_ray), 1e-30));
     vec4 front = window_from_local[0] * v.x + window_from_local[1] * v.y + window_from_local[2] * v.z;
 #endif
     for (int k = 0; k < GUESS_POINTS; ++k) {
@@ -28,7 +28,7 @@ bool probably_shows(Capsule c) {
 #if FEATURE_TUBES
         s.z = to_window(c - front).z;
 #endif
-        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport.xy - 1.0)) >> (guess_level + 1);
+        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport - 1.0)) >> (guess_level + 1);
         any = any || s.z <= float(texelFetch(last_pyramid, at, guess_level).x) / 4294967296.0;
     }
     return any;

@@ -8,12 +8,12 @@ bool gather_in_parts(ivec2 pixel, Ray whole, float step, float late, out float h
     vec4 more;
     light = vec4(0.0);
     hit = -1.0;
-    for (int number = 0; light.a < ray_high.w && next_part(pixel, whole, number, begin, part.last);) {
+    for (int number = 0; light.a < opaque_from && next_part(pixel, whole, number, begin, part.last);) {
         if (!gather(part, step, min(begin + late, part.last), here, more)) continue;
         if (light.a <= 0.0) hit = here;
         light += (1.0 - light.a) * more;
     }
-    if (light.a >= ray_high.w) light /= light.a;
+    if (light.a >= opaque_from) light /= light.a;
     return light.a > 0.0;
 }
 #endif

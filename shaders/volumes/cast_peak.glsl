@@ -13,7 +13,7 @@ bool find_peak_in_parts(ivec2 pixel, Ray whole, float step, float late, out floa
             hit = here;
         }
 #if FEATURE_VOLUME_LOCAL
-        if (value >= ray_table.w) break;
+        if (value >= peak_threshold) break;
 #endif
     }
     return value > -3e38;

@@ -94,7 +94,7 @@ void main() {
     alike = alike && max(max(differ.x, differ.y), max(differ.z, differ.w)) <= threshold;
     out_colour = vec4(colour.rgb / max(colour.a, 1e-6), colour.a);
 #else
-    alike = alike && highest.y - lowest.y <= threshold * (ray_table.y - ray_table.x);
+    alike = alike && highest.y - lowest.y <= threshold * (transfer_high - transfer_low);
 #endif
     bool nothing = found == 0u;
     out_depth = alike ? 0xFFFFFFFFu - uint(clamp(mean, 1.0, 4294967040.0)) : 0xFFFFFFFFu;

@@ -38,7 +38,7 @@ uniform mat4 to_clip;               // voxels -> clip coordinates, of any scale
 // Whether a place in voxels is in the caller's region. Where that ends is drawn for the picture's pixels: beside them all is there.
 bool is_there(vec3 p) {
     vec4 clip = to_clip * vec4(p, 1.0);
-    vec2 size = 2.0 * vec2(ray_size.w, ray_table.z), pixel = (0.5 * clip.xy / clip.w + 0.5) * size;
+    vec2 size = 2.0 * half_picture, pixel = (0.5 * clip.xy / clip.w + 0.5) * size;
     if (clip.w <= 0.0 || any(lessThan(pixel, vec2(0.0))) || any(greaterThanEqual(pixel, size))) return true;
     return region_keeps(ivec2(pixel), clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0));
 }
@@ -65,12 +65,12 @@ uint hashed(uint x) {
     return (x >> 22) ^ x;
 }
 
-vec3 in_voxels(vec3 mm) { return vec3(dot(ray_to_voxels[0].xyz, mm), dot(ray_to_voxels[1].xyz, mm), dot(ray_to_voxels[2].xyz, mm)); }
+vec3 in_voxels(vec3 mm) { return mm * gradient_from_voxels; }
 
 #if FEATURE_VOLUME_NEAREST
 // Just behind the face of the voxel that the ray enters, by halving.
 vec3 on_surface(Ray ray, float hit, float mu) {
-    float a = hit - ray_low.w, b = hit + ray_low.w;
+    float a = hit - ray_step, b = hit + ray_step;
     bool above = value_at(at(ray, a)) >= mu;
     if (above == (value_at(at(ray, b)) >= mu)) return at(ray, hit);
     for (int k = 0; k < 12; ++k) {
@@ -103,18 +103,18 @@ Ray ray_from(vec3 o, vec3 d) {
     ray.d = d;
     vec3 least = max(abs(d), 1e-20);
     ray.inverse = vec3(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0, d.z < 0.0 ? -1.0 : 1.0) / least;
-    vec3 to_low = (ray_low.xyz - o) * ray.inverse, to_high = (ray_high.xyz - o) * ray.inverse;
+    vec3 to_low = (box_low - o) * ray.inverse, to_high = (box_high - o) * ray.inverse;
     vec3 enter = min(to_low, to_high), leave = max(to_low, to_high);
     ray.first = max(max(enter.x, max(enter.y, enter.z)), 0.0);
     ray.last = min(leave.x, min(leave.y, leave.z));
-    for (int plane = FIRST_OWN_PLANE; plane < ray_counts.x; ++plane) {
+    for (int plane = FIRST_OWN_PLANE; plane < ray_plane_count; ++plane) {
         narrow(dot(ray_planes[plane], vec4(o, 1.0)), dot(ray_planes[plane].xyz, d), ray.first, ray.last);
     }
     return ray;
 }
 
 bool is_open(Ray ray, float low, float high) {
-    float t = ray.first, step = ray_low.w;
+    float t = ray.first, step = ray_step;
     while (t < ray.last) {
         float number, end = t + to_end_of_node(ray, t, 0.5, number);
         if (number <= 0.5 && end - t >= step) {
@@ -142,7 +142,7 @@ void main() {
     Ray seen = ray_of(gl_FragCoord.xy);
     float mu = shown.y;
     vec3 p = on_surface(seen, shown.x, mu);
-    vec3 g = gradient_at(p), way = seen.d.x * ray_to_mm[0].xyz + seen.d.y * ray_to_mm[1].xyz + seen.d.z * ray_to_mm[2].xyz;
+    vec3 g = gradient_at(p), way = mm_from_voxels * seen.d;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
 #if FEATURE_VOLUME_NEAREST
     bool above = value_at(p) < mu;
@@ -156,8 +156,8 @@ void main() {
     // A gradient turns with the inverse's transpose.
     vec3 normal = normalize(transpose(to_data) * towards);
     float low = above ? mu : -3e38, high = above ? 3e38 : mu;
-    for (int k = 0; k < ray_counts.y; ++k) {
-        float other = ray_surfaces[k >> 2][k & 3];
+    for (int k = 0; k < isovalue_count; ++k) {
+        float other = isovalues[k];
         if (other > mu) high = min(high, other);
         if (other < mu) low = max(low, other);
     }

@@ -41,13 +41,13 @@ vec3 normal_of(ivec2 pixel) {
     return normalize(vec3(x, p));
 }
 
-vec3 in_mm(vec3 voxels) { return voxels.x * ray_to_mm[0].xyz + voxels.y * ray_to_mm[1].xyz + voxels.z * ray_to_mm[2].xyz; }
+vec3 in_mm(vec3 voxels) { return mm_from_voxels * voxels; }
 
 // But for the place of the first voxel, which falls out of differences.
 vec3 place_of(ivec2 pixel, float t) {
-    vec2 right = vec2(pixel) + 0.5 - vec2(ray_size.w, ray_table.z);
-    vec3 way = in_mm(ray_way[0].xyz + right.x * ray_way[1].xyz + right.y * ray_way[2].xyz);
-    vec3 start = in_mm(ray_start[0].xyz + right.x * ray_start[1].xyz + right.y * ray_start[2].xyz);
+    vec2 right = vec2(pixel) + 0.5 - half_picture;
+    vec3 way = in_mm(ray_direction[0] + right.x * ray_direction[1] + right.y * ray_direction[2]);
+    vec3 start = in_mm(ray_origin[0] + right.x * ray_origin[1] + right.y * ray_origin[2]);
     return start + t * (way / max(length(way), 1e-30));
 }
 

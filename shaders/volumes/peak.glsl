@@ -1,7 +1,7 @@
 // The greatest value on a ray, or the first peak above a threshold.
 // Paper: Lesar 2015, section III.F, equation (9); local maxima after Sato et al. 1998.
 
-bool is_there(float value) { return value >= ray_values.z && value <= ray_values.w; }
+bool is_there(float value) { return value >= value_low && value <= value_high; }
 
 bool find_peak(Ray ray, float step, float start, out float hit, out float value) {
     float t = start, best = -3e38;
@@ -10,7 +10,7 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
         float number, end = t + to_end_of_node(ray, t, best, number);
         if (number <= best && end - t >= step) {
 #if FEATURE_VOLUME_LOCAL
-            if (best >= ray_table.w) break;      // nothing here is as high: the peak is over
+            if (best >= peak_threshold) break;      // nothing here is as high: the peak is over
 #endif
             t += floor((end - t) / step) * step;
             if (t > ray.last) break;
@@ -23,7 +23,7 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
                 hit = t;
             }
 #if FEATURE_VOLUME_LOCAL
-            over = v < best && best >= ray_table.w;
+            over = v < best && best >= peak_threshold;
 #endif
             t += step;
         } while (!over && t < end && t <= ray.last);

@@ -35,7 +35,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 5) buffer Out { uint bits[]; };
 void main() {
     uint f = group_index() * 64u + gl_LocalInvocationIndex;
-    if (f < chunk.x && hidden(capsule_of(f))) atomicOr(bits[f >> 5u], 1u << (f & 31u));
+    if (f < chunk_fiblets && hidden(capsule_of(f))) atomicOr(bits[f >> 5u], 1u << (f & 31u));
 }
 """
 

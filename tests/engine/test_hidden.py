@@ -16,7 +16,7 @@ import pytest
 from pvfiblets.engine import FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.frame import frame_block
+from pvfiblets.engine.frame import FRAME_BLOCK, frame_block
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.shaders import Programs, assemble
 
@@ -47,7 +47,7 @@ MUTATIONS = {
     "four loads that do not suffice": ("wanted > level ?", "false ?"),
     "half the radius": ("float away = r *", "float away = 0.5 * r *"),
     "no room for rounding": ("> away + slack", "> away - 10.0 * slack"),
-    "no room around lines": ("+ viewport.z + MARGIN", ""),
+    "no room around lines": ("+ half_line_width + MARGIN", ""),
     "no room for what leads a pixel back": ("m += overshoot;", ""),
 }
 
@@ -57,9 +57,9 @@ class Projection:
 
     def __init__(self, view, style):
         self.block, _ = frame_block(view, style, ORIGIN, SCALE, TOP)
-        words = np.frombuffer(self.block, "<u4")
-        self.reference = ORIGIN + SCALE * words[40:43]
-        self.matrix = words[:16].view("<f4").reshape(4, 4)  # columns first
+        frame = np.frombuffer(self.block, FRAME_BLOCK.dtype)[0]
+        self.reference = ORIGIN + SCALE * frame["reference"]
+        self.matrix = frame["window_from_local"]  # columns first
 
     def local(self, points):
         """(n, 3) float32 of data mm."""

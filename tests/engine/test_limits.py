@@ -10,9 +10,10 @@ import pytest
 
 from pvfiblets.codec import layout
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, passes, shaders
+from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.engine.fiblets import upload
-from pvfiblets.engine.fiblets.chunks import plan_chunks, storage_buffer
+from pvfiblets.engine.fiblets.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
 from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
 from pvfiblets.engine.shaders import assemble
@@ -115,10 +116,9 @@ def test_codes_of_values_are_found_beyond_as_many_bits_as_a_number_has(gl, monke
     }
     """.replace("\n    ", "\n")
     program = gl.compute_shader(assemble("values", ["DIRECTION", "VALUES_STORED"], CONSTANTS, source=source))
-    block = np.zeros(12, np.uint32)
-    block[5] = bits
-    chunk, out = gl.buffer(block.tobytes()), storage_buffer(gl, np.zeros(16, np.uint32), "out")
-    chunk.bind_to_uniform_block(2)
+    chunk, out = gl.buffer(bytes(CHUNK_BLOCK.nbytes)), storage_buffer(gl, np.zeros(16, np.uint32), "out")
+    CHUNK_BLOCK.write(chunk, value_bits=bits)
+    chunk.bind_to_uniform_block(BLOCKS["Chunk"])
     out.bind_to_storage_buffer(5)
     digits = 0x76543210
     for first in (0, 2**27 - 3, 2**28 - 5, 2**29 - 5, 2**31 - 8):

@@ -13,7 +13,7 @@ from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.opengl import OpenGL
 from pvfiblets.engine.passes import nowhere
-from pvfiblets.engine.regions.uniform_block import BLOCK_BYTES, FieldTextures, RegionBlock, region_block
+from pvfiblets.engine.regions.uniform_block import REGIONS_BLOCK, FieldTextures, RegionBlock, region_block
 from pvfiblets.engine.shaders import assemble
 
 from .region_shapes import NAMES, made, torus
@@ -178,8 +178,8 @@ def test_what_is_not_a_number_is_undecided(gl):
 def test_block_is_what_the_shader_declares(gl):
     source = assemble("test", (), CONSTANTS, source=COMPUTE)
     program = gl.compute_shader(source)
-    assert program["Regions"].size == BLOCK_BYTES
-    assert len(region_block(regions.Sphere((0, 0, 0), 1), np.eye(4))) == BLOCK_BYTES
+    assert program["Regions"].size == REGIONS_BLOCK.nbytes
+    assert len(region_block(regions.Sphere((0, 0, 0), 1), np.eye(4))) == REGIONS_BLOCK.nbytes
     program.release()
 
 
@@ -190,14 +190,14 @@ def test_fields_are_copied_once_and_go_with_the_region(gl):
     block.write(mesh | regions.Sphere((0, 0, 0), 1), np.eye(4))
     assert block.features == ("CLIP_REGION", "REGION_FIELDS")
     texture, nbytes = block._textures._texture, block.nbytes
-    assert nbytes == BLOCK_BYTES + mesh.field.values.nbytes
+    assert nbytes == REGIONS_BLOCK.nbytes + mesh.field.values.nbytes
     move = np.eye(4)
     move[0, 3] = 2.0
     block.write(mesh.moved(move) & mesh, np.eye(4))
     assert block._textures._texture is texture
     block.write(regions.Sphere((0, 0, 0), 1), np.eye(4))
     assert block.features == ("CLIP_REGION",)
-    assert block.nbytes == BLOCK_BYTES
+    assert block.nbytes == REGIONS_BLOCK.nbytes
     block.release()
     block.release()
     assert block.nbytes == 0

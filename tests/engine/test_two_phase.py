@@ -270,7 +270,7 @@ MUTATIONS = {
     "the nearest depth instead of the farthest": (
         "culling/squares.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
     ),
-    "rectangles too small": ("culling/hidden.glsl", "+ viewport.z + MARGIN", "- 3.0"),
+    "rectangles too small": ("culling/hidden.glsl", "+ half_line_width + MARGIN", "- 3.0"),
 }
 
 

@@ -31,7 +31,7 @@ from ..opengl import OpenGL
 from ..shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
 from .clip_planes import check_region
-from .convex_rays import Form, rays_block, to_unit, window_matrix
+from .convex_rays import RAYS_BLOCK, Form, rays_block, to_unit, window_matrix
 from .layer_stack import LayerStack, Rectangle, Squares
 from .surface_crossings import SurfaceLayers, rectangle_of
 
@@ -132,10 +132,8 @@ class Cutter:
             return
         crossings = self._draw_surfaces(region, block, to_clip, offset, size)
         crossings += 2 * sum(leaf.kind != SURFACE for leaf in region.leaves)
-        if self._block is None or self._block.size != block.nbytes:
-            if self._block is not None:
-                self._block.release()
-            self._block = self._ctx.buffer(reserve=block.nbytes)
+        if self._block is None:
+            self._block = self._ctx.buffer(reserve=RAYS_BLOCK.nbytes)
         self._block.write(block.tobytes())
         form = Form.of(region)
         meshes = tuple(id(cast("Surface", leaf).mesh) for leaf in region.leaves if leaf.kind == SURFACE)
@@ -164,7 +162,7 @@ class Cutter:
         found = []
         for k, leaf in enumerate(region.leaves):
             if leaf.kind == SURFACE:
-                found.append(block["centres"][k].astype(int).tolist())
+                found.append(block["rays_rectangles"][k].tolist())
             else:
                 placed = to_clip @ np.linalg.inv(to_unit(leaf, offset))
                 found.append(rectangle_of(placed, np.full(3, -1.0), np.ones(3), size))
@@ -195,8 +193,10 @@ class Cutter:
         surfaces = [cast("Surface", region.leaves[k]) for k in leaves]
         peeled = self._surfaces.draw(surfaces, to_clip, offset, size)
         for k, place in zip(leaves, peeled, strict=True):
-            block["surfaces"][k, :3] = place.first, place.layers, place.tallies
-            block["centres"][k] = place.rectangle
+            block["rays_rectangles"][k] = place.rectangle
+            block["rays_first_layers"][k] = place.first
+            block["rays_layer_counts"][k] = place.layers
+            block["rays_first_tallies"][k] = place.tallies
         return sum(place.crossings for place in peeled)
 
     def _combine(self, form: Form, stack: LayerStack, rectangle: Rectangle) -> None:

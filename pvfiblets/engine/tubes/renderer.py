@@ -17,7 +17,7 @@ from .eye_inside import Inside
 from .nodes import Nodes
 from .options import AUTO, SOLVERS, TubeStyle, check_choices
 from .proxy_geometry import Silhouettes
-from .uniform_blocks import CONSTANTS, TubeBlocks
+from .uniform_blocks import TubeBlocks
 
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
@@ -89,7 +89,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
         self.solver = "illinois" if solver == AUTO else solver
         self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
-        super().__init__(ctx, CONSTANTS)
+        super().__init__(ctx, {})
         self._tubes, self._middle, self._discard = tubes, float(middle), discard
         with self._making():
             self._nodes = self._keep(Nodes(ctx, self._gl, tubes))

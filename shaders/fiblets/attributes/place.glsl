@@ -32,6 +32,6 @@ uint points_before(uint f) {
             break;
         }
     }
-    uint before = begins(high) ? 0u : chunk.z;  // begun in an earlier chunk
+    uint before = begins(high) ? 0u : chunk_points_before;  // begun in an earlier chunk
     return first_point_of(f) - first_point_of(high) + before;
 }

@@ -17,11 +17,11 @@ uniform bool marked;  // whether there are marks
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
-    if (first >= chunk.x) return;
-    uint inside = 0u, these = 0u, count = min(32u, chunk.x - first);
+    if (first >= chunk_fiblets) return;
+    uint inside = 0u, these = 0u, count = min(32u, chunk_fiblets - first);
     for (uint i = 0u; i < count; ++i) inside += outside_view(first + i, capsule_of(first + i)) ? 0u : 1u;
     if (marked) {
-        for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk.y >> 5u) + word, which)));
+        for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk_first >> 5u) + word, which)));
     }
     atomicAdd(in_view, inside);
     atomicAdd(drawn, these);

@@ -61,12 +61,12 @@ void main() {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
 #if FEATURE_INT64_ATOMICS
-        owner = chunk.y + f;
+        owner = chunk_first + f;
         draw_fiblet(f);
 #else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+        if (won) atomicOr(marks[((chunk_first + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
 #endif
     }
 }

@@ -31,8 +31,8 @@ void test_plan(uint word, uint first) {
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
-    if (first >= chunk.x) return;
-    word = ((chunk.y >> 5u) + word) * WORDS;
+    if (first >= chunk_fiblets) return;
+    word = ((chunk_first >> 5u) + word) * WORDS;
 #if FEATURE_CULL_COVERAGE
     test_plan(word, first);
 #endif

@@ -6,7 +6,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "frame/blocks.glsl"
+#include "uniforms/Chunk.glsl"
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
@@ -22,8 +22,8 @@ uint bits_of(uint word, uint which) {
 }
 
 void main() {
-    uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex, before = chunk.y >> 5u;
-    bool here = word * 32u < chunk.x;
+    uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex, before = chunk_first >> 5u;
+    bool here = word * 32u < chunk_fiblets;
     if (here && refined != 0u) {
         uint at = (before + word) * WORDS, kept = marks[at + KEPT];
         for (uint which = 0u; which < CLASSES; ++which) marks[at + REST + which] &= kept;

@@ -13,6 +13,6 @@ void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-        if (!hidden_in_pieces(capsule_of(f))) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + KEPT], 1u << (f & 31u));
+        if (!hidden_in_pieces(capsule_of(f))) atomicOr(marks[((chunk_first + f) >> 5) * WORDS + KEPT], 1u << (f & 31u));
     }
 }

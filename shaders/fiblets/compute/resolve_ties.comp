@@ -34,7 +34,7 @@ void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-        owner = chunk.y + f;
+        owner = chunk_first + f;
         begin_pixels(f);
         draw_fiblet(f);
     }

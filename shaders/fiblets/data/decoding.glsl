@@ -15,5 +15,5 @@ uint code_word(uint index) { return codes[index]; }
 #endif
 
 // 16 KiB, the least that OpenGL promises to a uniform block: cap angle by cap angle 256 words, four to a row.
-layout(std140, binding = 4) uniform Rotations { uvec4 rotations[1024]; };
+#include "uniforms/Rotations.glsl"
 uint rotation_word(uint index) { return rotations[index >> 2][index & 3u]; }

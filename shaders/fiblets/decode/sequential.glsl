@@ -52,7 +52,7 @@ void walk_begin(uint f) {
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
         walk.k = ivec3(0);
-        walk.step = steps.z * exp2(-float(fiblet_cap(words)));
+        walk.step = lattice_edge * exp2(-float(fiblet_cap(words)));
         int shape = int(fiblet_shape(words));
         walk.lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
         walk.n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);

@@ -37,7 +37,7 @@ vec4 rotation(uint cap, uint code, float scale) {
 
 float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }
 
-float step_length(uvec3 words) { return steps.x + float(fiblet_step(words)) * (steps.y / FIBLET_STEP_LEVELS); }
+float step_length(uvec3 words) { return step_low + float(fiblet_step(words)) * (step_span / FIBLET_STEP_LEVELS); }
 
 // The first direction's frame, M_0 of the paper. The octahedron's fold is decided on the integers, so that rounding
 // cannot choose another frame than the encoder's.

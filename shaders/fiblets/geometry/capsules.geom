@@ -43,7 +43,7 @@ void main() {
         ClippedSegment piece;
         bool start = segment == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
         if (!mask_segment(segment, start, cap) || !piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
-        Varyings varyings = Varyings(uvec2(pixel_ids.x, tangents[k]), chunk.y + f, pixel_first_point, segment, pixel_steps, values[k]);
+        Varyings varyings = Varyings(uvec2(pixel_ids.x, tangents[k]), chunk_first + f, pixel_first_point, segment, pixel_steps, values[k]);
         for (int corner = 0; corner < 4; ++corner) {
             gl_Position = corner_of(piece, corner);
             write_varyings(varyings, piece, points[k], points[k + 1u]);

@@ -39,7 +39,7 @@ void main() {
             open = false;
             continue;
         }
-        Varyings varyings = Varyings(pixel_ids, chunk.y + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
+        Varyings varyings = Varyings(pixel_ids, chunk_first + f, pixel_first_point, i - 1u, pixel_steps, vec2(before, value_of_point(i)));
         Thin line = thin_line(piece);
         for (int side = open && piece.t0 == 0.0 ? 1 : 0; side < 2; ++side) {
             if (side == 0) EndPrimitive();

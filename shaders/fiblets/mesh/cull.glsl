@@ -22,7 +22,7 @@ uint cull(out Survivors survivors) {
 #endif
     for (uint i = 0u; i < ROUNDS; ++i) {
         uint f = survivors.first + THREADS * i + thread;
-        bool here = f < chunk.x && survives(f);
+        bool here = f < chunk_fiblets && survives(f);
 #if FEATURE_SUBGROUPS
         survivors.bits[i] = subgroupBallot(here).x;
         count += uint(bitCount(survivors.bits[i]));

@@ -19,7 +19,7 @@ void draw_share(uint f, uint share) {
         next_point(i + 1u);
         start_segment(i, walk_delta, polyline.steps);
         if (i < first) continue;
-        Varyings varyings = Varyings(pixel_ids, chunk.y + f, pixel_first_point, i, pixel_steps, vec2(before, value_of_point(i + 1u)));
+        Varyings varyings = Varyings(pixel_ids, chunk_first + f, pixel_first_point, i, pixel_steps, vec2(before, value_of_point(i + 1u)));
         draw_segment(i - first, end - first, varyings, from, walk_point, i == 0u && polyline.begin, i + 1u == polyline.count && polyline.end);
     }
     put_count(PRIMITIVES * (end - first));

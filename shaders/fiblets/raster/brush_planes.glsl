@@ -10,7 +10,7 @@ struct BrushHeights {
 
 BrushHeights brush_heights(vec3 from, vec3 to, ClippedSegment piece) {
     BrushHeights heights;
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         precise float ha = clip_height_of(plane, from), hb = clip_height_of(plane, to);
         precise vec2 h = vec2(ha + piece.t0 * (hb - ha), ha + piece.t1 * (hb - ha)) / max(vec2(piece.a.w, piece.b.w), vec2(1e-30));
         heights.at_ends[plane] = max(h, vec2(0.0));
@@ -19,10 +19,10 @@ BrushHeights brush_heights(vec3 from, vec3 to, ClippedSegment piece) {
 }
 
 bool brush_kept(BrushHeights heights, float s, vec2 away) {
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         vec2 h = heights.at_ends[plane];
         precise float there = h.x + s * (h.y - h.x);
-        there += dot(clip_tilts[plane].xy, away);
+        there += dot(clip_tilts[plane], away);
         if (there < 0.0) return false;
     }
     return true;

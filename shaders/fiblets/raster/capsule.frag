@@ -38,10 +38,10 @@ void main() {
 #if FEATURE_CLIP_PLANES
 // Heights over clip w are linear in the window; `away` is how far the pixel is from the segment's point s.
 bool brush_kept(float s, vec2 away) {
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         vec2 heights = vec2(clip_height_of(plane, varying_from), clip_height_of(plane, varying_to));
         precise vec2 h = max(heights / max(vec2(varying_start.w, varying_end.w), vec2(1e-30)), vec2(0.0));
-        precise float there = h.x + s * (h.y - h.x) + dot(clip_tilts[plane].xy, away);
+        precise float there = h.x + s * (h.y - h.x) + dot(clip_tilts[plane], away);
         if (there < 0.0) return false;
     }
     return true;
@@ -53,13 +53,13 @@ void main() {
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > viewport.z * viewport.z) discard;
+    if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif
     precise float depth = varying_start.z + (varying_end.z - varying_start.z) * s;
 #if FEATURE_CROSS_LINE
-    out_across = clamp(dot(vec2(-run.y, run.x), centre) / (viewport.z * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
+    out_across = clamp(dot(vec2(-run.y, run.x), centre) / (half_line_width * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
 #endif
     shade(s, varying_start.w / varying_end.w, depth);
 }

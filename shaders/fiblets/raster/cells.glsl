@@ -25,7 +25,7 @@
 // The pixel that holds a point of the window; one on the right or upper edge belongs to the last pixel.
 vec2 pixel_of(vec4 window) {
 #if FEATURE_CLIPPING
-    return floor(clamp(window.xy, vec2(0.0), viewport.xy - 0.01));
+    return floor(clamp(window.xy, vec2(0.0), viewport - 0.01));
 #else
     return floor(window.xy);
 #endif

@@ -10,7 +10,7 @@ void cover(Segment segment) {
     peel_segment(outline.a.xy, outline.b.xy, r, segment.steps);
     bool steep = abs(run.y) > abs(run.x);
     vec2 a = steep ? outline.a.yx : outline.a.xy, b = steep ? outline.b.yx : outline.b.xy;
-    vec2 size = steep ? viewport.yx : viewport.xy;
+    vec2 size = steep ? viewport.yx : viewport;
     float slope = abs(b.x - a.x) > 1e-6 ? (b.y - a.y) / (b.x - a.x) : 0.0, height = r * sqrt(1.0 + slope * slope);
     vec2 ends = vec2(min(a.x, b.x), max(a.x, b.x));
     int column0 = int(max(ceil(ends.x - r - 0.5), 0.0)), column1 = int(min(floor(ends.y + r - 0.5), size.x - 1.0));

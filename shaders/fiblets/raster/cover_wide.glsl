@@ -16,11 +16,11 @@ void cover(Segment segment) {
     if (segment.index < share.x || segment.index >= share.y) return;
     ClippedSegment piece = segment.piece;
     BrushHeights heights = brush_heights(segment.from.local, segment.to.local, piece);
-    float r = viewport.z;
+    float r = half_line_width;
     vec2 d = piece.b.xy - piece.a.xy;
     peel_segment(piece.a.xy, piece.b.xy, r, segment.steps);
     bool steep = abs(d.y) > abs(d.x);
-    vec2 from = steep ? piece.a.yx : piece.a.xy, to = steep ? piece.b.yx : piece.b.xy, size = steep ? viewport.yx : viewport.xy;
+    vec2 from = steep ? piece.a.yx : piece.a.xy, to = steep ? piece.b.yx : piece.b.xy, size = steep ? viewport.yx : viewport;
     vec2 run = to - from;
     float inverse = 1.0 / max(dot(run, run), 1e-12);
     vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;

@@ -49,7 +49,7 @@ void shade(float s, float ratio, float depth) {
     float t = clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0), steps = float((varying_ids.w >> 8u) & 255u);
     begin_peel(varying_ids.x, varying_first);
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    peel_segment(varying_start.xy, varying_end.xy, viewport.z, steps);
+    peel_segment(varying_start.xy, varying_end.xy, half_line_width, steps);
 #endif
     if (!behind_layers(ivec2(gl_FragCoord.xy), key) || !new_surface(ivec2(gl_FragCoord.xy), segment)) discard;
 #if FEATURE_CLIPPING && !FEATURE_TUBES

@@ -17,7 +17,7 @@ struct Thin {
     vec4 last;
 };
 
-vec4 at_pixel(vec2 pixel) { return vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0); }
+vec4 at_pixel(vec2 pixel) { return vec4(2.0 * pixel / viewport - 1.0, 0.0, 1.0); }
 
 Thin thin_line(ClippedSegment piece) {
     vec2 p = pixel_of(piece.a), q = pixel_of(piece.b), run = q - p;

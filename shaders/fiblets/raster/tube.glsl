@@ -21,7 +21,7 @@
 //   3. Planes of the caller's narrow the range from t_in to t_out. What they cut is closed: the cut shows as a flat disc.
 //      What the near plane cuts is left open: one looks through it.
 //
-// A tube thinner than a pixel would be hit by few rays. Pixels at most viewport.z away from the axis belong to it too, as to
+// A tube thinner than a pixel would be hit by few rays. Pixels at most half_line_width away from the axis belong to it too, as to
 // a line of twice that width (a pixel of the finished picture); where no ray hits, they show the axis.
 //
 // Outline: which pixels are tested. A ball of radius r around p reaches |J v| / (W + grad W . v), |v| <= r, pixels away from
@@ -38,7 +38,7 @@ struct Outline {
     float t0;      // where on the segment they lie
     float t1;
     float reach;   // pixels away from that part
-    bool thin;     // may be thinner than 2 viewport.z
+    bool thin;     // may be thinner than 2 half_line_width
 };
 
 struct Tube {
@@ -61,16 +61,16 @@ const float OUTLINE_ROUNDING = 0.05;
 
 // What a box around the part of a tube between a and b takes of the window; false if nothing.
 bool box_of(vec4 a, vec4 b, out Outline outline) {
-    vec2 size = tube.x * vec2(length(window_gradient(0)), length(window_gradient(1)));
-    vec2 low = min(a.xy, b.xy) - size, high = max(a.xy, b.xy) + size, first = vec2(0.0), last = viewport.xy;
-    vec2 near = vec2(tube.z), far = vec2(max(max(a.w, b.w) + tube.y, tube.z));
-    if (tube.z > 0.0) {
+    vec2 size = tube_radius * vec2(length(window_gradient(0)), length(window_gradient(1)));
+    vec2 low = min(a.xy, b.xy) - size, high = max(a.xy, b.xy) + size, first = vec2(0.0), last = viewport;
+    vec2 near = vec2(tube_near_w), far = vec2(max(max(a.w, b.w) + tube_w_reach, tube_near_w));
+    if (tube_near_w > 0.0) {
         first = low / mix(near, far, greaterThanEqual(low, vec2(0.0)));
         last = high / mix(far, near, greaterThanEqual(high, vec2(0.0)));
     }
-    bool any_part = all(lessThanEqual(first, viewport.xy)) && all(greaterThanEqual(last, vec2(0.0)));
-    first = clamp(first, vec2(0.0), viewport.xy);
-    last = clamp(last, vec2(0.0), viewport.xy);
+    bool any_part = all(lessThanEqual(first, viewport)) && all(greaterThanEqual(last, vec2(0.0)));
+    first = clamp(first, vec2(0.0), viewport);
+    last = clamp(last, vec2(0.0), viewport);
     vec4 middle = vec4(0.5 * (first + last), 0.0, 1.0);
     outline = Outline(middle, middle, 0.0, 1.0, 0.5 * distance(first, last) + 1.0, false);
     return any_part;
@@ -78,7 +78,7 @@ bool box_of(vec4 a, vec4 b, out Outline outline) {
 
 // False if nothing of the tube can show. c0, c1: homogeneous window coordinates of both ends.
 bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
-    float low = min(c0.w, c1.w), high = max(c0.w, c1.w), nearest = tube.z - tube.y, t0 = 0.0, t1 = 1.0;
+    float low = min(c0.w, c1.w), high = max(c0.w, c1.w), nearest = tube_near_w - tube_w_reach, t0 = 0.0, t1 = 1.0;
     vec4 a = c0, b = c1;
     outline = Outline(a, b, t0, t1, 0.0, false);
     if (high < nearest) return false;
@@ -89,30 +89,30 @@ bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
         if (c0.w < c1.w) { a = cut; t0 = t; }
         else { b = cut; t1 = t; }
     }
-    float close = max(min(a.w, b.w) - tube.y, tube.z);
-    if (min(a.w, b.w) <= max(0.25 * max(tube.y, tube.z), 1e-30) || close <= 0.0) return box_of(a, b, outline);
+    float close = max(min(a.w, b.w) - tube_w_reach, tube_near_w);
+    if (min(a.w, b.w) <= max(0.25 * max(tube_w_reach, tube_near_w), 1e-30) || close <= 0.0) return box_of(a, b, outline);
     vec4 c = a, d = b;
     a = to_window(a);
     b = to_window(b);
-    float at_a = tube.x * pixel_derivative_at(a.xy), at_b = tube.x * pixel_derivative_at(b.xy);
-    float reach = max(max(at_a, at_b) / close, viewport.z) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
+    float at_a = tube_radius * pixel_derivative_at(a.xy), at_b = tube_radius * pixel_derivative_at(b.xy);
+    float reach = max(max(at_a, at_b) / close, half_line_width) + OUTLINE_ROUNDING + 1e-5 * (length(a.xy) + length(b.xy));
     if (!(reach < viewport.x + viewport.y)) return box_of(c, d, outline);
     vec2 least = min(a.xy, b.xy) - reach, most = max(a.xy, b.xy) + reach;
-    if (any(greaterThan(least, viewport.xy)) || any(lessThan(most, vec2(0.0)))) return false;
-    outline = Outline(a, b, t0, t1, reach, min(at_a, at_b) < 2.0 * viewport.z * max(a.w, b.w));
+    if (any(greaterThan(least, viewport)) || any(lessThan(most, vec2(0.0)))) return false;
+    outline = Outline(a, b, t0, t1, reach, min(at_a, at_b) < 2.0 * half_line_width * max(a.w, b.w));
     return true;
 }
 
 Tube tube_of(vec3 a, vec3 b, vec4 c0, bool start) {
     precise vec3 run = b - a;
     precise float size = length(run);
-    return Tube(a, size > 0.0 ? run / size : vec3(0.0), size, to_window(c0), start, c0.w < max(0.25 * tube.y, 1e-30));
+    return Tube(a, size > 0.0 ? run / size : vec3(0.0), size, to_window(c0), start, c0.w < max(0.25 * tube_w_reach, 1e-30));
 }
 
 vec2 sphere_range(vec3 o, vec3 d) {
     precise float middle = -dot(o, d);
     precise vec3 away = o + middle * d;
-    precise float h = tube.x * tube.x - dot(away, away);
+    precise float h = tube_radius * tube_radius - dot(away, away);
     if (h < 0.0) return vec2(3.0e38, -3.0e38);
     precise float s = sqrt(h);
     return vec2(middle - s, middle + s);
@@ -128,15 +128,15 @@ float depth_at(Tube t, vec4 c0, vec3 v) {
 bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
     hit = Hit(0.0, 0.0, vec3(0.0));
     vec2 off = pixel - t.from.xy;
-    precise vec3 way = tube_ray.xyz + tube.w * (pixel.x * tube_ray_x.xyz + pixel.y * tube_ray_y.xyz);
+    precise vec3 way = tube_ray + tube_perspective * (pixel.x * tube_ray_x + pixel.y * tube_ray_y);
     precise vec3 d = way / max(length(way), 1e-30);
-    precise vec3 o = t.from.w * (off.x * tube_ray_x.xyz + off.y * tube_ray_y.xyz);
-    if (t.beside) o = tube_eye.xyz - t.a;
+    precise vec3 o = t.from.w * (off.x * tube_ray_x + off.y * tube_ray_y);
+    if (t.beside) o = tube_eye - t.a;
     precise float ou = dot(o, t.axis), du = dot(d, t.axis);
     precise vec3 op = o - ou * t.axis, dp = d - du * t.axis;
     precise float dd = max(dot(dp, dp), 1e-12), middle = -dot(op, dp) / dd;
     precise vec3 away = op + middle * dp;
-    precise float h = tube.x * tube.x - dot(away, away);
+    precise float h = tube_radius * tube_radius - dot(away, away);
     if (h < 0.0) return false;
     precise float s = sqrt(h / dd), first = middle - s, last = middle + s;
     precise float y0 = ou + first * du, y1 = ou + last * du;
@@ -153,7 +153,7 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
     else if (y1 > t.size) last = sphere_range(o - t.size * t.axis, d).y;
     vec3 face = vec3(0.0);
 #if FEATURE_CLIP_PLANES
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         precise float height = clip_height_of(plane, t.a) + dot(clip_planes[plane].xyz, o);
         float rise = dot(clip_planes[plane].xyz, d);
         if (abs(rise) < 1e-9) {
@@ -188,7 +188,7 @@ bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && !t.start && outline.t0 == 0.0 || dot(away, away) > viewport.z * viewport.z) return false;
+    if (foot < 0.0 && !t.start && outline.t0 == 0.0 || dot(away, away) > half_line_width * half_line_width) return false;
     precise float z = outline.a.z + (outline.b.z - outline.a.z) * s;
     if (!(z >= 0.0 && z <= 1.0)) return false;
     precise float u = clamp(s * outline.a.w / max((1.0 - s) * outline.b.w + s * outline.a.w, 1e-30), 0.0, 1.0);
@@ -197,7 +197,7 @@ bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
 #if FEATURE_CLIP_PLANES
     if (clip_height(t.a + hit.t * t.size * t.axis) < 0.0) return false;
 #endif
-    vec3 d = normalize(tube_ray.xyz + tube.w * (pixel.x * tube_ray_x.xyz + pixel.y * tube_ray_y.xyz));
+    vec3 d = normalize(tube_ray + tube_perspective * (pixel.x * tube_ray_x + pixel.y * tube_ray_y));
     vec3 n = dot(d, t.axis) * t.axis - d;
     hit.normal = dot(n, n) > 1e-6 ? normalize(n) : -d;
     return true;

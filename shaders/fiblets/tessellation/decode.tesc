@@ -41,7 +41,7 @@ void main() {
         }
         if (i >= first) halves[gl_InvocationID].points[i - first] = vec4(walk_point, value_of_point(i));
     }
-    patch_ids = uvec4(pixel_ids.x, chunk.y + f, polyline.count | (uint(polyline.steps) << 8u),
+    patch_ids = uvec4(pixel_ids.x, chunk_first + f, polyline.count | (uint(polyline.steps) << 8u),
                       (polyline.begin ? 1u : 0u) | (polyline.end ? 2u : 0u));
     patch_first = pixel_first_point;
 #if FEATURE_POINT_MASK

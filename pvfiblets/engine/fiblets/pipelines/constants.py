@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ....query.region import MAX_LEAVES, MAX_OPS
 from ...passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
 from ..filter_textures import MASK_BITS
@@ -29,8 +28,6 @@ CONSTANTS = {
     "mark_words": MARK_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,
-    "max_region_leaves": MAX_LEAVES,
-    "max_region_ops": MAX_OPS,
     "mesh_threads": THREADS,
     "task_fiblets": TASK_FIBLETS,
     "task_rounds": TASK_ROUNDS,
