@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
-from pvfiblets.web.bar_places import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.document import Layer
+from pvfiblets.web.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
 
 __all__ = ["Bars", "bar_arguments", "bar_calls", "bars_of", "contrast"]
 

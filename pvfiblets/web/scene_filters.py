@@ -14,12 +14,12 @@ from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
 
-__all__ = ["Showing", "check_filters"]
+__all__ = ["SceneFilters", "check_filters"]
 
 MOST_CLIPS = 16
 
 
-class Showing:
+class SceneFilters:
     """The part of :class:`~pvfiblets.web.scene.Scene` that says what is left out."""
 
     if TYPE_CHECKING:
@@ -223,7 +223,7 @@ class Showing:
         self._change(replace(layer, filters=filters), f"{what} of {layer.name}", key)
 
     def _check_values(self, layer: Layer, criterion: Any) -> None:
-        from pvfiblets.web.tables import value_names
+        from pvfiblets.web.layer_properties import value_names
 
         known = value_names(self.data(layer).data)
         if criterion not in known:
@@ -275,7 +275,7 @@ def check_filters(value: Any, data: Any) -> Filters:
     ValueError
         If they do not.
     """
-    from pvfiblets.web.tables import value_names
+    from pvfiblets.web.layer_properties import value_names
 
     mapping(value, "filters", (), ("criteria", "groups", "subset", "regions"))
     criteria = {}

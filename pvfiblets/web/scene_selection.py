@@ -16,14 +16,14 @@ from pvfiblets.web.writing import EXPORTS, write
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Files
 
-__all__ = ["MODES", "Selecting"]
+__all__ = ["MODES", "SceneSelection"]
 
 MODES = ("replace", "add", "remove", "toggle")
 _LONGEST_LASSO = 4096
 _LONGEST_TABLE = 5000
 
 
-class Selecting:
+class SceneSelection:
     """The part of :class:`~pvfiblets.web.scene.Scene` that selects; pixels count from the lower left corner."""
 
     if TYPE_CHECKING:
@@ -301,7 +301,7 @@ class Selecting:
 
 
 def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[str, Any]:
-    """Return the profile of a volume's values; see :meth:`Selecting.profile`."""
+    """Return the profile of a volume's values; see :meth:`SceneSelection.profile`."""
     from pvfiblets.query.profile import mean_profile
 
     part = actor.fiblets.extract(ids)

@@ -14,7 +14,7 @@ LONGEST = 1000  # characters of a line that somebody else wrote
 _Kind = tuple[str, int, str, str]
 
 
-class Quiet(logging.Filter):
+class LogLimiter(logging.Filter):
     """Lets through a few records of a kind, and says how many it left out.
 
     A kind is the logger, the level and the text before its arguments are put in; a record with the attribute ``about``

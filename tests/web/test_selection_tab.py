@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.web.picks import SelectionActions
+from pvfiblets.web.selection_tab import SelectionActions
 from tests.web.desk import Desk
 
 

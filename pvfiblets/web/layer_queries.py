@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
     from pvfiblets.web.store import Store
 
-__all__ = ["Questions"]
+__all__ = ["LayerQueries"]
 
 MOST_POINTS = 4_000_000
 """That a histogram looks at; of larger data an even share."""
@@ -23,7 +23,7 @@ MOST_POINTS = 4_000_000
 _KEPT = 64  # histograms
 
 
-class Questions:
+class LayerQueries:
     """The part of :class:`~pvfiblets.web.scene.Scene` that answers; nothing changes."""
 
     if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Questions:
     def arrays(self, layer_id: str) -> list[dict[str, str]]:
         """Return the values that a layer can be filtered by and that have histograms: ``name``, ``title``."""
         from pvfiblets.plotting.fiblets.scalars import UNITS
-        from pvfiblets.web.tables import value_names
+        from pvfiblets.web.layer_properties import value_names
 
         layer = self.layer(layer_id)
         data = self.data(layer).data

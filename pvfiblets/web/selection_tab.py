@@ -6,7 +6,7 @@ from typing import Any
 
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import profile_chart, short
-from pvfiblets.web.marks import hide_distance, show_distance
+from pvfiblets.web.distance_label import hide_distance, show_distance
 from pvfiblets.web.rpc_allowlist import number
 
 ROWS = 200

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from pvfiblets.web.bar_places import DOTS, Wanted, arrange
+from pvfiblets.web.scalar_bar_layout import DOTS, Wanted, arrange
 
 SIZES = [(760, 856), (800, 556), (320, 596), (320, 276), (276, 320), (1600, 400)]  # of pictures in pages
 VALUES = ("length", "fa", "group", "weight")
