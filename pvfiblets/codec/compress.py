@@ -74,7 +74,7 @@ def compress(
     Notes
     -----
     Paper: Schertzer et al., "Fiblets for Real-Time Rendering of Massive Brain Tractograms", 2022, section 3.2 and
-    appendix A, with the changes that :mod:`pvfiblets.codec.tables` states.
+    appendix A, with the changes that :mod:`pvfiblets.codec.direction_codebook` states.
     """
     if not isinstance(streamlines, Streamlines):
         raise TypeError(

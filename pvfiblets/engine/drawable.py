@@ -20,7 +20,7 @@ import moderngl
 
 from .errors import EngineError
 from .gbuffer import GBuffer
-from .opengl import OpenGL
+from .moderngl_extras import GLExtras
 from .passes import Passes
 from .shaders import Programs
 from .view import Style, View
@@ -79,7 +79,7 @@ class Drawable(ABC, Generic[AnyStyle]):
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, Any]) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, constants)
         self._kept_on_gpu: list[tuple[str, Kept]] = []

@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
 from pvfiblets.mappers import resolve
-from pvfiblets.mappers.active import ActiveRenderer
+from pvfiblets.mappers.active_renderer import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import layers_of, with_layers
 from pvfiblets.mappers.engines import Options

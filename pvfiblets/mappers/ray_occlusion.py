@@ -12,7 +12,7 @@ from pvfiblets.mappers.shader_effects import Piece
 from pvfiblets.mappers.shading import extent, positive, share
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
+    from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
     from pvfiblets.mappers.shader_effects import Draw
 
 __all__ = ["RayOcclusion"]
@@ -60,7 +60,7 @@ class RayOcclusion(Piece):
     features: ClassVar[frozenset[str]] = frozenset({"ray_occlusion"})
 
     def __post_init__(self) -> None:
-        from pvfiblets.engine.volumes.occlusion import MAX_SAMPLES
+        from pvfiblets.engine.volumes.ray_occlusion import MAX_SAMPLES
 
         for name, low, high in (("samples", 1, MAX_SAMPLES), ("seed", 0, 2**32 - 1)):
             number = getattr(self, name)
@@ -74,7 +74,7 @@ class RayOcclusion(Piece):
 
     def make(self, ctx: Any) -> RayOcclusionPass:
         """Make the pass."""
-        from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
+        from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
 
         return RayOcclusionPass(ctx)
 

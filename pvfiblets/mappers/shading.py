@@ -19,7 +19,7 @@ from pvfiblets.mappers.scene import pixel_scale
 from pvfiblets.mappers.shader_effects import Draw, Piece
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
+    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
 
 __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
 
@@ -298,11 +298,11 @@ class Silhouette(Piece):
         widen(program, draw)
 
 
-def lens_of(draw: Draw) -> Lens:
+def lens_of(draw: Draw) -> Projection:
     """Return what effects must know of a draw's camera."""
-    from pvfiblets.engine.effects import Lens
+    from pvfiblets.engine.effects import Projection
 
-    return Lens(draw.view.size, draw.frame.projection)
+    return Projection(draw.view.size, draw.frame.projection)
 
 
 def extent(draw: Draw) -> float:

@@ -21,7 +21,7 @@
 // The point is moved onto the surface first, along the gradient: interpolated ones (sparse casting) and those that nothing refined
 // lie beside it. Rays then start a part of a voxel above it, and look at the field as often as those of the picture.
 //
-// Out: how many of the rays meet nothing, to be added to those of other draws: pvfiblets/engine/volumes/occlusion.py casts them in
+// Out: how many of the rays meet nothing, to be added to those of other draws: pvfiblets/engine/volumes/ray_occlusion.py casts them in
 // portions.
 
 #version 430

@@ -17,7 +17,7 @@ from pvfiblets.engine import FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.frame import frame_block
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs, assemble
 
 from .cells import line_cells
@@ -81,7 +81,7 @@ def answers(gl, size, projection, depth, capsules):
     texture = gl.texture(size, 1, depth.astype("<u4").tobytes(), dtype="u4")
     texture.filter = moderngl.NEAREST, moderngl.NEAREST
     program = gl.compute_shader(assemble("test", (), CONSTANTS, source=PROGRAM))
-    pyramid = DepthPyramid(gl, OpenGL(gl), programs)
+    pyramid = DepthPyramid(gl, GLExtras(gl), programs)
     pyramid.build(SimpleNamespace(size=size, depth=texture))
     pyramid.bind(program)
     frame.bind_to_uniform_block(0)

@@ -351,6 +351,6 @@ CHANGED = {
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.volumes.occlusion, mappers.ray_occlusion",
+        modules="engine.volumes.ray_occlusion, mappers.ray_occlusion",
     ),
 }

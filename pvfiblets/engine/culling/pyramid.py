@@ -13,7 +13,7 @@ import moderngl
 
 from ..bindings import CULLING
 from ..gbuffer import GBuffer
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from ..view import Style, View
 
@@ -31,7 +31,7 @@ segments the finer ones draw less early, and more in all."""
 class _Levels:
     """A texture of all levels, and a framebuffer for each."""
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int]) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
         sides = tuple(max(1 << (n - 1).bit_length() >> 1, 1) for n in size)
         self.count = max(1, (max(sides) // SMALLEST).bit_length())
         self.texture = ctx.texture((sides[0], sides[1]), 1, dtype="u4")
@@ -61,7 +61,7 @@ class DepthPyramid:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
 
     Attributes
@@ -75,7 +75,7 @@ class DepthPyramid:
     feature = "CULL_PYRAMID"
     halfway = True
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs

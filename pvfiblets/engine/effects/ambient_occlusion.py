@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .lens import Lens
+from .projection import Projection
 from .screen import ScreenEffect
 
 __all__ = ["MAX_SAMPLES", "AmbientOcclusionPass"]
@@ -35,7 +35,7 @@ class AmbientOcclusionPass(ScreenEffect):
     def draw(
         self,
         buffer: Any,
-        lens: Lens,
+        lens: Projection,
         directions_to_view: npt.NDArray[np.float64],
         *,
         radius: float,
@@ -49,7 +49,7 @@ class AmbientOcclusionPass(ScreenEffect):
         ----------
         buffer : GBuffer
             Its ``depth`` is read, and its ``ids``, or of surfaces ``across``.
-        lens : Lens
+        lens : Projection
             Of the same picture.
         directions_to_view : numpy.ndarray
             ``(3, 3)``: tangents in data coordinates to view coordinates, of any scale.

@@ -7,7 +7,7 @@ from typing import Any
 
 import moderngl
 
-from .lens import Lens
+from .projection import Projection
 from .screen import ScreenEffect
 
 __all__ = ["WIDEST", "HaloPass"]
@@ -33,7 +33,7 @@ class HaloPass(ScreenEffect):
     def draw(
         self,
         buffer: Any,
-        lens: Lens,
+        lens: Projection,
         *,
         width: float,
         depth: float,
@@ -46,7 +46,7 @@ class HaloPass(ScreenEffect):
         ----------
         buffer : GBuffer
             Its ``depth`` is read.
-        lens : Lens
+        lens : Projection
             Of the same picture.
         width : float
             mm from a line's edge to its halo's; at most `WIDEST` pixels of the finished picture.

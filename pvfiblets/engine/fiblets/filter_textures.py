@@ -16,7 +16,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...codec.places import Places
+from ...codec.streamline_ranges import StreamlineRanges
 from ...query.bits import rank_words
 from ..bindings import MASKS
 from ..errors import EngineError, GPUMemoryError
@@ -228,7 +228,7 @@ def _of_part(words: Words, whole: FibletSet, part: FibletSet) -> Words:
     """Bits of the points of some streamlines, in the order in which a part of the set holds them."""
     ids = np.arange(part.n_streamlines) if part.rank_to_id is None else np.asarray(part.rank_to_id)
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
-    places = Places.of(whole).at(ids)
+    places = StreamlineRanges.of(whole).at(ids)
     ends = np.cumsum(places.points)
     rows = np.repeat(places.point - (ends - places.points), places.points) + np.arange(ends[-1] if len(ends) else 0)
     return _packed(bits[rows].astype(np.bool_))

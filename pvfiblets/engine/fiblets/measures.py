@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import BLOCKS, MEASURE_STORAGE
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
 from .chunks import Chunk, storage_buffer
@@ -99,11 +99,11 @@ class FeedbackMeasurer:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs

@@ -27,7 +27,7 @@ import numpy as np
 
 from ...codec.restrict import Restriction, even_share
 from ..errors import EngineError, GPUMemoryError
-from ..opengl import INTEGERS, OpenGL
+from ..moderngl_extras import INTEGERS, GLExtras
 from ..passes import is_software
 from .chunks import ChunkPlan, plan_chunks
 from .pipelines.limits import Limits
@@ -102,13 +102,13 @@ class Room:
     largest: int | None = None
 
     @classmethod
-    def of(cls, ctx: moderngl.Context, gl: OpenGL, limits: Limits, largest: int | None) -> Room:
+    def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> Room:
         """Ask the driver and the machine.
 
         Parameters
         ----------
         ctx : moderngl.Context
-        gl : OpenGL
+        gl : GLExtras
         limits : Limits
         largest : int, optional
             Bytes that all buffers together may have.
@@ -208,13 +208,13 @@ def _fraction_of(part: Restriction, whole: FibletSet) -> float:
     return max(some / every for some, every in sizes if every)
 
 
-def free_memory(ctx: moderngl.Context, gl: OpenGL) -> int | None:
+def free_memory(ctx: moderngl.Context, gl: GLExtras) -> int | None:
     """Bytes that buffers can still take, where it can be known beforehand.
 
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     """
     if is_software(ctx):
         return free_host_memory()

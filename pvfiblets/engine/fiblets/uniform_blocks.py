@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...codec import layout, tables
+from ...codec import direction_codebook, layout
 from ..bindings import BLOCKS
 from ..clipping import BLOCK_BYTES, clip_planes_block
 from ..frame import FRAME_BYTES, frame_block, segment_pixels
@@ -62,9 +62,9 @@ class SharedBlocks:
         coding = np.zeros((6, 4), "<f4")
         coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
         coding[1] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice, fiblets.parameters.end_scale
-        coding[2:] = tables.packed_scales().reshape(4, 4)
+        coding[2:] = direction_codebook.packed_scales().reshape(4, 4)
         self.buffers: dict[str, moderngl.Buffer] = {
-            "rotations": ctx.buffer(np.ascontiguousarray(tables.packed(), "<u4").tobytes()),
+            "rotations": ctx.buffer(np.ascontiguousarray(direction_codebook.packed(), "<u4").tobytes()),
             "coding": ctx.buffer(coding.tobytes()),
             "frame": ctx.buffer(bytes(FRAME_BYTES)),
         }

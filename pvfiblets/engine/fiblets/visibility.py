@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
     from ..regions.ray_intervals import Cutter
     from ..regions.uniform_block import RegionBlock
     from ..shaders import Programs
@@ -31,7 +31,7 @@ class Visibility:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     whole, drawn : FibletSet
         What filters speak of, and what lies on the GPU: the same, or some of its streamlines.
@@ -41,7 +41,7 @@ class Visibility:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         whole: FibletSet,
         drawn: FibletSet,

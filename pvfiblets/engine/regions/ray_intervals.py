@@ -27,7 +27,7 @@ from ...query.shapes import SURFACE
 from ..bindings import BLOCKS, REGIONS
 from ..errors import EngineError
 from ..frame import Array, local_frame
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
 from .clip_planes import check_region
@@ -58,11 +58,11 @@ class Cutter:
     ----------
     ctx : moderngl.Context
         OpenGL 3.3 or later.
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs

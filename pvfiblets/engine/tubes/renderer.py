@@ -47,7 +47,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         Steps of one search for a root; the solver's own number by default.
     culling : {'two-phase', None}
         How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
-        it (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
+        it (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
     middle : float
         Share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
     discard : bool

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...volumes.volume import RaycastVolume
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
     from ..regions.ray_intervals import Cutter
     from ..shaders import Programs
     from ..view import View
@@ -29,12 +29,12 @@ class RayCuts:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     volume : RaycastVolume
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, volume: RaycastVolume) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, volume: RaycastVolume) -> None:
         self._made_of = ctx, gl, programs
         self._cutter: Cutter | None = None
         bounds = np.array(volume.bounds).reshape(3, 2)

@@ -331,9 +331,9 @@ def part_of_filter(filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> Any:
     streamlines = None if filtering.streamlines is None else filtering.streamlines[ids]
     words = None
     if filtering.points is not None:
-        from pvfiblets.codec.places import places_of
+        from pvfiblets.codec.streamline_ranges import ranges_of
 
-        places = places_of(fiblets, ids)
+        places = ranges_of(fiblets, ids)
         places = places.at(np.argsort(places.point, kind="stable"))  # a part is coded in the order of the whole
         lengths = places.points
         first = np.cumsum(lengths) - lengths

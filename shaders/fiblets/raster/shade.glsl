@@ -1,4 +1,4 @@
-// What a fragment says of its pixel: the attachments of pvfiblets/engine/fiblets/pipelines/raster.py.
+// What a fragment says of its pixel: the attachments of pvfiblets/engine/fiblets/pipelines/hardware_raster.py.
 //
 // Ties (equal depth in one pixel) go to the fiblet with the smallest index, as in the compute pipeline: OpenGL draws in
 // order, and a later fragment must be nearer. In the second round of two-phase culling it may also be as near as the first

@@ -45,7 +45,7 @@ import numpy as np
 from ....codec.layout import MAX_POINTS
 from ...bindings import BLOCKS, IMAGES, STORAGE
 from ...errors import EngineError
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...passes import GROUP_SIZE, dispatch, is_software
 from ...shaders import EXTENDED, Programs
 from ..chunks import Chunk, storage_buffer
@@ -191,7 +191,7 @@ class ComputePipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, OpenGL(self._ctx), self._programs, 32 * self._words)
+            self._raster = GeometryPipeline(self._ctx, GLExtras(self._ctx), self._programs, 32 * self._words)
         self._raster.draw(request)
 
     def _bind_nearest(self, size: int) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import moderngl
 
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from .compute import CLASSES
 from .constants import MARK_WORDS
 
@@ -50,14 +50,14 @@ class Limits:
 
     @classmethod
     def of(
-        cls, ctx: moderngl.Context, gl: OpenGL, pipeline: str, buffer_bytes: int | None, groups: int | None
+        cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
         """Ask the driver, and take what is less.
 
         Parameters
         ----------
         ctx : moderngl.Context
-        gl : OpenGL
+        gl : GLExtras
         pipeline : str
         buffer_bytes, groups : int, optional
             Of the user's.

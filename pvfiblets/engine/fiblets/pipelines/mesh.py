@@ -23,12 +23,12 @@ from collections.abc import Mapping
 
 import moderngl
 
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...shaders import Programs
 from ..chunks import Chunk
 from .constants import TASK_FIBLETS, THREADS
 from .draw_request import DrawRequest
-from .raster import RasterPipeline
+from .hardware_raster import RasterPipeline
 
 __all__ = ["MeshPipeline"]
 
@@ -43,7 +43,7 @@ class MeshPipeline(RasterPipeline):
     ----------
     ctx : moderngl.Context
         With GL_NV_mesh_shader.
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     n_fiblets : int
         In all chunks.
@@ -56,7 +56,7 @@ class MeshPipeline(RasterPipeline):
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         n_fiblets: int,
         *,

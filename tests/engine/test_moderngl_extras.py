@@ -9,9 +9,9 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import opengl
+from pvfiblets.engine import moderngl_extras
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.opengl import INTEGERS, TEXEL_FORMATS, OpenGL
+from pvfiblets.engine.moderngl_extras import INTEGERS, TEXEL_FORMATS, GLExtras
 
 DTYPES = {"ui": {"8": "u1", "16": "u2", "32": "u4"}, "f": {"32": "f4"}}
 CHANNELS = {"r": 1, "rg": 2, "rgba": 4}
@@ -43,8 +43,8 @@ def read_back(gl, texture, internal_format, count):
     array, out = gl.vertex_array(program, []), gl.buffer(reserve=count * 16)
     try:
         texture.bind(5)
-        OpenGL(gl).set_sampler(program, "data", 5)
-        OpenGL(gl).set_sampler(program, "nothing of that name", 5)
+        GLExtras(gl).set_sampler(program, "data", 5)
+        GLExtras(gl).set_sampler(program, "nothing of that name", 5)
         array.transform(out, moderngl.POINTS, count)
         return np.frombuffer(out.read(), "f4" if not kind else "u4").reshape(count, 4)
     finally:
@@ -58,7 +58,7 @@ def test_a_shader_reads_a_buffer_through_a_texture(gl, internal_format):
     rng = np.random.default_rng(1)
     values = rng.integers(0, 200, (37, channels)).astype(dtype)
     buffer = gl.buffer(values.tobytes())
-    texture = OpenGL(gl).texture_buffer(buffer, internal_format)
+    texture = GLExtras(gl).texture_buffer(buffer, internal_format)
     try:
         assert (texture.texels, texture.nbytes) == (37, values.nbytes)
         np.testing.assert_array_equal(read_back(gl, texture, internal_format, 37)[:, :channels], values)
@@ -75,14 +75,14 @@ def test_a_shader_reads_a_buffer_through_a_texture(gl, internal_format):
 
 def test_a_part_of_a_texel_at_the_end_is_left_out(gl):
     buffer = gl.buffer(bytes(23))
-    texture = OpenGL(gl).texture_buffer(buffer, "rg32ui")
+    texture = GLExtras(gl).texture_buffer(buffer, "rg32ui")
     assert (texture.texels, texture.nbytes) == (2, 16)
     texture.release()
     buffer.release()
 
 
 def test_bad_buffer_textures_are_refused(gl, monkeypatch):
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     buffer = gl.buffer(bytes(64))
     with pytest.raises(EngineError, match=r"'rgb8' is no format of .* \['r8ui'"):
         functions.texture_buffer(buffer, "rgb8")
@@ -96,7 +96,7 @@ def test_bad_buffer_textures_are_refused(gl, monkeypatch):
 def test_moderngl_draws_right_after_a_buffer_texture_was_bound(gl):
     """Textures that moderngl binds to the same unit are those that it samples."""
     buffer, picture = gl.buffer(bytes(4)), gl.texture((1, 1), 1, np.uint32(77).tobytes(), dtype="u4")
-    codes = OpenGL(gl).texture_buffer(buffer, "r32ui")
+    codes = GLExtras(gl).texture_buffer(buffer, "r32ui")
     program = gl.program(
         vertex_shader="""#version 330
             uniform usampler2D data; out uint texel;
@@ -118,7 +118,7 @@ def test_moderngl_draws_right_after_a_buffer_texture_was_bound(gl):
 @pytest.mark.parametrize(("dtype", "components"), [("u4", 1), ("u4", 2), ("f4", 1)])
 def test_every_level_of_a_texture_can_be_drawn_and_read(gl, dtype, components):
     """A chain of levels: each is drawn from the one before; a fragment adds one to its texel."""
-    functions, size, levels = OpenGL(gl), (13, 6), 4
+    functions, size, levels = GLExtras(gl), (13, 6), 4
     texture = gl.texture(size, components, bytes(size[0] * size[1] * 4 * components), dtype=dtype, alignment=1)
     texture.filter = moderngl.NEAREST, moderngl.NEAREST
     functions.add_levels(texture, levels)
@@ -156,7 +156,7 @@ def test_every_level_of_a_texture_can_be_drawn_and_read(gl, dtype, components):
 def test_levels_of_an_unknown_texture_are_refused(gl):
     texture = gl.texture((4, 4), 3)
     with pytest.raises(EngineError, match=r"\('f1', 3\)"):
-        OpenGL(gl).add_levels(texture, 2)
+        GLExtras(gl).add_levels(texture, 2)
     texture.release()
 
 
@@ -164,7 +164,7 @@ def test_an_integer_attachment_is_cleared_and_no_other(gl):
     textures = [gl.texture((3, 2), 2, dtype="u4") for _ in range(2)]
     framebuffer, other = gl.framebuffer(textures), gl.simple_framebuffer((2, 2))
     other.use()
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     functions.clear_integers(framebuffer, (7, 0xFFFFFFFF))
     functions.clear_integers(framebuffer, (5,), attachment=1)
     assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == other.glo
@@ -175,7 +175,7 @@ def test_an_integer_attachment_is_cleared_and_no_other(gl):
 
 
 def test_framebuffers_are_bound_again_and_moderngl_knows(gl):
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     bound = functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
     mine = gl.simple_framebuffer((2, 2))
     with functions.framebuffers_kept():
@@ -192,7 +192,7 @@ def test_framebuffers_are_bound_again_and_moderngl_knows(gl):
 
 @pytest.mark.parametrize("name", INTEGERS)
 def test_integers_are_those_of_moderngl_or_refused(gl, name):
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     needs = INTEGERS[name][1]
     if isinstance(needs, str) and needs not in gl.extensions:
         with pytest.raises(EngineError, match=f"{name} needs {needs}, which this OpenGL .* lacks"):
@@ -206,7 +206,7 @@ def test_integers_are_those_of_moderngl_or_refused(gl, name):
 
 def test_an_unknown_integer_is_refused(gl):
     with pytest.raises(EngineError, match="GL_NONSENSE is not a known integer of OpenGL; known are GL_"):
-        OpenGL(gl).get_integer("GL_NONSENSE")
+        GLExtras(gl).get_integer("GL_NONSENSE")
 
 
 def test_an_integer_of_a_newer_version_is_refused():
@@ -216,15 +216,15 @@ def test_an_integer_of_a_newer_version_is_refused():
         info = {"GL_RENDERER": "an old card"}  # noqa: RUF012
 
     with pytest.raises(EngineError, match=r"GL_MAX_TESS_GEN_LEVEL needs OpenGL 4\.0, found 3\.3"):
-        OpenGL(Old()).get_integer("GL_MAX_TESS_GEN_LEVEL")
+        GLExtras(Old()).get_integer("GL_MAX_TESS_GEN_LEVEL")
     with pytest.raises(EngineError, match=r"glDrawMeshTasksEXT needs GL_EXT_mesh_shader, which .*an old card"):
-        OpenGL(Old()).function("glDrawMeshTasksEXT")
+        GLExtras(Old()).function("glDrawMeshTasksEXT")
 
 
 def test_a_missing_function_is_named(gl, monkeypatch):
-    monkeypatch.setattr(opengl, "loader", lambda: lambda name: 0)
+    monkeypatch.setattr(moderngl_extras, "loader", lambda: lambda name: 0)
     with pytest.raises(EngineError, match=r"this OpenGL \(.+\) has no function glTexBuffer"):
-        OpenGL(gl).function("glTexBuffer")
+        GLExtras(gl).function("glTexBuffer")
 
 
 def test_without_a_context_nothing_is_looked_up():

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Lens"]
+__all__ = ["Projection"]
 
 # 1 - window depth = f stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * f.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False)
-class Lens:
+class Projection:
     """A picture's size and projection.
 
     Parameters

@@ -33,7 +33,7 @@ from ...bindings import BETWEEN_ROUNDS, BLOCKS, FIBLET_ROUNDS
 from ...depth_texture import depth_texture
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...shaders import Programs
 from ..chunks import Chunk
 from .draw_request import DrawRequest
@@ -58,7 +58,7 @@ class RasterTarget:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     target : GBuffer
     two_rounds : bool
         Whether to make what two-phase culling keeps between its rounds.
@@ -74,7 +74,7 @@ class RasterTarget:
         rg32ui: depth key and owner after the first round.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, target: GBuffer, two_rounds: bool) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, two_rounds: bool) -> None:
         self.target = target
         self._gl = gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
@@ -126,7 +126,7 @@ class SeenTexture:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     n_fiblets : int
 
@@ -136,7 +136,7 @@ class SeenTexture:
         If there are more fiblets than the largest texture has texels, or memory does not suffice.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
@@ -197,7 +197,7 @@ class RasterPipeline(abc.ABC):
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     n_fiblets : int
         In all chunks.
@@ -207,7 +207,7 @@ class RasterPipeline(abc.ABC):
     features: tuple[str, ...] = ("TEXTURE_DATA",)
     """Of all its programs."""
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvfiblets.codec import layout, nearest, reference, tables
+from pvfiblets.codec import direction_codebook, layout, nearest, reference
 
 
 def test_fields_tile_their_words_without_overlap() -> None:
@@ -77,29 +77,29 @@ def test_glsl_states_every_field() -> None:
 
 
 def test_codes_are_smallest_rotations_within_their_cap() -> None:
-    directions = tables.directions()
-    q = tables.quaternions().astype(np.float64)
+    directions = direction_codebook.directions()
+    q = direction_codebook.quaternions().astype(np.float64)
     assert np.abs(np.linalg.norm(q, axis=-1) - 1).max() < 1e-7
     assert np.all(q[..., 1] == 0), "the smallest rotation from X to another direction has no part about X"
-    for cap, degrees in enumerate(tables.CAP_DEGREES):
+    for cap, degrees in enumerate(direction_codebook.CAP_DEGREES):
         turn = np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(directions[cap] - [1, 0, 0], axis=1) / 2, 0, 1)))
         assert turn[0] == 0
         assert turn.max() <= degrees * (1 + 1e-6)
         assert turn.max() >= 0.95 * degrees
-        assert len(np.unique(directions[cap], axis=0)) == tables.CODES
+        assert len(np.unique(directions[cap], axis=0)) == direction_codebook.CODES
 
 
 def test_tables_are_the_same_everywhere() -> None:
     """Files hold codes, not directions: a table that changed would silently bend every file."""
-    assert zlib.crc32(tables.packed().astype("<u4").tobytes()) == 983017696
-    assert zlib.crc32(tables.packed_scales().astype("<f4").tobytes()) == 3030463841
-    assert zlib.crc32(tables.quaternions().astype("<f4").tobytes()) == 3427054955
+    assert zlib.crc32(direction_codebook.packed().astype("<u4").tobytes()) == 983017696
+    assert zlib.crc32(direction_codebook.packed_scales().astype("<f4").tobytes()) == 3030463841
+    assert zlib.crc32(direction_codebook.quaternions().astype("<f4").tobytes()) == 3427054955
 
 
 def test_rotations_are_what_their_packed_words_say() -> None:
     """Unpacked in float64 from the description, against the float32 that everything decodes with."""
-    q, words = tables.quaternions().astype(np.float64), tables.packed().astype(np.int64)
-    scale = tables.packed_scales().astype(np.float64)[:, None]
+    q, words = direction_codebook.quaternions().astype(np.float64), direction_codebook.packed().astype(np.int64)
+    scale = direction_codebook.packed_scales().astype(np.float64)[:, None]
     y, z = (((v & 0xFFFF) ^ 0x8000) - 0x8000 for v in (words, words >> 16))
     assert max(np.abs(y).max(), np.abs(z).max()) <= 32767
     np.testing.assert_allclose(q[..., 2], y * scale, rtol=6e-8)
@@ -110,24 +110,24 @@ def test_rotations_are_what_their_packed_words_say() -> None:
 
 def test_packed_rotations_are_close_to_the_codes_directions() -> None:
     """Rounding moves a direction by less than a five-thousandth of its cap angle."""
-    x = 1 - tables.cap_ratios()[:, None] * (tables.disc() ** 2).sum(1)
+    x = 1 - direction_codebook.cap_ratios()[:, None] * (direction_codebook.disc() ** 2).sum(1)
     lateral = np.sqrt(np.maximum(1 - x * x, 0))
-    spin = tables.disc() / np.maximum(np.linalg.norm(tables.disc(), axis=1), 1e-300)[:, None]
+    spin = direction_codebook.disc() / np.maximum(np.linalg.norm(direction_codebook.disc(), axis=1), 1e-300)[:, None]
     wanted = np.concatenate([x[..., None], lateral[..., None] * spin], axis=-1)
-    moved = np.linalg.norm(tables.directions() - wanted, axis=-1).max(axis=1)
-    assert (moved < np.radians(tables.CAP_DEGREES) / 5000).all()
+    moved = np.linalg.norm(direction_codebook.directions() - wanted, axis=-1).max(axis=1)
+    assert (moved < np.radians(direction_codebook.CAP_DEGREES) / 5000).all()
 
 
 def test_small_caps_keep_their_digits() -> None:
-    closed = 2 * np.sin(np.radians(tables.CAP_DEGREES[0]) / 2) ** 2
-    assert tables.cap_ratios()[0] == pytest.approx(closed, rel=1e-6)
+    closed = 2 * np.sin(np.radians(direction_codebook.CAP_DEGREES[0]) / 2) ** 2
+    assert direction_codebook.cap_ratios()[0] == pytest.approx(closed, rel=1e-6)
 
 
 @pytest.mark.parametrize("cap", range(layout.CAPS))
 def test_candidates_always_hold_the_nearest_code(cap: int) -> None:
     rng = np.random.default_rng(cap)
-    rows, directions = nearest.candidates(cap), tables.directions()[cap]
-    ratio = tables.cap_ratios()[cap]
+    rows, directions = nearest.candidates(cap), direction_codebook.directions()[cap]
+    ratio = direction_codebook.cap_ratios()[cap]
     uv = rng.uniform(-nearest.EXTENT, nearest.EXTENT, (20_000, 2))
     rho2 = (uv**2).sum(1)
     keep = ratio * rho2 < 2

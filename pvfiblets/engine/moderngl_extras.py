@@ -1,6 +1,6 @@
 """OpenGL functions that moderngl lacks, by ctypes, on the context that is current.
 
->>> gl = OpenGL(ctx)                                              # doctest: +SKIP
+>>> gl = GLExtras(ctx)                                            # doctest: +SKIP
 >>> codes = gl.texture_buffer(buffer, "r8ui")                     # doctest: +SKIP
 >>> codes.bind(3)                                                 # doctest: +SKIP
 >>> gl.set_sampler(program, "codes", 3)                           # doctest: +SKIP
@@ -25,7 +25,7 @@ import moderngl
 from .errors import EngineError
 from .gl_loader import loader
 
-__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "OpenGL"]
+__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras"]
 
 _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 
@@ -86,7 +86,7 @@ INTEGERS: dict[str, tuple[int, int | str]] = {
     "GL_SUBGROUP_SUPPORTED_STAGES_KHR": (0x9533, "GL_KHR_shader_subgroup"),
     "GL_SUBGROUP_SUPPORTED_FEATURES_KHR": (0x9534, "GL_KHR_shader_subgroup"),
 }
-"""What :meth:`OpenGL.get_integer` knows: enum, and least version (330 is 3.3) or extension."""
+"""What :meth:`GLExtras.get_integer` knows: enum, and least version (330 is 3.3) or extension."""
 
 TEXEL_FORMATS: dict[str, tuple[int, int]] = {
     "r8ui": (0x8232, 1),
@@ -121,8 +121,8 @@ _COLOR, _DEPTH = 0x1800, 0x1801
 class BufferTexture:
     """A buffer that shaders read with ``texelFetch`` on a ``(u)samplerBuffer``.
 
-    Made by :meth:`OpenGL.texture_buffer`. It holds no copy: what is written to the buffer is what shaders read. Release
-    it before the buffer.
+    Made by :meth:`GLExtras.texture_buffer`. It holds no copy: what is written to the buffer is what shaders read.
+    Release it before the buffer.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class BufferTexture:
     texels : int
     """
 
-    def __init__(self, gl: OpenGL, glo: int, buffer: moderngl.Buffer, internal_format: str) -> None:
+    def __init__(self, gl: GLExtras, glo: int, buffer: moderngl.Buffer, internal_format: str) -> None:
         self._gl = gl
         self._glo = glo
         self._buffer: moderngl.Buffer | None = buffer  # must outlive the texture
@@ -167,7 +167,7 @@ class BufferTexture:
             self._buffer = None
 
 
-class OpenGL:
+class GLExtras:
     """Functions of the context that is current, looked up when first needed.
 
     Parameters

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import moderngl
 
 from ..bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
-from ..opengl import BufferTexture, OpenGL
+from ..moderngl_extras import BufferTexture, GLExtras
 from ..passes import dispatch
 from ..shaders import Programs
 from ..vertex_pulling import BATCH
@@ -42,7 +42,7 @@ class Listing:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     n_items : int
     cull : str
@@ -56,7 +56,7 @@ class Listing:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         n_items: int,
         *,

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from ...volumes.options import RaycastOptions
     from ...volumes.volume import RaycastVolume
 
-__all__ = ["Tables"]
+__all__ = ["TransferTextures"]
 
 SIZE = 1024
 """Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
 
 
 
-class Tables:
+class TransferTextures:
     """The tables of one volume (``shaders/volumes/light.glsl``).
 
     Parameters

@@ -13,14 +13,14 @@ from .layout import PAGE, PAGE_BITS, unpack
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["Places", "coded_rows", "places_of"]
+__all__ = ["StreamlineRanges", "coded_rows", "ranges_of"]
 
 FEW = 256  # streamlines that are looked for one by one; more are found by reading all records
 Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Places:
+class StreamlineRanges:
     """Where some streamlines' fiblets and points stand among all.
 
     Attributes
@@ -35,7 +35,7 @@ class Places:
     points: Ints
 
     @classmethod
-    def of(cls, fiblets: FibletSet) -> Places:
+    def of(cls, fiblets: FibletSet) -> StreamlineRanges:
         """Those of all streamlines."""
         owners, n = fiblets.fiblet_streamlines(), fiblets.n_streamlines
         begins = np.flatnonzero(np.diff(owners, prepend=-1))
@@ -45,16 +45,16 @@ class Places:
         counts = np.bincount(owners, fiblets.fiblet_counts(), minlength=n).astype(np.int64)
         return cls(first, np.bincount(owners, minlength=n), point, counts)
 
-    def at(self, chosen: Ints) -> Places:
+    def at(self, chosen: Ints) -> StreamlineRanges:
         """Those of some of them."""
-        return Places(self.fiblet[chosen], self.fiblets[chosen], self.point[chosen], self.points[chosen])
+        return StreamlineRanges(self.fiblet[chosen], self.fiblets[chosen], self.point[chosen], self.points[chosen])
 
 
-def places_of(fiblets: FibletSet, chosen: Ints) -> Places:
-    """Places of chosen streamlines; a few are found without reading the records of the others."""
+def ranges_of(fiblets: FibletSet, chosen: Ints) -> StreamlineRanges:
+    """Ranges of chosen streamlines; a few are found without reading the records of the others."""
     if len(chosen) > FEW:
-        return Places.of(fiblets).at(chosen)
-    return Places(*(np.array([_find(fiblets, int(i)) for i in chosen], np.int64).reshape(-1, 4).T))
+        return StreamlineRanges.of(fiblets).at(chosen)
+    return StreamlineRanges(*(np.array([_find(fiblets, int(i)) for i in chosen], np.int64).reshape(-1, 4).T))
 
 
 def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
@@ -82,7 +82,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
 
 def coded_rows(fiblets: FibletSet) -> Ints:
     """Index among all points, in the order of the streamlines, of each point as coded: ``(n_points,)`` int64."""
-    places = Places.of(fiblets)
+    places = StreamlineRanges.of(fiblets)
     starts = np.cumsum(places.points) - places.points
     order = np.argsort(places.point[places.points > 0], kind="stable")
     filled = np.flatnonzero(places.points > 0)[order]
