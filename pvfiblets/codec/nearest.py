@@ -1,9 +1,10 @@
 """Exact nearest code without trying all 256: candidates by cell of the disc.
 
 The disc of :mod:`~pvfiblets.codec.direction_codebook` is cut into square cells. For each cap angle and cell the codes
-that can be nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the nearest one plus
-the cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so that the answer
-is the same as that of a search through the whole table. Directions beyond the cells are searched in full.
+that can be nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the
+nearest one plus the cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so
+that the answer is the same as that of a search through the whole table. Directions beyond the cells are searched in
+full.
 """
 
 from __future__ import annotations

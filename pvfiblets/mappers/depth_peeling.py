@@ -17,7 +17,7 @@ from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
 from pvfiblets.mappers.shader_effects import Piece
 
 _BESIDE = {
-    "colour_point_value": "layers_value",
+    "colour_point_scalar": "layers_value",
     "tube_normal": "layers_normal",
     "tube_shading": "layers_across",
 }

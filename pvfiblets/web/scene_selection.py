@@ -190,7 +190,7 @@ class SceneSelection:
         if active is not None and active.volume is not None and scalars in (None, active.name):
             return _volume_profile(actor, layer.selected.array(), active.volume, count)
         if scalars is None:
-            scalars = active.name if active is not None and active.kind == "point_value" else "curvature"
+            scalars = active.name if active is not None and active.kind == "point_scalar" else "curvature"
         try:
             found = actor.selection_profile(scalars, count)
         except KeyError as error:

@@ -242,7 +242,7 @@ def test_a_halo_thinner_than_a_pixel_is_none(effect, make_buffer, make_lens):
 
 
 def openness(lens, keys, tangent, radius, samples, strength):
-    """The formulas of occlusion.frag and smooth.frag in float64, (h, w)."""
+    """The formulas of ssao.frag and ssao_blur.frag in float64, (h, w)."""
     h, w = keys.shape
     places, drawn = places_of(lens, keys), keys != EMPTY
     parallel = lens.projection[3, 3] == 1

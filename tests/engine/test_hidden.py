@@ -205,7 +205,7 @@ def test_nothing_that_would_show_is_hidden(gl, camera, name, width):
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(gl, camera, monkeypatch, mutation):
     honest, (right, wrong) = shaders.read_shader, MUTATIONS[mutation]
-    assert right in honest("culling/hidden.glsl") + honest("culling/squares.glsl")
+    assert right in honest("culling/hidden.glsl") + honest("culling/pyramid_lookup.glsl")
     monkeypatch.setattr(shaders, "read_shader", lambda name: honest(name).replace(right, wrong))
     noticed = 0
     for name in ("perspective", "parallel slab"):

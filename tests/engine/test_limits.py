@@ -103,7 +103,7 @@ def test_codes_of_values_are_found_beyond_as_many_bits_as_a_number_has(gl, monke
     #version 430
     layout(local_size_x = 1) in;
     #include "fiblets/decode/sequential.glsl"
-    #include "fiblets/attributes/place.glsl"
+    #include "fiblets/attributes/streamline_index.glsl"
     #include "fiblets/attributes/values.glsl"
     layout(std430, binding = 5) buffer Out { uint found[]; };
     uniform uint first;

@@ -58,7 +58,7 @@ def stages(kind, features):
     files = {
         "task": "fiblets/mesh/fiblets.task",
         "mesh": f"fiblets/mesh/{kind}.mesh",
-        "frag": "fiblets/raster/capsule.frag" if wide else "fiblets/raster/line.frag",
+        "frag": "fiblets/hardware_raster/capsule.frag" if wide else "fiblets/hardware_raster/line.frag",
     }
     every = {*features, "PER_PRIMITIVE"}
     return {stage: assemble(name, every, CONSTANTS, version=EXTENDED) for stage, name in files.items()}

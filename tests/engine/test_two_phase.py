@@ -268,7 +268,7 @@ def test_random_cameras(both, brain, onion, camera, seed):
 
 MUTATIONS = {
     "the nearest depth instead of the farthest": (
-        "culling/squares.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
+        "culling/pyramid_lookup.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
     ),
     "rectangles too small": ("culling/hidden.glsl", "+ viewport.z + MARGIN", "- 3.0"),
 }

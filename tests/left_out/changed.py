@@ -14,26 +14,26 @@ CHANGED = {
     ),
     "colours: stored": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, colour_point_scalar",
         buffers="fibletTable, volume",
     ),
     "colours: logarithm": What(
@@ -53,9 +53,10 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
-            fiblets/raster/capsule.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/capsule.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal",
@@ -69,9 +70,10 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
-            fiblets/raster/capsule.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/capsule.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal, tube_shading",
@@ -90,7 +92,7 @@ CHANGED = {
         resolve="illuminated",
     ),
     "ambient occlusion": What(
-        ran="effects/occlusion.frag, effects/smooth.frag",
+        ran="effects/ssao.frag, effects/ssao_blur.frag",
         resolve="ambient_occlusion",
         passes="occlusion (effect), smooth (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
@@ -100,14 +102,14 @@ CHANGED = {
         resolve="depth_cue",
     ),
     "halos": What(
-        ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
+        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo",
         passes="distance (effect), halo (effect), nearest (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",
     ),
     "ink": What(
-        ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
+        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo, ink",
         passes="distance (effect), halo (effect), nearest (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
@@ -191,7 +193,10 @@ CHANGED = {
     ),
     "picking": What(),
     "culling: none": What(
-        ran="-fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/reduce.frag, -screen/triangle.vert",
+        ran="""
+            -fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/pyramid_reduce.frag,
+            -screen/triangle.vert
+        """,
         features="-CULL_PYRAMID",
         passes="-guessed, -last picture, -occlusion, -pyramid, -refine",
         buffers="-occlusion",
@@ -212,9 +217,9 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/raster/between.frag,
-            fiblets/raster/line.frag, fiblets/raster/visible.frag,
-            fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/line.frag, fiblets/hardware_raster/visible.frag,
+            fiblets/hardware_raster/visible.vert, fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
@@ -227,9 +232,9 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/raster/between.frag, fiblets/raster/line.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert,
-            fiblets/raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
+            -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/between.frag, fiblets/hardware_raster/line.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
         passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
@@ -253,12 +258,12 @@ CHANGED = {
     ),
     "spline tubes: values": What(
         features="TUBE_VALUES",
-        resolve="-colour_solid, colour_point_value",
+        resolve="-colour_solid, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "spline tubes: colours": What(
         features="TUBE_COLOURS",
-        resolve="-colour_solid, colour_point",
+        resolve="-colour_solid, colour_point_rgba",
         buffers="colours",
     ),
     "spline tubes: solver": What(
@@ -283,12 +288,12 @@ CHANGED = {
     ),
     "halo lines: values": What(
         features="HALO_VALUES",
-        resolve="-colour_solid, colour_point_value",
+        resolve="-colour_solid, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "halo lines: colours": What(
         features="HALO_COLOURS",
-        resolve="-colour_solid, colour_point",
+        resolve="-colour_solid, colour_point_rgba",
         buffers="colours",
     ),
     "halo points": What(
@@ -305,15 +310,15 @@ CHANGED = {
         resolve="tube_normal",
     ),
     "volume: gentle light": What(
-        features="VOLUME_LIGHT, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_value, colour_point",
+        features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
+        resolve="-colour_point_scalar, colour_point_rgba",
         buffers="-fibletTable, colours, segments",
         packages="numba",
         modules="volumes.preintegration",
     ),
     "volume: light": What(
-        features="VOLUME_FINER, VOLUME_LIGHT, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_value, colour_point",
+        features="VOLUME_FINER, VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
+        resolve="-colour_point_scalar, colour_point_rgba",
         buffers="-fibletTable, colours, segments",
         packages="numba",
         modules="volumes.preintegration",
@@ -346,7 +351,7 @@ CHANGED = {
         modules="engine.regions.ray_intervals, regions",
     ),
     "volume: ray occlusion": What(
-        ran="volumes/occlusion.frag, volumes/occlusion_mean.frag",
+        ran="volumes/ray_occlusion.frag, volumes/ray_occlusion_mean.frag",
         features="VOLUME_SURFACE",
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",

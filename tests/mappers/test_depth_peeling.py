@@ -36,7 +36,7 @@ def scene(make_plotter, tools):
     def make(streamlines, *, opacity=0.4, layers=4, colours=COLOURS, lighting=False, **options):
         fibres = tools.fibres("engine", streamlines)
         if colours is not None:
-            options["colouring"] = Colouring("streamline_rgb", values=np.resize(colours, (len(streamlines), 3)))
+            options["colouring"] = Colouring("streamline_rgba", values=np.resize(colours, (len(streamlines), 3)))
         mapper, actor = fibres.actor(lighting=lighting, **options)
         actor.GetProperty().SetOpacity(opacity)
         if layers:
@@ -151,7 +151,7 @@ def test_values_along_a_line_are_those_of_its_layer(scene, tools):
     """The line behind runs the other way: at a pixel its arc length is the rest of the front one's."""
     x = np.linspace(-40, 40, 161)
     lines = Streamlines.from_list([np.c_[x, 0 * x, 0 * x], np.c_[-x, 0 * x + 10, 0 * x]])
-    colouring = Colouring("point_value", source="arc_length", clim=(0.0, 80.0))
+    colouring = Colouring("point_scalar", source="arc_length", clim=(0.0, 80.0))
     plotter, mapper, _ = scene(lines, colours=None, colouring=colouring, line_width=6.0, opacity=0.5)
     image = tools.picture(plotter, mapper)[100, 60:180, 0].astype(float)
     front = ((np.arange(60, 180) + 0.5) / 200 * 100 - 20) / 80 * 255  # 200 pixels are 100 mm
@@ -213,9 +213,9 @@ def test_the_nearest_is_picked(scene, tools):
 def test_pieces_go_together():
     assert layers_of([Layers(7)]) == 7
     assert layers_of([]) == 1
-    for colour in ("colour_solid", "colour_point_value", "colour_streamline"):
+    for colour in ("colour_solid", "colour_point_scalar", "colour_streamline"):
         features = with_layers(Layers().features | {"gbuffer", "normal", colour})
-        assert ("layers_value" in features) == (colour == "colour_point_value")
+        assert ("layers_value" in features) == (colour == "colour_point_scalar")
         text = "".join(replacement.text for replacement in resolve.assemble(features))
         assert "pvfiblets::" not in text
     everything = frozenset(resolve.FEATURES) - {"colour_solid", "colour_streamline", "colour_orientation"}

@@ -118,7 +118,8 @@ class DepthPyramid:
             width, height = target.size
             for level, framebuffer in enumerate(levels.framebuffers):
                 outside = self.outside if level == 0 else None
-                program, array = self._programs.screen("culling/reduce.frag", ["SCENE_DEPTH"] if outside else [])
+                features = ["SCENE_DEPTH"] if outside else []
+                program, array = self._programs.screen("culling/pyramid_reduce.frag", features)
                 if outside is not None:
                     outside.use(CULLING["outside"])
                     program["outside"] = CULLING["outside"]

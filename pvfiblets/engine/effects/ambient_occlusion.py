@@ -1,4 +1,4 @@
-"""Ambient occlusion in screen space: ``shaders/effects/occlusion.frag`` and its mean over 4 x 4 pixels."""
+"""Ambient occlusion in screen space: ``shaders/effects/ssao.frag`` and its mean over 4 x 4 pixels."""
 
 from __future__ import annotations
 

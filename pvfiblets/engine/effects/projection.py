@@ -64,6 +64,6 @@ class Projection:
         return self.size, self.projection.tobytes()
 
     def uniforms(self) -> dict[str, object]:
-        """Return what ``shaders/effects/place.glsl`` asks for, beside the keys."""
+        """Return what ``shaders/effects/view_position.glsl`` asks for, beside the keys."""
         # Column by column, as OpenGL has matrices.
         return {"pixel_to_view": tuple(self.pixel_to_view.T.ravel().tolist()), "lens": self.scale}

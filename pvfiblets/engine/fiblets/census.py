@@ -92,7 +92,7 @@ class Census:
 
     def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str], kept: Visibility) -> int:
         program = self._programs.render(
-            {"vertex": "fiblets/raster/count.vert", "fragment": "fiblets/raster/count.frag"},
+            {"vertex": "fiblets/hardware_raster/count.vert", "fragment": "fiblets/hardware_raster/count.frag"},
             [*features, "TEXTURE_DATA"],
         )
         set_data_samplers(self._gl, program)

@@ -1,7 +1,7 @@
 """What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
 
 Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only what lies behind layer k - 1
-(``shaders/fiblets/raster/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
+(``shaders/fiblets/segments/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
 into, and what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they
 reach; what lies behind the last one is not there.
 

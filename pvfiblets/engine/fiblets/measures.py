@@ -110,9 +110,8 @@ class FeedbackMeasurer:
 
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
         """See :meth:`Measurer.measure`."""
-        program = self._programs.render(
-            {"vertex": "fiblets/raster/measure.vert"}, [*features, "TEXTURE_DATA"], varyings=("first", "joint", "turns")
-        )
+        stages = {"vertex": "fiblets/hardware_raster/measure.vert"}
+        program = self._programs.render(stages, [*features, "TEXTURE_DATA"], varyings=("first", "joint", "turns"))
         set_data_samplers(self._gl, program)
         data = DataTextures(self._gl, chunk)
         array = self._ctx.vertex_array(program, [])

@@ -133,7 +133,7 @@ class RayOcclusionPass(ScreenEffect):
                 program[name] = VOLUME_OCCLUSION[name]
 
         def mean() -> None:
-            program, array = self._programs.screen("volumes/occlusion_mean.frag")
+            program, array = self._programs.screen("volumes/ray_occlusion_mean.frag")
             bound(program, read | {"surface_normal": buffer.across, "rough": self._targets[_NAME][0]})
             # The less chance there is in a pixel, the less may be lost to the mean.
             reach = math.sqrt(MEAN_SAMPLES / samples)
@@ -150,7 +150,7 @@ class RayOcclusionPass(ScreenEffect):
             cut = [] if view.region is None else ["CLIP_REGION"]
             whole = [] if casting.octree else ["VOLUME_WHOLE"]
             features = [*FEATURES_OF_FILTER[casting.filter], *whole, *cut]
-            program, array = self._programs.screen("volumes/occlusion.frag", features)
+            program, array = self._programs.screen("volumes/ray_occlusion.frag", features)
             renderer.bind_field(program)
             if cut:
                 clip = view.model_view_projection @ renderer.volume.affine

@@ -27,7 +27,7 @@ __all__ = ["VolumeRenderer", "VolumeStyle"]
 
 _OF_MODE = {
     "isosurface": ["VOLUME_SURFACE"],
-    "composite": ["VOLUME_LIGHT"],
+    "composite": ["VOLUME_COMPOSITE"],
     "mip": [],
     "local-mip": ["VOLUME_LOCAL"],
 }

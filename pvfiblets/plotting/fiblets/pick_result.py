@@ -85,7 +85,7 @@ class Picked:
         """``(n,)`` float64: the numbers that colour the places; NaN where colours are no numbers."""
         scalars = self._data["scalars"]
         nothing = np.full(len(self), np.nan)
-        if scalars is None or scalars.kind in ("orientation", "streamline_rgb"):
+        if scalars is None or scalars.kind in ("orientation", "streamline_rgba"):
             return nothing
         if scalars.kind == "streamline_scalar":
             return np.asarray(scalars.values[self.ids], np.float64)

@@ -198,7 +198,7 @@ class SelectionMeasures:
         from pvfiblets.query.profile import mean_profile
 
         if scalars is None:
-            if self._scalars is None or self._scalars.kind != "point_value":
+            if self._scalars is None or self._scalars.kind != "point_scalar":
                 raise ValueError("scalars is None, and what colours the actor is no value per point; name one")
             scalars = self._scalars.name
         mean, std = mean_profile(self.fiblets, self.selection, scalars, n)

@@ -256,7 +256,7 @@ class Standout:
     def _colours(self, colouring: Colouring) -> Colouring:
         if self._color is not None:
             return Colouring("solid", color=self._color)
-        if colouring.mode in ("streamline_rgb", "streamline_scalar") and colouring.values is not None:
+        if colouring.mode in ("streamline_rgba", "streamline_scalar") and colouring.values is not None:
             ids = self.ids if self._plan is None else self._plan.ids
             return replace(colouring, values=np.asarray(colouring.values)[ids])
         return colouring

@@ -264,4 +264,4 @@ def _scalars(volume: RaycastVolume) -> Scalars:
     low, high = volume.value_range
     if low == high:
         high = max(low + 1.0, float(np.nextafter(low, np.inf)))
-    return Scalars(volume.name, "point_value", None, (low, high))
+    return Scalars(volume.name, "point_scalar", None, (low, high))

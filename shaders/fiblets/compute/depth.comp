@@ -13,7 +13,7 @@
 #endif
 layout(local_size_x = {{ group_size }}) in;
 
-#include "fiblets/raster/segments.glsl"
+#include "fiblets/compute/software_raster/segments.glsl"
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif

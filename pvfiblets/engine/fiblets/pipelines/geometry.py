@@ -3,7 +3,7 @@
 Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/raster/varyings.glsl``, per-point values included:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, per-point values included:
 
 ======================  ==========  ==============  ===========================================================
 drawn                   components  vertices        segments of a share
@@ -40,7 +40,7 @@ class GeometryPipeline(TexturedPipeline):
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
         geometry, fragment = ("capsules", "capsule") if request.wide else ("lines", "line")
         return {
-            "vertex": "fiblets/raster/survivors.vert",
+            "vertex": "fiblets/hardware_raster/survivors.vert",
             "geometry": f"fiblets/geometry/{geometry}.geom",
             "fragment": f"fiblets/raster/{fragment}.frag",
         }

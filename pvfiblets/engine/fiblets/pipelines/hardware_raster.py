@@ -13,8 +13,8 @@ marks          two-phase culling: notes, for the next picture, which fiblets own
 The G-buffer's textures are colour attachments, and a depth buffer of float32 decides what is nearest. OpenGL
 draws in order, fiblet by fiblet, and a fragment must be nearer than what is there: of two at the same depth the
 fiblet with the smaller index stays. The second round comes later than its indices:
-``shaders/fiblets/raster/between.frag`` and ``shade.glsl`` see to it that the picture is the same as if there were but
-one. Depths are written as coarse as the keys that these go by.
+``shaders/fiblets/hardware_raster/between.frag`` and ``shade.glsl`` see to it that the picture is the same
+as if there were but one. Depths are written as coarse as the keys that these go by.
 
 Whatever the data, the CPU issues the same calls; nothing is read back.
 """
@@ -169,7 +169,7 @@ class SeenTexture:
         """Mark the owners of a picture, and no others. Leaves its framebuffer bound."""
         self._gl.clear_integers(self._framebuffer, (0,))
         program = self._programs.render(
-            {"vertex": "fiblets/raster/visible.vert", "fragment": "fiblets/raster/visible.frag"}
+            {"vertex": "fiblets/hardware_raster/visible.vert", "fragment": "fiblets/hardware_raster/visible.frag"}
         )
         if self._array is None:
             self._array = self._ctx.vertex_array(program, [])
@@ -335,7 +335,7 @@ class RasterPipeline(abc.ABC):
     def _keep_first_round(self, target: RasterTarget) -> None:
         """Keep depth and owner after the first round, and make the depth that the second begins with."""
         ctx = self._ctx
-        program, array = self._programs.screen("fiblets/raster/between.frag")
+        program, array = self._programs.screen("fiblets/hardware_raster/between.frag")
         for name, texture, unit in (
             ("depth", target.depth, BETWEEN_ROUNDS["depth"]),
             ("depth_key", target.target.depth, BETWEEN_ROUNDS["depth_key"]),

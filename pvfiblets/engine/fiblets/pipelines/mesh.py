@@ -89,7 +89,7 @@ class MeshPipeline(RasterPipeline):
         return {
             "task": "fiblets/mesh/fiblets.task",
             "mesh": "fiblets/mesh/serial.mesh" if self.name == "mesh-serial" else "fiblets/mesh/together.mesh",
-            "fragment": "fiblets/raster/capsule.frag" if request.wide else "fiblets/raster/line.frag",
+            "fragment": "fiblets/hardware_raster/capsule.frag" if request.wide else "fiblets/hardware_raster/line.frag",
         }
 
     def _prepare(self, program: moderngl.Program) -> None:

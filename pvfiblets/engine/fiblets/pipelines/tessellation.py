@@ -26,18 +26,21 @@ class TessellationPipeline(TexturedPipeline):
     do not suffice: 512 fiblets make 512 * 60 * 2 = 61,440 vertices at most."""
 
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
-        stages = {"vertex": "fiblets/raster/survivors.vert", "tess_control": "fiblets/tessellation/decode.tesc"}
+        stages = {
+            "vertex": "fiblets/hardware_raster/survivors.vert",
+            "tess_control": "fiblets/tessellation/decode.tesc",
+        }
         if not request.wide:
             return {
                 **stages,
                 "tess_evaluation": "fiblets/tessellation/lines.tese",
-                "fragment": "fiblets/raster/line.frag",
+                "fragment": "fiblets/hardware_raster/line.frag",
             }
         return {
             **stages,
             "tess_evaluation": "fiblets/tessellation/capsules.tese",
             "geometry": "fiblets/tessellation/capsules.geom",
-            "fragment": "fiblets/raster/capsule.frag",
+            "fragment": "fiblets/hardware_raster/capsule.frag",
         }
 
     def _shares(self, request: DrawRequest) -> int:  # noqa: ARG002 (of one vertex each)

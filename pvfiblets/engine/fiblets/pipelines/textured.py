@@ -18,7 +18,7 @@ __all__ = ["TexturedPipeline"]
 
 
 class TexturedPipeline(RasterPipeline):
-    """Draws by stages that take data from buffer textures, and fiblets from ``fiblets/raster/survivors.vert``."""
+    """Draws by stages with data from buffer textures, and fiblets from ``fiblets/hardware_raster/survivors.vert``."""
 
     mode: int
     """What a vertex is to OpenGL."""

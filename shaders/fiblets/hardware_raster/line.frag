@@ -1,4 +1,4 @@
-// A pixel of a thin line: depth and place as fiblets/raster/segments.glsl computes them for the compute pipeline (fiblets/raster/cells.glsl has
+// A pixel of a thin line: depth and place as fiblets/compute/software_raster/segments.glsl computes them for the compute pipeline (fiblets/segments/thin_line_rule.glsl has
 // the rule), to the last bit where a compiler does not fuse operations.
 
 #version 430
@@ -6,7 +6,7 @@
 #extension GL_NV_mesh_shader : require
 #endif
 
-#include "fiblets/raster/shade.glsl"
+#include "fiblets/hardware_raster/shade.glsl"
 
 void main() {
     ivec2 p = ivec2(varying_cells.x & 0xFFFFu, varying_cells.x >> 16u), q = ivec2(varying_cells.y & 0xFFFFu, varying_cells.y >> 16u);

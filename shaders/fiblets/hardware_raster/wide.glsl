@@ -1,11 +1,11 @@
-// Wide lines: a rectangle around the capsule that a part of a segment takes in the window; fiblets/raster/capsule.frag finds out which
+// Wide lines: a rectangle around the capsule that a part of a segment takes in the window; fiblets/hardware_raster/capsule.frag finds out which
 // of its pixels the capsule holds. Half the width is viewport.z. Around tubes it is as wide as their outline.
 //
 //        side 1  +----------------------+
 //                | (a ............... b )|      before the start there is nothing but where the streamline starts
 //        side 0  +----------------------+
 
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 
 const float ROUNDING = 0.05;  // pixels
 

@@ -1,12 +1,12 @@
-// Fills fiblets/raster/varyings.glsl for one vertex of the part of a segment that is drawn. TO(name) is where a variable is handed
+// Fills fiblets/hardware_raster/varyings.glsl for one vertex of the part of a segment that is drawn. TO(name) is where a variable is handed
 // over: itself, or with a mesh stage an element of an array.
 
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
 #endif
-#include "fiblets/raster/varyings.glsl"
+#include "fiblets/hardware_raster/varyings.glsl"
 
 struct Varyings {
     uvec2 ids;      // streamline; tangent

@@ -1,4 +1,4 @@
-// The pixels of a tube's segment: column by column of the longer axis of its outline (fiblets/raster/tube.glsl), those rows that
+// The pixels of a tube's segment: column by column of the longer axis of its outline (fiblets/segments/line_tube.glsl), those rows that
 // the outline reaches, and of these all pixels whose ray meets the tube.
 
 void cover(Segment segment) {

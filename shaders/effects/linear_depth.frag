@@ -2,7 +2,7 @@
 
 #version 430
 
-#include "effects/place.glsl"
+#include "effects/view_position.glsl"
 
 out float distance_out;
 

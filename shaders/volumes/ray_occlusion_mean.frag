@@ -1,5 +1,5 @@
 // Mean of the occlusion by rays over squares of 5 x 5 pixels, as far as these show the same piece of surface.
-// After volumes/occlusion.frag, whose error is another in each pixel: the mean of 25 would err as 25 times the rays do.
+// After volumes/ray_occlusion.frag, whose error is another in each pixel: the mean of 25 would err as 25 times the rays do.
 //
 //   mean = sum w_j free_j / sum w_j
 //   w_j  = max(0, 1 - |N.(p_j - p)| / away) * max(0, 1 - |p_j - p|^2 / near^2) * max(0, 1 - (1 - N.N_j) / bend)

@@ -8,7 +8,7 @@
 // itself, whichever way it runs. Pixels without a line, and those beyond the picture's edge, are open.
 //
 // The spiral is turned in steps of 1/16 over squares of 4 x 4 pixels; the mean over such a square, which
-// effects/smooth.frag takes, has seen 16 n directions. The same picture always gives the same occlusion.
+// effects/ssao_blur.frag takes, has seen 16 n directions. The same picture always gives the same occlusion.
 //
 //   ids           rg32ui: streamline | unit tangent, data coordinates, octahedral about +x, 2 x snorm16
 //   data_to_view  directions: data -> view coordinates
@@ -19,7 +19,7 @@
 
 #version 430
 
-#include "effects/place.glsl"
+#include "effects/view_position.glsl"
 
 #if FEATURE_SURFACE_NORMALS
 uniform usampler2D normals;

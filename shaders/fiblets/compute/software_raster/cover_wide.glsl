@@ -8,7 +8,7 @@
 //   foot, s      where on the piece a pixel is nearest to it, and the same within the piece
 //   away         from there to the pixel
 
-#include "fiblets/raster/brush_planes.glsl"
+#include "fiblets/compute/software_raster/brush_planes.glsl"
 
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pipelines/compute.py
 

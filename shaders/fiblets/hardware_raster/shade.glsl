@@ -14,8 +14,8 @@
 #else
 #define VARYING flat in
 #endif
-#include "fiblets/raster/varyings.glsl"
-#include "fiblets/raster/peel.glsl"
+#include "fiblets/hardware_raster/varyings.glsl"
+#include "fiblets/segments/peel.glsl"
 #include "fiblets/attributes/fragment_value.glsl"
 
 layout(location = 0) out uint out_depth;

@@ -1,6 +1,6 @@
-// A pixel of a wide line, as fiblets/raster/segments.glsl finds it for the compute pipeline: its centre is at most half the width from
+// A pixel of a wide line, as fiblets/compute/software_raster/segments.glsl finds it for the compute pipeline: its centre is at most half the width from
 // the segment; the round end at a segment's start is left out where another segment ends, for it is that one's; what lies
-// beyond a plane of the caller's at the depth that it shows is left out. A pixel of a tube: fiblets/raster/tube.glsl.
+// beyond a plane of the caller's at the depth that it shows is left out. A pixel of a tube: fiblets/segments/line_tube.glsl.
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
@@ -8,11 +8,11 @@
 #endif
 
 #include "codec/layout.glsl"
-#include "fiblets/raster/shade.glsl"
+#include "fiblets/hardware_raster/shade.glsl"
 #include "frame/clip_planes.glsl"
 
 #if FEATURE_TUBES
-#include "fiblets/raster/tube.glsl"
+#include "fiblets/segments/line_tube.glsl"
 #if FEATURE_CROSS_LINE
 #include "frame/tangent.glsl"
 #endif

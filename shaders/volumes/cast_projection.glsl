@@ -1,6 +1,6 @@
 // What a ray shows of peaks: the greatest value, or the first peak, and where it lies.
 
-#include "volumes/peak.glsl"
+#include "volumes/intensity_projection.glsl"
 #if FEATURE_CLIP_REGION
 bool find_peak_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out float value) {
     Ray part = whole;

@@ -6,9 +6,9 @@
 //                to point that it stands for: 1, or 0 for a single point, or all of a far fiblet's
 //
 // What covers a pixel is told by the file of cover() that is included:
-//   thin lines   fiblets/raster/cover_thin.glsl: the pixels of fiblets/raster/cells.glsl
-//   wide lines   fiblets/raster/cover_wide.glsl: capsules in the window
-//   tubes        fiblets/raster/cover_tube.glsl: where rays through pixels meet capsules in space
+//   thin lines   fiblets/compute/software_raster/cover_thin.glsl: the pixels of fiblets/segments/thin_line_rule.glsl
+//   wide lines   fiblets/compute/software_raster/cover_wide.glsl: capsules in the window
+//   tubes        fiblets/compute/software_raster/cover_tube.glsl: where rays through pixels meet capsules in space
 //
 // At a plane of the caller's a thin line ends in the pixel of the cut. A wide line ends in a round brush, of which the
 // pixels are left out that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
@@ -16,9 +16,9 @@
 //
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective (along()).
 
-#include "fiblets/raster/polyline.glsl"
-#include "fiblets/raster/clipped_segment.glsl"
-#include "fiblets/raster/peel.glsl"
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/peel.glsl"
 
 // A segment that is drawn.
 struct Segment {
@@ -52,11 +52,11 @@ float along(Fragment fragment, Segment segment) {
 }
 
 #if FEATURE_TUBES
-#include "fiblets/raster/cover_tube.glsl"
+#include "fiblets/compute/software_raster/cover_tube.glsl"
 #elif FEATURE_WIDE_LINES
-#include "fiblets/raster/cover_wide.glsl"
+#include "fiblets/compute/software_raster/cover_wide.glsl"
 #else
-#include "fiblets/raster/cover_thin.glsl"
+#include "fiblets/compute/software_raster/cover_thin.glsl"
 #endif
 
 // Draws fiblet f and the segment that joins it to the next.

@@ -1,5 +1,5 @@
 // Between the two rounds of two-phase culling: keeps depth key and owner of what the first has drawn, and moves its depth up
-// by the last digit, so that in the second round a fragment of the same depth is nearer, for fiblets/raster/shade.glsl to decide
+// by the last digit, so that in the second round a fragment of the same depth is nearer, for fiblets/hardware_raster/shade.glsl to decide
 // by the fiblets' indices.
 
 #version 430

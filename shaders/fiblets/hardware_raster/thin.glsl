@@ -1,14 +1,14 @@
-// Thin lines for OpenGL's own rasteriser, so that it takes the pixels of fiblets/raster/cells.glsl: a part of a segment is drawn from
+// Thin lines for OpenGL's own rasteriser, so that it takes the pixels of fiblets/segments/thin_line_rule.glsl: a part of a segment is drawn from
 // the centre of the pixel that holds its first point to the centre of the one that holds its last, both moved by
 // CELL_SHIFT. The diamond-exit rule then draws the first pixel and leaves out the last, in which the next segment begins.
 //
 // Where nothing follows, the last pixel is drawn too: the line goes on for EXIT of a pixel in its own direction, a line within
 // one pixel to the right. That leaves the diamond of the last pixel, because EXIT - |CELL_SHIFT| > 1/2, and no other one's.
 //
-// Parts have been clipped: nothing is left for OpenGL to clip or to divide by, and fiblets/raster/line.frag finds the depth.
+// Parts have been clipped: nothing is left for OpenGL to clip or to divide by, and fiblets/hardware_raster/line.frag finds the depth.
 
-#include "fiblets/raster/cells.glsl"
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/thin_line_rule.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 
 const float EXIT = 0.6;
 

@@ -7,7 +7,7 @@
 
 #version 430
 
-#include "culling/survives.glsl"
+#include "fiblets/hardware_raster/cull.glsl"
 
 uniform uint shares;   // vertices per fiblet
 

@@ -1,9 +1,9 @@
 // Mean of the occlusion over squares of 4 x 4 pixels, of which every one has been looked at in another direction
-// (effects/occlusion.frag). Pixels whose lines lie apart in depth by half the radius or more do not mix.
+// (effects/ssao.frag). Pixels whose lines lie apart in depth by half the radius or more do not mix.
 
 #version 430
 
-#include "effects/place.glsl"
+#include "effects/view_position.glsl"
 
 uniform sampler2D rough;
 uniform float radius;

@@ -14,13 +14,13 @@
 //   start, cap   the line starts at a, ends at b: nothing is drawn before or after that this part would be joined to
 //   s, u         positions along the part in the window, where depth is linear, and along the segment in space
 //
-// Tubes are not clipped: what their outline (fiblets/raster/tube.glsl) reaches is looked at pixel by pixel. Their a, b, t0 and t1 are
+// Tubes are not clipped: what their outline (fiblets/segments/line_tube.glsl) reaches is looked at pixel by pixel. Their a, b, t0 and t1 are
 // those of the part of the axis that the outline is around.
 
 #include "frame/project.glsl"
 #include "frame/clip_planes.glsl"
 #if FEATURE_TUBES
-#include "fiblets/raster/tube.glsl"
+#include "fiblets/segments/line_tube.glsl"
 #endif
 
 // A point of a polyline on its way to pixels.

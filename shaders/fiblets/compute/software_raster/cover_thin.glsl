@@ -1,6 +1,6 @@
-// The pixels of a thin line's segment: see fiblets/raster/cells.glsl.
+// The pixels of a thin line's segment: see fiblets/segments/thin_line_rule.glsl.
 
-#include "fiblets/raster/cells.glsl"
+#include "fiblets/segments/thin_line_rule.glsl"
 
 void cover(Segment segment) {
     ClippedSegment piece = segment.piece;

@@ -1,4 +1,4 @@
-// Stores what the G-buffer's texture `across` says of a pixel (pvfiblets/engine/gbuffer.py), as fiblets/raster/segments.glsl found it;
+// Stores what the G-buffer's texture `across` says of a pixel (pvfiblets/engine/gbuffer.py), as fiblets/compute/software_raster/segments.glsl found it;
 // without FEATURE_CROSS_LINE nothing.
 
 #if FEATURE_CROSS_LINE && FEATURE_TUBES
