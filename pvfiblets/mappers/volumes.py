@@ -154,8 +154,8 @@ class VolumeMapper(CutMapper[Options]):
         self._casting = casting
         CutMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
         surface = casting.mode == "isosurface"
-        if surface != ("normals" in self._extras):
-            self.set_extra("normals", SurfaceNormals() if surface else None)
+        if surface != ("normals" in self._effects):
+            self.set_effect("normals", SurfaceNormals() if surface else None)
 
     @property
     def colouring(self) -> Colouring:

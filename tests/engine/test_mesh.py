@@ -21,9 +21,9 @@ from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
 
 from .cells import SHIFT_256
 from .emulated import emulated_renderer
-from .marks import planned
 from .pictures import EVERY_POINT, SIZE, assert_same, differences, read
 from .polylines import to_clip, to_window
+from .visibility_bits import planned
 
 RECORDS = {
     "directions": ["DIRECTION"],

@@ -60,7 +60,7 @@ CHANGED = {
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -77,7 +77,7 @@ CHANGED = {
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
         resolve="tube_normal, tube_shading",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -198,7 +198,7 @@ CHANGED = {
             -screen/triangle.vert
         """,
         features="-CULL_PYRAMID",
-        passes="-guessed, -last picture, -occlusion, -pyramid, -refine",
+        passes="-predicted, -last picture, -occlusion, -pyramid, -refine",
         buffers="-occlusion",
         modules="-engine.culling.pyramid",
     ),
@@ -208,7 +208,7 @@ CHANGED = {
             culling/coverage_grid.vert
         """,
         features="-CULL_PYRAMID, CULL_COVERAGE",
-        passes="-guessed, -pyramid, -refine",
+        passes="-predicted, -pyramid, -refine",
         modules="engine.culling.coverage",
     ),
     "pipeline: geometry": What(
@@ -222,7 +222,7 @@ CHANGED = {
             fiblets/hardware_raster/visible.vert, fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -237,7 +237,7 @@ CHANGED = {
             fiblets/hardware_raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="engine.fiblets.pipelines.tessellation",
     ),

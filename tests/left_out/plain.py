@@ -16,7 +16,8 @@ PLAIN = {
         features="CLIPPING, CLIPPING_DEPTH, CULL_PYRAMID, DIRECTION, LEVEL_OF_DETAIL, ONE_SEGMENT",
         resolve="colour_orientation, gbuffer, normal",
         passes="""
-            clear, cull, depth, guessed, last picture, occlusion, resolve_owner, pyramid, refine, visible, resolve_ties
+            clear, cull, depth, last picture, occlusion, predicted, pyramid, refine, resolve_owner, resolve_ties,
+            visible
         """,
         buffers="""
             anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, occlusion, pages,

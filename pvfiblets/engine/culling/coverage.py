@@ -126,7 +126,7 @@ class CoverageBuffer:
 
     feature = "CULL_COVERAGE"
     halfway = False
-    guesses = False
+    predicts = False
     outside: moderngl.Texture | None = None
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, fiblets: FibletSet) -> None:

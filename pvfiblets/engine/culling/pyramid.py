@@ -23,8 +23,8 @@ SMALLEST = 8
 """Pixels of the smallest level's longer side: larger squares hide nothing that smaller ones do not."""
 
 
-GUESS_LEVEL = 4
-"""Level by which it is guessed what will show, squares of 32 pixels: on made-up brains of 60 and of 600 million
+PREDICTION_LEVEL = 4
+"""Level by which it is predicted what will show, squares of 32 pixels: on made-up brains of 60 and of 600 million
 segments the finer ones draw less early, and more in all."""
 
 
@@ -66,7 +66,7 @@ class DepthPyramid:
 
     Attributes
     ----------
-    guesses : bool
+    predicts : bool
         Whether there is a last picture, by which a pipeline may choose what to draw first.
     outside : moderngl.Texture or None
         Depth of other things in the scene, which hides too.
@@ -82,7 +82,7 @@ class DepthPyramid:
         self._size = (0, 0)
         self._now: _Levels | None = None
         self._last: _Levels | None = None
-        self.guesses = False
+        self.predicts = False
         self.outside: moderngl.Texture | None = None
 
     def _resize(self, size: tuple[int, int]) -> None:
@@ -94,8 +94,8 @@ class DepthPyramid:
     def before(self, target: GBuffer, view: View, style: Style) -> None:  # noqa: ARG002 - as of all kinds
         """Make the last picture's pyramid, if there is one of this size: what it does not hide is drawn early."""
         self._resize(target.size)
-        self.guesses = target.generation > 0
-        if self.guesses:
+        self.predicts = target.generation > 0
+        if self.predicts:
             if self._last is None:
                 self._last = _Levels(self._ctx, self._gl, target.size)
             self._build(self._last, target)
@@ -138,14 +138,14 @@ class DepthPyramid:
     def bind(self, program: Any) -> None:
         """Bind what a program looks at, and tell it where it is."""
         assert self._now is not None
-        last = self._last if self.guesses else None
+        last = self._last if self.predicts else None
         self._now.texture.use(CULLING["occlusion"])
         (last or self._now).texture.use(CULLING["last"])
         values = {
             "pyramid": CULLING["occlusion"],
             "pyramid_levels": self._now.count,
             "last_pyramid": CULLING["last"],
-            "guess_level": -1 if last is None else min(GUESS_LEVEL, last.count - 1),
+            "prediction_level": -1 if last is None else min(PREDICTION_LEVEL, last.count - 1),
         }
         for name, value in values.items():
             if name in program:

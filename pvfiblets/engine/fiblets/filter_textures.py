@@ -1,7 +1,7 @@
 """What is there to be drawn: streamlines, and points, that the caller kept. The rest is culled, not only hidden.
 
 A streamline takes a bit, by rank; a point takes a bit, in the order in which points are coded. Both are looked at by
-the culling stage of every pipeline (``shaders/culling/frustum.glsl``), so that what is left out costs no decoding. A
+the culling stage of every pipeline (``shaders/culling/criteria.glsl``), so that what is left out costs no decoding. A
 segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only
 some segments are kept is drawn by the programs that can cut.
 """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ...codec.fibletset import FibletSet
     from ..moderngl_extras import GLExtras
-    from ..regions.ray_intervals import Cutter
+    from ..regions.ray_intervals import RegionIntervals
     from ..regions.uniform_block import RegionBlock
     from ..shaders import Programs
     from ..view import View
@@ -51,7 +51,7 @@ class Visibility:
         self._gl = gl
         self._programs = programs
         self._filter = FilterTextures(ctx, whole, drawn, chunks)
-        self._cutter: Cutter | None = None
+        self._cutter: RegionIntervals | None = None
         self._block: RegionBlock | None = None
 
     @property
@@ -85,10 +85,10 @@ class Visibility:
             self._drop_region()
             return
         if self._cutter is None:
-            from ..regions.ray_intervals import Cutter
+            from ..regions.ray_intervals import RegionIntervals
             from ..regions.uniform_block import RegionBlock
 
-            self._cutter = Cutter(self._ctx, self._gl, self._programs)
+            self._cutter = RegionIntervals(self._ctx, self._gl, self._programs)
             self._block = RegionBlock(self._ctx, self._gl)
         assert self._block is not None
         self._cutter.prepare(view, origin, scale, top)

@@ -30,7 +30,7 @@ bool won;
 
 #include "fiblets/compute/bits.glsl"
 
-uint bits_of(uint word) { return mark_of(word, part + CLASSES * drawing); }
+uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
 
 void start_segment(uint segment, vec3 delta, float steps) {}
 
@@ -66,7 +66,7 @@ void main() {
 #else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+        if (won) atomicOr(visibility_bits[((chunk.y + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
 #endif
     }
 }

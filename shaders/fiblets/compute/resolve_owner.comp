@@ -49,7 +49,7 @@ void main() {
         begin_pixels(f);
         draw_fiblet(f);
         uint word = (owner >> 5) * WORDS, bit = 1u << (f & 31u);
-        if (kept) atomicOr(marks[word + SEEN], bit);
-        if (tied) atomicOr(marks[word + TIED], bit);
+        if (kept) atomicOr(visibility_bits[word + SEEN], bit);
+        if (tied) atomicOr(visibility_bits[word + TIED], bit);
     }
 }

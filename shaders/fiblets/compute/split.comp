@@ -29,8 +29,8 @@ void main() {
         if (marking == 0u || key == 0xFFFFFFFFu) continue;
         if (x > 0u && fiblet_of(nearest[at - 1u]) == fiblet) continue;
         uint mark = (fiblet >> 5) * WORDS, bit = 1u << (fiblet & 31u);
-        if ((marks[mark + SEEN] & bit) != 0u) continue;
-        atomicOr(marks[mark + SEEN], bit);
-        atomicOr(marks[mark + CANDIDATES], bit);
+        if ((visibility_bits[mark + SEEN] & bit) != 0u) continue;
+        atomicOr(visibility_bits[mark + SEEN], bit);
+        atomicOr(visibility_bits[mark + CANDIDATES], bit);
     }
 }

@@ -1,9 +1,9 @@
-// Counts fiblets in the view volume (culling/frustum.glsl) where there are no compute shaders: each that is in it covers a
+// Counts fiblets in the view volume (culling/criteria.glsl) where there are no compute shaders: each that is in it covers a
 // pixel, and a query counts those.
 
 #version 430
 
-#include "culling/frustum.glsl"
+#include "culling/criteria.glsl"
 
 void main() {
     bool outside = outside_view(uint(gl_VertexID), capsule_of(uint(gl_VertexID)));

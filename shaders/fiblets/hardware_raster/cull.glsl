@@ -2,7 +2,7 @@
 // picture showed and what will probably show now, the second all others that nothing drawn so far hides. With the coverage buffer, and without either, there
 // is but one round.
 
-#include "culling/frustum.glsl"
+#include "culling/criteria.glsl"
 #if FEATURE_CULL_PYRAMID || FEATURE_CULL_COVERAGE
 #include "culling/occlusion.glsl"
 #endif
@@ -24,7 +24,7 @@ bool survives(uint f) {
     Capsule c = capsule_of(f);
     if (outside_view(f, c)) return false;
 #if FEATURE_CULL_PYRAMID
-    bool first = was_seen(f) || probably_shows(c);
+    bool first = was_seen(f) || predicted_visible(c);
     if (first == second_round || (second_round && hidden(c))) return false;
 #elif FEATURE_CULL_COVERAGE
     if (hidden(c)) return false;

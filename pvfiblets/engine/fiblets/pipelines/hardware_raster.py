@@ -1,14 +1,14 @@
 """What the pipelines have in common that OpenGL's own rasteriser draws for: rounds, depth test and attachments.
 
-=============  =================================================================================================
-pass           what it does
-=============  =================================================================================================
-clear          empties depth and owners
-seen           two-phase culling: draws those that the last picture showed, or that probably show now
-pyramid        two-phase culling: makes the pyramid of that depth, and keeps who owns it
-draw           draws the others; without two-phase culling, all
-marks          two-phase culling: notes, for the next picture, which fiblets own a pixel
-=============  =================================================================================================
+===============  ===============================================================================================
+pass             what it does
+===============  ===============================================================================================
+clear            empties depth and owners
+visible          two-phase culling: draws those that the last picture showed, or that probably show now
+pyramid          two-phase culling: makes the pyramid of that depth, and keeps who owns it
+draw             draws the others; without two-phase culling, all
+visibility_bits  two-phase culling: notes, for the next picture, which fiblets own a pixel
+===============  ===============================================================================================
 
 The G-buffer's textures are colour attachments, and a depth buffer of float32 decides what is nearest. OpenGL
 draws in order, fiblet by fiblet, and a fragment must be nearer than what is there: of two at the same depth the

@@ -13,14 +13,14 @@ CLASSES = 4
 
 
 def column(name):
-    """Number of a word of ``marks.glsl`` by its name there."""
+    """Number of a word of ``visibility_bits.glsl`` by its name there."""
     return int(re.search(rf"\b{name} = (\d+)u", assemble("fiblets/compute/clear.comp", (), CONSTANTS))[1])
 
 
-def marks(renderer):
+def visibility_words(renderer):
     """(n, words) of each 32 fiblets."""
     buffer = renderer._pipeline.buffers["visibility_bits"]
-    words = CONSTANTS["mark_words"]
+    words = CONSTANTS["visibility_words"]
     count = -(-renderer._fiblets.n_fiblets // 32)
     return np.frombuffer(buffer.read(4 * words * count), "<u4").reshape(count, words)
 
@@ -32,11 +32,11 @@ def bits(words, n_fiblets):
 
 def planned(renderer, *, seen=True, unseen=True):
     """(n_fiblets,) bool: drawn in the last picture, those seen in the one before and those not seen in it."""
-    words = marks(renderer)
+    words = visibility_words(renderer)
     columns = [*(range(CLASSES) if seen else ()), *(range(CLASSES, column("CANDIDATES")) if unseen else ())]
     return bits(np.bitwise_or.reduce(words[:, columns], axis=1), renderer._fiblets.n_fiblets)
 
 
 def owning(renderer):
     """(n_fiblets,) bool: may own a pixel of the last picture."""
-    return bits(marks(renderer)[:, column("SEEN")], renderer._fiblets.n_fiblets)
+    return bits(visibility_words(renderer)[:, column("SEEN")], renderer._fiblets.n_fiblets)
