@@ -74,6 +74,8 @@ def test_glsl_states_every_field() -> None:
         assert f"uint fiblet_{f.name}(" in source
         assert f"{f.shift}, {f.width})" in source
     assert "ivec3 fiblet_end_vector(uint word)" in source
+    assert "const uint FIBLET_ANCHORS_WORDS = 2u;" in source
+    assert "const uint FIBLET_DECODING_WORDS = 3u;" in source
 
 
 def test_codes_are_smallest_rotations_within_their_cap() -> None:

@@ -86,8 +86,8 @@ class AmbientOcclusionPass(ScreenEffect):
         rough = self._targets["rough occlusion"][0]
 
         def passes() -> None:
-            self._pass("occlusion", "rough occlusion", textures, uniforms, features)
-            self._pass("smooth", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
+            self._pass("ssao", "rough occlusion", textures, uniforms, features)
+            self._pass("ssao_blur", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
 
         made_of = buffer, buffer.generation, lens.key, *features, turn, radius, samples, strength
         self._once(made_of, passes)

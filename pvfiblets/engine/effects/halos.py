@@ -73,8 +73,8 @@ class HaloPass(ScreenEffect):
         keys = {"keys": buffer.depth}
 
         def passes() -> None:
-            self._pass("distance", "distances", keys, uniforms)
-            self._pass("nearest", "tiles", {"distances": distances}, uniforms)
+            self._pass("linear_depth", "distances", keys, uniforms)
+            self._pass("tile_min_distance", "tiles", {"distances": distances}, uniforms)
             self._pass("halo", "halos", keys | {"distances": distances, "tiles": tiles}, uniforms)
 
         self._once((buffer, buffer.generation, lens.key, width, depth, reach, widest), passes)

@@ -1,6 +1,7 @@
 """A chunk's buffers as buffer textures, for OpenGL that has no storage buffers (``FEATURE_TEXTURE_DATA``).
 
-Buffer textures hold no copies: both ways read the same buffers. The names of the samplers stand in ``shaders/data``.
+Buffer textures hold no copies: both ways read the same buffers. The names of the samplers stand in
+``shaders/fiblets/data``.
 
 """
 

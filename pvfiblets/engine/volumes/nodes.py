@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
-from ...volumes.options import RaycastOptions
+from ...volumes.options import PROJECTIONS, RaycastOptions
 from ...volumes.volume import RaycastVolume
 from ..bindings import VOLUMES
 from ..errors import EngineError
@@ -149,4 +149,4 @@ def takes_means(casting: RaycastOptions) -> bool:
 
 
 def _peaks(casting: RaycastOptions) -> bool:
-    return casting.mode in ("mip", "local-mip")
+    return casting.mode in PROJECTIONS

@@ -1,4 +1,4 @@
-"""Ambient occlusion of surfaces in a volume by rays through the volume (``shaders/raycast/occlusion*.frag``)."""
+"""Ambient occlusion of surfaces in a volume by rays through the volume (``shaders/volumes/ray_occlusion.frag``)."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 //
 // Ties (equal depth keys in one pixel) go to the fiblet with the smallest index: a picture does not depend on the order
 // in which a driver runs groups. Every tied fiblet is a candidate, because it came nearest or tied when it was drawn. One
-// that takes a pixel from another may have written it before that one did: it is marked, and settle.comp writes it again.
+// that takes a pixel from another may have written it before that one did: it is marked, and resolve_ties.comp writes it again.
 //
 // A fiblet that took a pixel is seen: the next picture begins with it.
 

@@ -1,5 +1,5 @@
 // Where the driver has atomics of 64 bits (fiblets/compute/nearest.glsl): from words to the G-buffer's depth and owners. When all is
-// drawn, owners are marked: settle.comp writes their pixels, and the next picture begins with them.
+// drawn, owners are marked: resolve_ties.comp writes their pixels, and the next picture begins with them.
 //
 // A work group per row of pixels. A run of pixels with the same owner marks it once.
 

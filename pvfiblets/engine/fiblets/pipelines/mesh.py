@@ -1,6 +1,6 @@
 """The mesh pipelines (GL_NV_mesh_shader): a task stage culls, a mesh stage decodes.
 
-Paper: Schertzer et al. 2022, sections 3.3, 3.4 and 4.5, figure 2. The sources are in ``shaders/mesh``.
+Paper: Schertzer et al. 2022, sections 3.3, 3.4 and 4.5, figure 2. The sources are in ``shaders/fiblets/mesh``.
 
 ===============  ==============================================================================================
 pipeline         how a fiblet is decoded

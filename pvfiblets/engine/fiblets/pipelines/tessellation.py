@@ -1,7 +1,7 @@
 """The tessellation pipeline (OpenGL 4.1): a fiblet is a patch, which is decoded, and isolines become its segments.
 
-Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/tessellation``, with their budgets, and in
-``shaders/raster``.
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/tessellation``, with their budgets, and
+in ``hardware_raster`` and ``segments`` beside it.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
 
-uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pipelines/compute.py
+uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pvfiblets/engine/fiblets/pipelines/compute.py
 
 void cover(Segment segment) {
     if (segment.index < share.x || segment.index >= share.y) return;
