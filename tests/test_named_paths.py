@@ -62,7 +62,7 @@ def unknown(path: str, text: str) -> list[str]:
 
 
 def test_a_dead_pointer_is_seen():
-    text = '"""See ``shaders/nowhere``\n``culling/frustum.glsl``, now.comp."""\nx = "not/prose.py"  # codec/nothing.py\n'
+    text = '"""See ``shaders/nowhere``\n``culling/frustum.glsl``, now.comp."""\nx = "no/code.py"  # codec/nothing.py\n'
     assert [line.split(": ") for line in unknown("pvfiblets/a.py", text)] == [
         ["pvfiblets/a.py:3", "codec/nothing.py"],
         ["pvfiblets/a.py:1", "shaders/nowhere"],
