@@ -424,5 +424,6 @@ def test_textures_follow_the_pictures_size_and_are_reported(effect, make_buffer)
         report = halos.explain()
         tiles = -(-size[0] // 8) * -(-size[1] // 8)
         assert sum(buffer["bytes"] for buffer in report["buffers"]) == 8 * size[0] * size[1] + 4 * tiles
-        assert [item["name"] for item in report["passes"]] == ["distance (effect)", "nearest (effect)", "halo (effect)"]
+        names = [item["name"] for item in report["passes"]]
+        assert names == ["linear_depth (effect)", "tile_min_distance (effect)", "halo (effect)"]
         assert all(item["ms"] >= 0 for item in report["passes"])

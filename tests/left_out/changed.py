@@ -94,7 +94,7 @@ CHANGED = {
     "ambient occlusion": What(
         ran="effects/ssao.frag, effects/ssao_blur.frag",
         resolve="ambient_occlusion",
-        passes="occlusion (effect), smooth (effect)",
+        passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
         modules="engine.effects.ambient_occlusion",
     ),
@@ -104,14 +104,14 @@ CHANGED = {
     "halos": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo",
-        passes="distance (effect), halo (effect), nearest (effect)",
+        passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",
     ),
     "ink": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo, ink",
-        passes="distance (effect), halo (effect), nearest (effect)",
+        passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",
     ),
