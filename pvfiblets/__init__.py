@@ -26,6 +26,9 @@ _HOME = {
 
 _ROOMS = ("synthetic",)
 
+FORMATS = {".fiblets": "pvfiblets.codec.fiblets_format"}
+"""Formats of rooms that `pvfiblets.formats` knows nothing of: suffix to module, imported with the first such file."""
+
 __all__ = ["__version__", *_HOME, *_ROOMS]
 
 if TYPE_CHECKING:

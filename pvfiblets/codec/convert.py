@@ -21,6 +21,7 @@ from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
+from .layout import WORDS
 from .ordering import Order, check_order
 from .parameters import Parameters, survey
 from .quantised import QuantisedPoints
@@ -114,7 +115,7 @@ def compress_file(
         header_set = FibletSet(
             parameters=encoder.parameters,
             anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
-            decoding=np.empty((0, 3), np.uint32),
+            decoding=np.empty((0, WORDS["decoding"]), np.uint32),
             reach=np.empty(0, np.uint16),
             codes=np.empty(0, np.uint8),
             ends=np.empty(0, np.uint32),
@@ -278,8 +279,8 @@ class _Spool:
     def add_empty(self, per_point: Sequence[str], bits: int, whole: _Whole) -> None:
         """Empty arrays, for a source without points."""
         for name, dtype, shape in (
-            ("anchors.npy", np.uint32, (0, 2)),
-            ("decoding.npy", np.uint32, (0, 3)),
+            ("anchors.npy", np.uint32, (0, WORDS["anchors"])),
+            ("decoding.npy", np.uint32, (0, WORDS["decoding"])),
             ("reach.npy", np.uint16, (0,)),
             ("codes.npy", np.uint8, (0,)),
             ("ends.npy", np.uint32, (0,)),

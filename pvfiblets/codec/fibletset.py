@@ -224,7 +224,7 @@ class FibletSet:
         """
         if self.in_order:
             return np.asarray(values)
-        from .places import coded_rows
+        from .streamline_ranges import coded_rows
 
         return np.asarray(values)[coded_rows(self)]
 

@@ -83,7 +83,7 @@ FEATURES: dict[str, str] = {
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",
     "VOLUME_SURFACE": "surfaces in a volume",
-    "VOLUME_LIGHT": "light through a volume",
+    "VOLUME_COMPOSITE": "light through a volume",
     "VOLUME_LOCAL": "the first peak in a volume, not the greatest",
     "VOLUME_NEAREST": "the field of the nearest voxel",
     "VOLUME_TRICUBIC": "the field of cubics between voxels",

@@ -32,7 +32,7 @@ class SurfaceShading:
         """Set one effect; a refused value leaves all as it was."""
         if wanted is None or wanted is False:
             self._shades.pop(name, None)
-            self._mapper.set_extra(name, None)
+            self._mapper.set_effect(name, None)
             return
         if wanted is not True and not isinstance(wanted, Mapping):
             raise ValueError(f"{name} is {wanted!r}; give True, False or a dict of settings")
@@ -45,9 +45,9 @@ class SurfaceShading:
             colour = settings.setdefault("color", "white" if kind is Halos else None)
             plain = colour is None or (isinstance(colour, str) and colour == _BACKGROUND)
             given["color"] = None if plain else pv.Color(colour).float_rgb
-        extra = kind(**given)
-        self._mapper.set_extra(name, extra)
-        self._shades[name] = {key: settings.get(key, getattr(extra, key)) for key in known}
+        effect = kind(**given)
+        self._mapper.set_effect(name, effect)
+        self._shades[name] = {key: settings.get(key, getattr(effect, key)) for key in known}
 
 
 class Shading(SurfaceShading):
@@ -75,6 +75,6 @@ class Shading(SurfaceShading):
         if style == self._style:
             return
         self._style = style
-        self._mapper.set_extra("ink", Ink() if style == "halo" else None)
+        self._mapper.set_effect("ink", Ink() if style == "halo" else None)
         if style == "surface" or not self.halos:
             self.halos = style == "halo"

@@ -19,14 +19,14 @@
 //   4. A fiblet is hidden if all its pieces are. One that reaches beside or behind the camera never is.
 //
 // Invariant: never hides a fiblet of which one pixel would be kept. Pixels of thin lines are up to one pixel off the line
-// (fiblets/raster/cells.glsl), those of wide ones half the width. Depth is that of the line itself; but the first pixel of a thin
+// (fiblets/segments/thin_line_rule.glsl), those of wide ones half the width. Depth is that of the line itself; but the first pixel of a thin
 // segment shows a place before its start, CELL_SHIFT / n of the segment, and the last one after its end: `overshoot`.
 // Rounding of h is paid by `slack`.
 
 #include "culling/bounds.glsl"
 #include "frame/project.glsl"
 
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 
 const float MARGIN = 1.5;  // pixels
 const float PIECES = 4.0;

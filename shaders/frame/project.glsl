@@ -67,5 +67,5 @@ bool clip_window(vec2 a, vec2 b, out float t0, out float t1) {
 // Window depth as the G-buffer's fixed-point key. 2^32 (1 - 2^-23) is the largest drawn; all ones means empty.
 uint depth_key(float z) { return uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u; }
 
-// Thin lines run from pixel centre to pixel centre, moved by this: see fiblets/raster/cells.glsl.
+// Thin lines run from pixel centre to pixel centre, moved by this: see fiblets/segments/thin_line_rule.glsl.
 const vec2 CELL_SHIFT = vec2(23.0, 23.0) / 256.0;

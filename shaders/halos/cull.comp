@@ -1,5 +1,5 @@
 // Two-phase culling of lines and points with halos: lists the items to draw, each of some neighbouring quads
-// (pvfiblets/engine/culling/listing.py). The first round lists those that the last picture showed; the second, of the others,
+// (pvfiblets/engine/culling/two_phase_items.py). The first round lists those that the last picture showed; the second, of the others,
 // those that the depth of the first does not hide.
 //
 // Nothing of a strip is nearer than its axis, and that is nearest at a vertex: an item whose vertices are all behind everything in
@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;
 
 #include "halos/vertices.glsl"
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 #include "frame/groups.glsl"
 
 layout(std430, binding = {{ items_seen }}) readonly buffer SeenBits { uint seen[]; };

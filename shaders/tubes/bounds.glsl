@@ -1,7 +1,7 @@
 // Where in the window a segment of a spline tube can be: a rectangle around the balls around its control points.
 //
 // A tube lies in the hull of those balls: curves do in the hull of their control points, and radii lie between theirs. A ball
-// of radius r around p reaches r |J| / (W - r |grad W|) pixels from the pixel of p at most (fiblets/raster/tube.glsl has J). The
+// of radius r around p reaches r |J| / (W - r |grad W|) pixels from the pixel of p at most (fiblets/segments/line_tube.glsl has J). The
 // rectangle holds all four; its long side runs from the first to the last.
 //
 // Next to the eye, where that says little: the box of all balls in X, Y and W, cut off at W of the near plane.

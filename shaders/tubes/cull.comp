@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 #include "tubes/segment.glsl"
 #include "tubes/ray.glsl"
 #include "tubes/bounds.glsl"
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 #include "frame/groups.glsl"
 
 layout(std430, binding = {{ items_seen }}) readonly buffer SeenBits { uint seen[]; };

@@ -15,7 +15,7 @@
 #include "tubes/ray.glsl"
 #define VARYING flat in
 #include "tubes/varyings.glsl"
-#include "tubes/cross_line.glsl"
+#include "tubes/orthonormal_basis.glsl"
 #include "tubes/functions.glsl"
 #if FEATURE_TUBE_CHAIN
 #include "tubes/solver.glsl"

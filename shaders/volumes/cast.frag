@@ -30,10 +30,10 @@ layout(location = 3) out vec2 out_position;
 // bool cast_ray(pixel, ray, step, start, out hit, out value): what the mode shows along a ray; false for nothing.
 #if FEATURE_VOLUME_SURFACE
 #include "volumes/cast_surface.glsl"
-#elif FEATURE_VOLUME_LIGHT
-#include "volumes/cast_light.glsl"
+#elif FEATURE_VOLUME_COMPOSITE
+#include "volumes/cast_composite.glsl"
 #else
-#include "volumes/cast_peak.glsl"
+#include "volumes/cast_projection.glsl"
 #endif
 
 // A number in 0..1 for each pixel that looks like noise.

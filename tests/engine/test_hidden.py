@@ -17,7 +17,7 @@ from pvfiblets.engine import FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.frame import FRAME_BLOCK, frame_block
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs, assemble
 
 from .cells import line_cells
@@ -81,7 +81,7 @@ def answers(gl, size, projection, depth, capsules):
     texture = gl.texture(size, 1, depth.astype("<u4").tobytes(), dtype="u4")
     texture.filter = moderngl.NEAREST, moderngl.NEAREST
     program = gl.compute_shader(assemble("test", (), CONSTANTS, source=PROGRAM))
-    pyramid = DepthPyramid(gl, OpenGL(gl), programs)
+    pyramid = DepthPyramid(gl, GLExtras(gl), programs)
     pyramid.build(SimpleNamespace(size=size, depth=texture))
     pyramid.bind(program)
     frame.bind_to_uniform_block(0)
@@ -205,7 +205,7 @@ def test_nothing_that_would_show_is_hidden(gl, camera, name, width):
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(gl, camera, monkeypatch, mutation):
     honest, (right, wrong) = shaders.read_shader, MUTATIONS[mutation]
-    assert right in honest("culling/hidden.glsl") + honest("culling/squares.glsl")
+    assert right in honest("culling/hidden.glsl") + honest("culling/pyramid_lookup.glsl")
     monkeypatch.setattr(shaders, "read_shader", lambda name: honest(name).replace(right, wrong))
     noticed = 0
     for name in ("perspective", "parallel slab"):

@@ -11,7 +11,7 @@ from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.passes import nowhere
 from pvfiblets.engine.regions.uniform_block import REGIONS_BLOCK, FieldTextures, RegionBlock, region_block
 from pvfiblets.engine.shaders import assemble
@@ -42,7 +42,7 @@ void main() { side = region_of_capsule(a.xyz, b.xyz, a.w); }
 
 def classified(gl, region, a, b, radii, *, origin=(0.0, 0.0, 0.0), version=430):
     """What a shader says of capsules given in data mm, where local 0 is at ``origin``."""
-    block = RegionBlock(gl, OpenGL(gl))
+    block = RegionBlock(gl, GLExtras(gl))
     to_data = np.eye(4)
     to_data[:3, 3] = origin
     block.write(region, to_data)
@@ -64,7 +64,7 @@ def classified(gl, region, a, b, radii, *, origin=(0.0, 0.0, 0.0), version=430):
         program["Regions"].binding = BLOCKS["Regions"]
         block.bind(program)
         array = gl.vertex_array(program, [(data, "4f 4f", "a", "b")])
-        with nowhere(gl, OpenGL(gl)):
+        with nowhere(gl, GLExtras(gl)):
             array.transform(out, moderngl.POINTS, vertices=len(a))
     found = np.frombuffer(out.read(), "<i4").copy()
     for thing in (array, program, data, out, block):
@@ -186,7 +186,7 @@ def test_block_is_what_the_shader_declares(gl):
 def test_fields_are_copied_once_and_go_with_the_region(gl):
     points, triangles = torus(3.0, 1.0)
     mesh = regions.Surface(points, triangles)
-    block = RegionBlock(gl, OpenGL(gl))
+    block = RegionBlock(gl, GLExtras(gl))
     block.write(mesh | regions.Sphere((0, 0, 0), 1), np.eye(4))
     assert block.features == ("CLIP_REGION", "REGION_FIELDS")
     texture, nbytes = block._textures._texture, block.nbytes

@@ -156,9 +156,9 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
     n, ranks = last - first, last_rank - rank + 1  # the last streamline may go on in the next page
     ids = 0 if fiblets.rank_to_id is None else -(-ranks // 4)
     sizes = {
-        "anchors": 8 * (n + 1),
+        "anchors": 4 * layout.WORDS["anchors"] * (n + 1),
         "bounds": 4 * -(-n // 2) + 4 * ranks,
-        "decoding": 12 * n,
+        "decoding": 4 * layout.WORDS["decoding"] * n,
         "codes": last_code - code + 4,  # four bytes are read at once
         "pages": 16 * (end - begin + ids),
     }

@@ -2,9 +2,10 @@
 
 ``shaders/frame/tubes.glsl`` says what the symbols are.
 
-A pixel of a tube is where the ray through the pixel's centre enters the body (``shaders/fiblets/raster/tube.glsl``).
-Rays are described in local millimetres, by what a step of one pixel moves them: a shader then begins each ray beside
-the segment that it is tested against, and float32 rounds relative to the tube, not to its distance from the camera.
+A pixel of a tube is where the ray through the pixel's centre enters the body
+(``shaders/fiblets/segments/line_tube.glsl``). Rays are described in local millimetres, by what a step of one pixel
+moves them: a shader then begins each ray beside the segment that it is tested against, and float32 rounds relative to
+the tube, not to its distance from the camera.
 """
 
 from __future__ import annotations

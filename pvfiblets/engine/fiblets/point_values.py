@@ -261,7 +261,7 @@ def _curvatures(m: _Measures, carry: Any) -> tuple[Floats, Any, tuple[float, flo
 
 
 def _turns(a: Floats, b: Floats) -> Floats:
-    """``turn()`` of ``shaders/compute/turn.glsl`` on rows."""
+    """``turn()`` of ``shaders/fiblets/attributes/turn.glsl`` on rows."""
     la, lb = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     good = (la > 0.0) & (lb > 0.0)
     a = a / np.where(good, la, 1.0)[:, None]

@@ -19,7 +19,7 @@ from ...query.point_flags import ALL, ANY, FIRST, LAST
 from ..bindings import ANSWER_STORAGE, BLOCKS
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BLOCK, Array
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch
 from ..regions.uniform_block import RegionBlock
 from ..shaders import Programs
@@ -48,7 +48,7 @@ class RegionQuery:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     fiblets : FibletSet
         The whole set, with its codes.
@@ -66,7 +66,7 @@ class RegionQuery:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         fiblets: FibletSet,
         chunks: Sequence[Chunk],

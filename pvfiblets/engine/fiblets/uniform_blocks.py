@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...codec import layout, tables
+from ...codec import direction_codebook, layout
 from ..bindings import BLOCKS
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..frame import FRAME_BLOCK, frame_block, segment_pixels
@@ -81,10 +81,10 @@ class SharedBlocks:
             step_span=fiblets.step_hi - fiblets.step_lo,
             lattice_edge=fiblets.lattice,
             end_vector_scale=fiblets.parameters.end_scale,
-            rotation_scales=tables.packed_scales().reshape(4, 4),
+            rotation_scales=direction_codebook.packed_scales().reshape(4, 4),
         )
         self.buffers: dict[str, moderngl.Buffer] = {
-            "rotations": ctx.buffer(ROTATIONS_BLOCK.pack(rotations=tables.packed().reshape(-1, 4))),
+            "rotations": ctx.buffer(ROTATIONS_BLOCK.pack(rotations=direction_codebook.packed().reshape(-1, 4))),
             "coding": ctx.buffer(coding),
             "frame": ctx.buffer(bytes(FRAME_BLOCK.nbytes)),
         }

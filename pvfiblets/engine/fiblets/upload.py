@@ -17,7 +17,7 @@ from .chunks import CHUNK_BLOCK, Chunk, ChunkPlan, reserve_buffer
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from .memory_fit import Fitted, Room
+    from .memory_fit import Fitted, MemoryBudget
 
 __all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
@@ -143,7 +143,7 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
 
 
 def upload_fitting(
-    ctx: moderngl.Context, fiblets: FibletSet, room: Room, fit: str | None, chunks: list[Chunk], progress: bool
+    ctx: moderngl.Context, fiblets: FibletSet, room: MemoryBudget, fit: str | None, chunks: list[Chunk], progress: bool
 ) -> Fitted:
     """Copy what fits, and say what that is.
 
@@ -151,7 +151,7 @@ def upload_fitting(
     ----------
     ctx : moderngl.Context
     fiblets : FibletSet
-    room : Room
+    room : MemoryBudget
     fit : {None, 'sample'}
         What to do where memory does not suffice.
     chunks : list of Chunk

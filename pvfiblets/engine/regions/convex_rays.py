@@ -21,7 +21,7 @@ from .clip_planes import SIDES
 if TYPE_CHECKING:
     from ...query.shapes import Region, Shape
 
-__all__ = ["RAYS_BLOCK", "Form", "rays_block", "to_unit", "window_matrix"]
+__all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
 
 _ROWS = 6
 _PLANES, _SPHERE, _SURFACE = range(3)
@@ -75,7 +75,7 @@ def _centre(window: Array, place: Array, size: tuple[int, int]) -> Array:
 
 
 @dataclass(frozen=True)
-class Form:
+class RegionSignature:
     """What a program is written for: how many leaves there are, of which kinds, and what joins them.
 
     Attributes
@@ -90,7 +90,7 @@ class Form:
     program: tuple[int, ...]
 
     @classmethod
-    def of(cls, region: Region) -> Form:
+    def of(cls, region: Region) -> RegionSignature:
         """Return that of a region."""
         return cls(tuple(leaf.kind for leaf in region.leaves), region.program)
 

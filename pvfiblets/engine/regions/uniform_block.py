@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...query.fields import Field as DistanceField
     from ...query.region import Region
     from ...query.shapes import Shape
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
 
 __all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
@@ -215,7 +215,7 @@ class RegionBlock:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
 
     Attributes
     ----------
@@ -223,7 +223,7 @@ class RegionBlock:
         Of programs that look at the region; none while there is none.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras) -> None:
         self._ctx = ctx
         self._gl = gl
         self._buffer: moderngl.Buffer | None = None

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import BLOCKS, TUBE_PROBE
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from .options import SOLVERS, check_choices
 from .uniform_blocks import SPLINES_BLOCK
@@ -60,7 +60,7 @@ class SolverProbe:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         check_choices(solver=solver, iterations=iterations)
-        self._ctx, self._gl = ctx, OpenGL(ctx)
+        self._ctx, self._gl = ctx, GLExtras(ctx)
         self._programs = Programs(ctx, {})
         feature = SOLVERS[solver].feature
         wanted = {"TUBE_CHAIN": chain or hollow or feature is None, "TUBE_HOLLOW": hollow}

@@ -2,7 +2,7 @@
 
 #if FEATURE_VALUES_STORED || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
 #include "fiblets/decode/sequential.glsl"
-#include "fiblets/attributes/place.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
 #include "fiblets/attributes/values.glsl"
 #endif
 

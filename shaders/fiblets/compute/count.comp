@@ -1,4 +1,4 @@
-// Counts fiblets for reports: those in the view volume (culling/frustum.glsl), as the cull pass finds them, and those that the
+// Counts fiblets for reports: those in the view volume (culling/criteria.glsl), as the cull pass finds them, and those that the
 // last picture drew, where the marks tell.
 //
 // One invocation per 32 fiblets. A set has fewer than 2^32 fiblets: 32 bits count them all.
@@ -6,7 +6,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "culling/frustum.glsl"
+#include "culling/criteria.glsl"
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 

@@ -13,7 +13,7 @@
 #endif
 layout(local_size_x = {{ group_size }}) in;
 
-#include "fiblets/raster/segments.glsl"
+#include "fiblets/compute/software_raster/segments.glsl"
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif
@@ -30,7 +30,7 @@ bool won;
 
 #include "fiblets/compute/bits.glsl"
 
-uint bits_of(uint word) { return mark_of(word, part + CLASSES * drawing); }
+uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
 
 void start_segment(uint segment, vec3 delta, float steps) {}
 
@@ -66,7 +66,7 @@ void main() {
 #else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(marks[((chunk_first + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+        if (won) atomicOr(visibility_bits[((chunk_first + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
 #endif
     }
 }

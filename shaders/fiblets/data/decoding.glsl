@@ -1,5 +1,5 @@
 // What decoding reads beside fiblets/data/culling.glsl: the second half of a record, the codes, and the rotations that direction
-// codes stand for (codec/layout.glsl and pvfiblets/codec/tables.py), from storage buffers or from buffer textures.
+// codes stand for (codec/layout.glsl and pvfiblets/codec/direction_codebook.py), from storage buffers or from buffer textures.
 
 #if FEATURE_TEXTURE_DATA
 uniform usamplerBuffer decoding_texels;    // r32ui: OpenGL before 4.0 has no buffer textures of three components

@@ -13,9 +13,9 @@ layout(triangle_strip, max_vertices = {{ capsule_vertices }}) out;
 const uint SHARE = {{ capsule_share }}u;
 #endif
 
-#include "fiblets/raster/polyline.glsl"
-#include "fiblets/raster/wide.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/hardware_raster/wide.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/geometry/share.glsl"
 

@@ -2,7 +2,7 @@
 // strip goes out, decoded while it is emitted. One invocation walks along the fiblet from its first point to the share's
 // end. pvfiblets/engine/fiblets/pipelines/geometry.py has the arithmetic of shares.
 //
-// Consecutive segments share a vertex, unless one of them was cut (fiblets/raster/clipped_segment.glsl): then a new strip begins.
+// Consecutive segments share a vertex, unless one of them was cut (fiblets/segments/clipped_segment.glsl): then a new strip begins.
 
 #version 430
 
@@ -16,9 +16,9 @@ layout(line_strip, max_vertices = {{ line_vertices }}) out;
 const uint SHARE = {{ line_share }}u;
 #endif
 
-#include "fiblets/raster/polyline.glsl"
-#include "fiblets/raster/thin.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/hardware_raster/thin.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/geometry/share.glsl"
 

@@ -4,7 +4,7 @@
 // Use: all invocations call cull(n); it returns how many survived, and the first has them in `survivors`. A task work group
 // has {{ task_fiblets }} fiblets, because most are culled: a group that yields nothing should not cost its launch for 32 only.
 
-#include "culling/survives.glsl"
+#include "fiblets/hardware_raster/cull.glsl"
 #include "fiblets/mesh/survivors.glsl"
 
 uniform uint first_group;  // drawing calls are limited in length (pvfiblets/engine/fiblets/pipelines/mesh.py)

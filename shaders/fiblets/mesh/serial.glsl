@@ -1,7 +1,7 @@
 // One invocation draws one fiblet, or a share of it, point after point (paper: Schertzer et al. 2022, sections 3.3.1 and
 // 4.5.3): the pipeline `mesh-serial`, for comparison with fiblets/mesh/together.glsl.
 
-#include "fiblets/raster/polyline.glsl"
+#include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/mesh/draw_segment.glsl"
 

@@ -10,7 +10,7 @@
 #include "fiblets/decode/parallel.glsl"
 #include "culling/bounds.glsl"
 #include "fiblets/data/point_mask.glsl"
-#include "fiblets/attributes/place.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
 #include "frame/tangent.glsl"
 #include "fiblets/data/values.glsl"
 #if FEATURE_VALUES_CURVATURE

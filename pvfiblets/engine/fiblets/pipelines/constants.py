@@ -6,10 +6,19 @@ from ...passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
 from ..filter_textures import MASK_BITS
 
-__all__ = ["CONSTANTS", "GROUP_WORDS", "MARK_WORDS", "SHARES", "TASK_FIBLETS", "TASK_ROUNDS", "THREADS", "VERTICES"]
+__all__ = [
+    "CONSTANTS",
+    "GROUP_WORDS",
+    "SHARES",
+    "TASK_FIBLETS",
+    "TASK_ROUNDS",
+    "THREADS",
+    "VERTICES",
+    "VISIBILITY_WORDS",
+]
 
 GROUP_WORDS = 8
-MARK_WORDS = 15
+VISIBILITY_WORDS = 15
 
 SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
 VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
@@ -25,7 +34,7 @@ TASK_FIBLETS = THREADS * TASK_ROUNDS
 CONSTANTS = {
     "group_size": GROUP_SIZE,
     "group_words": GROUP_WORDS,
-    "mark_words": MARK_WORDS,
+    "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,
     "mesh_threads": THREADS,
