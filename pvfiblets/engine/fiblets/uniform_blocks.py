@@ -34,7 +34,7 @@ CODING_BLOCK = UniformStruct(
     Field("rotation_scales", "vec4[4]", "of each cap angle, by fours: what the integers of its rotations are times"),
 )
 ROTATIONS_BLOCK = UniformStruct(
-    "Rotations", Field("rotations", "uvec4[1024]", "256 words a cap angle, by fours, of pvfiblets/codec/tables.py")
+    "Rotations", Field("rotations", "uvec4[1024]", "256 words a cap angle, by fours, of codec/direction_codebook.py")
 )
 
 Array = npt.NDArray[np.float64]
