@@ -9,6 +9,10 @@ those of a folder of the codec by that folder's besides.
 from __future__ import annotations
 
 import hashlib
+import logging
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,8 +20,10 @@ from typing import Any
 import numba
 from numba.core.caching import FunctionCache
 
-__all__ = ["kernel", "parallel_kernel", "sources_digest"]
+__all__ = ["compilation_noticed", "kernel", "parallel_kernel", "sources_digest"]
 
+logger = logging.getLogger("pvfiblets.codec")
+NOTICED = 1.0  # seconds, after which one wonders
 HOME = Path(__file__).resolve().parent
 
 
@@ -54,3 +60,16 @@ def kernel(function: Any) -> Any:
 def parallel_kernel(function: Any) -> Any:
     """The same for one whose ``numba.prange`` loops run on all cores."""
     return _compiled(function, parallel=True)
+
+
+@contextmanager
+def compilation_noticed(what: str) -> Iterator[None]:
+    """Log a warning if what is done within takes more than a second: kernels that nobody has used here before."""
+    told = "compiling %s for this machine; this happens once, and takes up to a minute"
+    timer = threading.Timer(NOTICED, logger.warning, (told, what))
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

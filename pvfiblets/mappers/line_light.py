@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.mappers.shader_effects import Draw, Piece
+from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 
 __all__ = ["LegendColours", "LineLight"]
 
 
-class LineLight(Piece):
+class LineLight(ShaderEffect):
     """Illuminated lines (Zöckler 1996, Mallo 2005) with a floor: light shows shape and leaves colours true."""
 
     features = frozenset({"line_light"})
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set what the lights of the scene add up to, and whether one of them stands in it."""
         lights = draw.renderer.GetLights()
         every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
@@ -26,7 +26,7 @@ class LineLight(Piece):
         program.SetUniformf("fibletStanding", float(any(light.LightTypeIsSceneLight() for light in on)))
 
 
-class LegendColours(Piece):
+class LegendColours(ShaderEffect):
     """Colours as they are, whatever the lights: those that a scalar bar or a legend explains."""
 
     features = frozenset({"legend_colours"})

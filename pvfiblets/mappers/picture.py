@@ -23,7 +23,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.tiles import Margin, margin_of, shifted
@@ -276,7 +276,7 @@ def _attachment(context: WindowContext, point: int) -> Attachment:
     RuntimeError
         It is no texture.
     """
-    gl = OpenGL(context.ctx)
+    gl = GLExtras(context.ctx)
     values = []
     if gl.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") != 0:
         for what in (_TYPE, _NAME, _COMPONENTS):

@@ -50,7 +50,7 @@ layout(std430, binding = 9) writeonly buffer Meshes { uint meshes[]; };
 LAYOUT
 #define VARYING
 #define TO(name) name
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 uint mesh;
 void put_vertex(uint vertex, vec4 at) {
     for (uint a = 0u; a < 4u; ++a) meshes[mesh + 4u * vertex + a] = floatBitsToUint(at[a]);
@@ -100,9 +100,9 @@ void main() {
 
 VERTEX = """
 #version 430
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 #define VARYING flat out
-#include "fiblets/raster/varyings.glsl"
+#include "fiblets/hardware_raster/varyings.glsl"
 layout(std430, binding = 9) readonly buffer Meshes { uint meshes[]; };
 LAYOUT
 float value(uint at) { return uintBitsToFloat(meshes[at]); }
@@ -175,7 +175,7 @@ class EmulatedMesh(MeshPipeline):
         if key not in self.kept:
             stage, threads = ("serial", "1") if serial else ("together", "{{ mesh_threads }}")
             mesh = MESH.replace("LAYOUT", LAYOUT).replace("STAGE", stage).replace("THREADS_OF", threads)
-            fragment = "fiblets/raster/capsule.frag" if job.wide else "fiblets/raster/line.frag"
+            fragment = "fiblets/hardware_raster/capsule.frag" if job.wide else "fiblets/hardware_raster/line.frag"
             program = self._ctx.program(
                 vertex_shader=assemble("vertex", every, CONSTANTS, source=VERTEX.replace("LAYOUT", LAYOUT)),
                 fragment_shader=assemble(fragment, every, CONSTANTS),

@@ -1,7 +1,7 @@
 """Polylines in the window, in float64: what a picture must show, sampled densely or asked of each pixel.
 
-A thin segment is drawn from pixel centre to pixel centre (``shaders/fiblets/raster/cells.glsl``). How far that may
-lead away, in pixels:
+A thin segment is drawn from pixel centre to pixel centre (``shaders/fiblets/segments/thin_line_rule.glsl``). How far
+that may lead away, in pixels:
 
 * from the true line: each end moves by at most 1/2 along each axis, and a pixel lies at most 1/2 beside the moved line
   along its minor axis. For a line of direction (c, s), c >= s, that is (c + s) / 2 + c / 2, at most sqrt(5) / 2, and

@@ -30,11 +30,11 @@ def lamp(light_type, *towards, intensity=1.0, color="white"):
 def rod(make_plotter, make_fibres, tools):
     """Return a function: colour of a short straight rod in the middle of the view from -y, or its share of COLOUR."""
 
-    def run(direction, *lights, extra=None, lighting="none", specular=0.0):
+    def run(direction, *lights, effect=None, lighting="none", specular=0.0):
         along = np.linspace(-10, 10, 41)[:, None] * unit(*direction)
         fibres = make_fibres(type(tools.helices(1, 2)).from_list([along]))
         mapper, actor = fibres.actor(lighting=True, colouring=Colouring("solid", color=tuple(COLOUR / 255)))
-        mapper.set_extra("light", LineLight() if extra is None else extra)
+        mapper.set_effect("light", LineLight() if effect is None else effect)
         actor.GetProperty().SetSpecular(specular)
         plotter = make_plotter(lighting=lighting, window_size=(61, 61))
         plotter.add_actor(actor, reset_camera=False)
@@ -104,5 +104,5 @@ def test_highlights_are_added(rod, lighting):
 @pytest.mark.parametrize("direction", RODS)
 def test_colours_of_a_legend_stay_as_they_are(rod, direction, lighting):
     lights = [lamp("headlight", 0, 0, 1)] if lighting == "headlight" else []
-    seen = rod(direction, *lights, extra=LegendColours(), lighting="none" if lights else lighting)
+    seen = rod(direction, *lights, effect=LegendColours(), lighting="none" if lights else lighting)
     assert np.allclose(seen, COLOUR, atol=1)

@@ -16,10 +16,10 @@ import numpy.typing as npt
 
 from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
-from .lens import Lens
+from .projection import Projection
 from .tone import Tone
 
 __all__ = ["Attachment", "PictureEffects"]
@@ -57,7 +57,7 @@ class PictureEffects:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._programs = Programs(ctx, {"steps": float(STEPS), "tile": TILE})
         self._textures: dict[str, moderngl.Texture] = {}
         self._framebuffers: dict[tuple[str, ...], moderngl.Framebuffer] = {}
@@ -135,7 +135,7 @@ class PictureEffects:
         *,
         tone: Tone,
         focus: Focus | None = None,
-        lens: Lens | None = None,
+        lens: Projection | None = None,
     ) -> None:
         """Draw the copy, changed.
 
@@ -149,7 +149,7 @@ class PictureEffects:
             Comes after the focus.
         focus : Focus, optional
             Of a picture that was copied with its depths.
-        lens : Lens, optional
+        lens : Projection, optional
             With the focus: of the viewport.
         """
         x, y, width, height = viewport
@@ -169,7 +169,7 @@ class PictureEffects:
             finally:
                 framebuffer.release()
 
-    def _blurred(self, focus: Focus, lens: Lens) -> dict[str, moderngl.Texture]:
+    def _blurred(self, focus: Focus, lens: Projection) -> dict[str, moderngl.Texture]:
         """Say of each pixel of the copy how far its light spreads; returns what the last pass reads."""
         size = self._textures["colours"].size
         blurs = self._texture("blurs", size, 4, "f4")

@@ -222,23 +222,23 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._relight()
 
     def _read_transparency(self) -> str | int | None:
-        extra: Any = self._mapper.extras.get(_LAYERS)
-        if extra is None:
+        effect: Any = self._mapper.effects.get(_LAYERS)
+        if effect is None:
             return None
-        return "layers" if extra.count == _SOME_LAYERS else extra.count
+        return "layers" if effect.count == _SOME_LAYERS else effect.count
 
     def _write_transparency(self, transparency: str | int | None) -> None:
         if transparency is None:
-            self._mapper.set_extra(_LAYERS, None)
+            self._mapper.set_effect(_LAYERS, None)
             return
         layers = _SOME_LAYERS if transparency == "layers" else transparency
         try:
-            extra = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
+            effect = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
             ) from error
-        self._mapper.set_extra(_LAYERS, extra)
+        self._mapper.set_effect(_LAYERS, effect)
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -1,5 +1,5 @@
 // Where a streamline comes from before a fiblet, and where it goes on after it, in mm: for the tangents at the fiblet's ends
-// (fiblets/attributes/tangent.glsl), and for the joints of wide lines (fiblets/raster/joint.glsl). None where the streamline begins
+// (fiblets/attributes/tangent.glsl), and for the joints of wide lines (fiblets/segments/joint.glsl). None where the streamline begins
 // or ends, and where the neighbour lies in another chunk.
 //
 // From far enough fiblets are one segment each (culling/bounds.glsl): `whole` asks for those segments.
@@ -17,7 +17,7 @@ vec3 first_segment(uint f) {
         uvec2 n;
         ivec3 lo;
         lattice_box(words, byte, lo, n, width);
-        return steps.z * exp2(-float(fiblet_cap(words))) * vec3(lattice_cell(byte, width, lo, n));
+        return lattice_edge * exp2(-float(fiblet_cap(words))) * vec3(lattice_cell(byte, width, lo, n));
     }
 #endif
 #if FEATURE_DIRECTION
@@ -32,7 +32,7 @@ bool alike_after(uint f, bool whole) {
 #if FEATURE_POINT_MASK
     return false;
 #else
-    return !ends(f) && f + 1u < chunk.x && is_one_segment(capsule_of(f + 1u)) == whole;
+    return !ends(f) && f + 1u < chunk_fiblets && is_one_segment(capsule_of(f + 1u)) == whole;
 #endif
 }
 
@@ -41,7 +41,7 @@ vec3 direction_before(uint f, bool whole) {
 }
 
 vec3 direction_after(uint f, bool whole) {
-    if (ends(f) || f + 1u >= chunk.x) return vec3(0.0);
+    if (ends(f) || f + 1u >= chunk_fiblets) return vec3(0.0);
     if (!whole) return first_segment(f + 1u);
     return ends(f + 1u) ? end_vector(f + 1u) : anchor_local(f + 2u) - anchor_local(f + 1u);
 }

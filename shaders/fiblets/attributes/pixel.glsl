@@ -4,7 +4,7 @@
 // Use: begin_pixels(f) once for a fiblet, before it is walked along; start_segment() before the pixels of each of its segments;
 // then pixel_ids(t) and pixel_place(segment, t) for every pixel.
 
-#include "fiblets/attributes/place.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
 #include "fiblets/attributes/values.glsl"
 #include "fiblets/attributes/walked_tangents.glsl"
 

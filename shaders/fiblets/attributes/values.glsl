@@ -1,6 +1,6 @@
 // The per-point value of the G-buffer, if the style asks for one; without, nothing of this file is left but a zero.
 //
-//   stored       one or two bytes per point; code c means chunk_values.x + chunk_values.y * c, the largest means NaN
+//   stored       one or two bytes per point; code c means value_of_code_0 + value_per_code * c, the largest means NaN
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
 //   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
 //                anchor, because the segment before an anchor is another fiblet's
@@ -18,7 +18,7 @@ uint values_last;  // index within the fiblet of the last point that a segment o
 
 // Two codes of 16 bits or four of 8 to a word. A chunk's points are fewer than 2^32, their bits are not.
 uint value_code(uint segment) {
-    uint bits = chunk_bases.y, point = values_first + min(segment, values_last);
+    uint bits = value_bits, point = values_first + min(segment, values_last);
     uint shift = bits == 8u ? 2u : 1u, within = point & ((1u << shift) - 1u);
     return bitfieldExtract(value_word(point >> shift), int(within * bits), int(bits));
 }
@@ -33,12 +33,12 @@ void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 float value_along(uint segment, float t, uint step, float rest) {
     segment += step;
     t = rest;
-    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << chunk_bases.y) - 1u;
+    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << value_bits) - 1u;
     if (a == invalid || b == invalid) {
         a = b = t < 0.5 ? a : b;
         if (a == invalid) return uintBitsToFloat(0x7FC00000u);
     }
-    return chunk_values.x + chunk_values.y * mix(float(a), float(b), t);
+    return value_of_code_0 + value_per_code * mix(float(a), float(b), t);
 }
 
 float value_of_point(uint i) { return 0.0; }

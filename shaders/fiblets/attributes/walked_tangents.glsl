@@ -1,9 +1,9 @@
-// Tangents at both ends of the segments of a fiblet that is walked along (fiblets/raster/polyline.glsl), one after the other.
+// Tangents at both ends of the segments of a fiblet that is walked along (fiblets/segments/polyline.glsl), one after the other.
 //
 // Use: begin_tangents(f) before begin_polyline(f); then start_tangents() for every segment in order, after which `tangents` are
 // those at its ends.
 
-#include "fiblets/raster/polyline.glsl"
+#include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/tangent.glsl"
 
 vec3 tangent_before;   // u of the last segment before

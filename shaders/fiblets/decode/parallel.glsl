@@ -91,7 +91,7 @@ void decode_together(uint f) {
 
     // (d) positions
 #if FEATURE_LATTICE
-    unit = steps.z * exp2(-float(fiblet_cap(words)));
+    unit = lattice_edge * exp2(-float(fiblet_cap(words)));
 #endif
     vec3 anchor = anchor_local(f);
     bool end = ends(f);

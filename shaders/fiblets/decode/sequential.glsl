@@ -52,7 +52,7 @@ void walk_begin(uint f) {
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
         walk.k = ivec3(0);
-        walk.step = steps.z * exp2(-float(fiblet_cap(words)));
+        walk.step = lattice_edge * exp2(-float(fiblet_cap(words)));
         lattice_box(words, walk.byte, walk.lo, walk.n, walk.width);
     }
 #endif

@@ -11,7 +11,10 @@
 #include "fiblets/decode/record.glsl"
 #include "fiblets/data/decoding.glsl"
 
-uvec3 decoding_words(uint f) { return uvec3(decoding_word(3u * f), decoding_word(3u * f + 1u), decoding_word(3u * f + 2u)); }
+uvec3 decoding_words(uint f) {
+    uint at = FIBLET_DECODING_WORDS * f;
+    return uvec3(decoding_word(at), decoding_word(at + 1u), decoding_word(at + 2u));
+}
 
 // First byte of a fiblet's codes, counted from the chunk's first.
 uint first_code(uint f, uvec3 words) { return page_words(f >> FIBLET_PAGE_BITS).y + fiblet_code(words); }
@@ -37,7 +40,7 @@ vec4 rotation(uint cap, uint code, float scale) {
 
 float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }
 
-float step_length(uvec3 words) { return steps.x + float(fiblet_step(words)) * (steps.y / FIBLET_STEP_LEVELS); }
+float step_length(uvec3 words) { return step_low + float(fiblet_step(words)) * (step_span / FIBLET_STEP_LEVELS); }
 
 // The first direction's frame, M_0 of the paper. The octahedron's fold is decided on the integers, so that rounding
 // cannot choose another frame than the encoder's.

@@ -18,9 +18,9 @@ const uint SHARE = {{ capsule_share }}u;
 #endif
 #endif
 
-#include "fiblets/raster/polyline.glsl"
-#include "fiblets/raster/wide.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/hardware_raster/wide.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/geometry/share.glsl"
 
@@ -51,7 +51,7 @@ void main() {
         ClippedSegment piece;
         bool start = segment == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
         if (!mask_segment(segment, start, cap) || !piece_of(points[k], points[k + 1u], start, cap, piece)) continue;
-        Varyings varyings = Varyings(pixel_streamline, at_ends[k], chunk.y + f, pixel_first_point, segment, polyline.steps, values[k],
+        Varyings varyings = Varyings(pixel_streamline, at_ends[k], chunk_first + f, pixel_first_point, segment, polyline.steps, values[k],
                                      aheads[k]);
         for (int corner = 0; corner < 4; ++corner) {
             gl_Position = corner_of(piece, corner);

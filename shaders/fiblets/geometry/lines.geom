@@ -2,7 +2,7 @@
 // strip goes out, decoded while it is emitted. One invocation walks along the fiblet from its first point to the share's
 // end. pvfiblets/engine/fiblets/pipelines/geometry.py has the arithmetic of shares.
 //
-// Consecutive segments share a vertex, unless one of them was cut (fiblets/raster/clipped_segment.glsl): then a new strip begins.
+// Consecutive segments share a vertex, unless one of them was cut (fiblets/segments/clipped_segment.glsl): then a new strip begins.
 
 #version 430
 
@@ -26,9 +26,9 @@ const uint SHARE = {{ line_share }}u;
 #endif
 #endif
 
-#include "fiblets/raster/polyline.glsl"
-#include "fiblets/raster/thin.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/hardware_raster/thin.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/geometry/share.glsl"
 
@@ -51,7 +51,7 @@ void main() {
             open = false;
             continue;
         }
-        Varyings varyings = Varyings(pixel_streamline, packed_tangents(tangents), chunk.y + f, pixel_first_point, i - 1u, polyline.steps,
+        Varyings varyings = Varyings(pixel_streamline, packed_tangents(tangents), chunk_first + f, pixel_first_point, i - 1u, polyline.steps,
                                      vec2(before, value_of_point(i)), vec3(0.0));
         Thin line = thin_line(piece);
         for (int side = open && piece.t0 == 0.0 ? 1 : 0; side < 2; ++side) {

@@ -2,7 +2,7 @@
 //
 // Budget: OpenGL promises a mesh stage 256 vertices, 512 primitives and 16,384 bytes of outputs and shared memory together.
 // Shared memory takes 3,328 bytes at most (fiblets/decode/parallel.glsl, fiblets/mesh/together.glsl), a vertex 16 and a primitive 4 bytes for each component
-// of fiblets/raster/varyings.glsl, and 2 or 3 for its indices:
+// of fiblets/hardware_raster/varyings.glsl, and 2 or 3 for its indices:
 //
 //                         segments   vertices      primitives   components   bytes
 //   thin, uncut              60      61            60           13           4,216

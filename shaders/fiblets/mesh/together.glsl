@@ -10,7 +10,7 @@
 #include "fiblets/decode/parallel.glsl"
 #include "culling/bounds.glsl"
 #include "fiblets/data/point_mask.glsl"
-#include "fiblets/attributes/place.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
 #include "fiblets/attributes/neighbours.glsl"
 #include "fiblets/attributes/tangent.glsl"
 #include "fiblets/data/values.glsl"
@@ -136,7 +136,7 @@ void draw_share(uint f, uint share) {
     group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION, vec3(0.0), vec3(0.0), false);
     if (group.end && last == 0u) group.spans = 0.0;
     group.count = last + (group.end && last > 0u ? 0u : 1u);
-    group.unit = group.moves ? step_length(words) : steps.z * exp2(-float(fiblet_cap(words)));
+    group.unit = group.moves ? step_length(words) : lattice_edge * exp2(-float(fiblet_cap(words)));
 #if FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
     if (is_one_segment(capsule) && all_points_shown()) {
@@ -169,7 +169,7 @@ void draw_share(uint f, uint share) {
     uint streamline = streamline_of(f);
     float first_point = float(points_before(f));
     for (uint i = first + gl_LocalInvocationIndex; i < end; i += PREFIX_THREADS) {
-        Varyings varyings = Varyings(streamline, tangents_of_segment(i), chunk.y + f, first_point, i, group.spans, values_of(i), ahead_of(i));
+        Varyings varyings = Varyings(streamline, tangents_of_segment(i), chunk_first + f, first_point, i, group.spans, values_of(i), ahead_of(i));
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
         draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }

@@ -5,8 +5,8 @@
 layout(lines) in;
 layout(triangle_strip, max_vertices = 4) out;
 
-#include "fiblets/raster/wide.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/wide.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 
 in vec4 end_point[];
 flat in uvec4 segment_ids[];

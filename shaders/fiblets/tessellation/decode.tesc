@@ -6,14 +6,14 @@
 // each with 31 points, 124 components. Each invocation decodes up to the end of its own half: 1.5 times the work
 // of one, without a barrier.
 //
-// A culled fiblet (fiblets/raster/survivors.vert) gets level 0: nothing leaves for it. Of the others all segments are one isoline, or
+// A culled fiblet (fiblets/hardware_raster/survivors.vert) gets level 0: nothing leaves for it. Of the others all segments are one isoline, or
 // each is one, where they may be cut (fiblets/tessellation/segment.glsl).
 
 #version 430
 
 layout(vertices = 2) out;
 
-#include "fiblets/raster/polyline.glsl"
+#include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/tessellation/patch.glsl"
 
@@ -45,7 +45,7 @@ void main() {
         }
         if (i >= first) halves[gl_InvocationID].points[i - first] = vec4(walk_point, value_of_point(i));
     }
-    patch_ids = uvec4(pixel_streamline, chunk.y + f, polyline.count | (uint(polyline.steps) << 8u),
+    patch_ids = uvec4(pixel_streamline, chunk_first + f, polyline.count | (uint(polyline.steps) << 8u),
                       (polyline.begin ? 1u : 0u) | (polyline.end ? 2u : 0u) | (polyline.whole ? 4u : 0u));
     patch_first = pixel_first_point;
     vec3 before = polyline.whole ? direction_before(f, true) : tangent_before, after = direction_after(f, polyline.whole);

@@ -1,10 +1,10 @@
-// Pipeline `tessellation`, thin lines: one end of a segment's part (fiblets/raster/thin.glsl).
+// Pipeline `tessellation`, thin lines: one end of a segment's part (fiblets/hardware_raster/thin.glsl).
 
 #version 430
 
 #include "fiblets/tessellation/segment.glsl"
-#include "fiblets/raster/thin.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/thin.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 
 void main() {
     Segment segment = this_segment();

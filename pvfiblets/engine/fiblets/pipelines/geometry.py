@@ -1,9 +1,10 @@
 """The geometry pipeline (OpenGL 3.3): a point a fiblet goes in, lines come out, decoded while they are emitted.
 
-Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/geometry``, and beside it in
+``hardware_raster`` and ``segments``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/raster/varyings.glsl``, with per-point values among them or without:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, with per-point values among them or without:
 
 ==============================  ==========  ==============  =======================================================
 drawn                           components  vertices        segments of a share
@@ -47,9 +48,9 @@ class GeometryPipeline(TexturedPipeline):
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
         geometry, fragment = ("capsules", "capsule") if request.wide else ("lines", "line")
         return {
-            "vertex": "fiblets/raster/survivors.vert",
+            "vertex": "fiblets/hardware_raster/survivors.vert",
             "geometry": f"fiblets/geometry/{geometry}.geom",
-            "fragment": f"fiblets/raster/{fragment}.frag",
+            "fragment": f"fiblets/hardware_raster/{fragment}.frag",
         }
 
     def _shares(self, request: DrawRequest) -> int:
