@@ -39,6 +39,8 @@ FEATURES = (
     "scale_logarithm",
     "highlight",
     "illuminated",
+    "line_light",
+    "legend_colours",
     "ambient_occlusion",
     "ray_occlusion",
     "ink",

@@ -8,11 +8,15 @@ from typing import Any
 
 import pyvista as pv
 
-from pvfiblets.mappers.line_tubes import Tubes
+from pvfiblets.mappers.line_light import LegendColours, LineLight
+from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import Halos, Ink
 from pvfiblets.plotting.fiblets.settings import STYLES
+from pvfiblets.plotting.linked_property import own_writes
 
 _BACKGROUND = "background"
+_LIGHT = "light"
+_ROUND = "tube_shading"
 
 
 class SurfaceShading:
@@ -54,10 +58,43 @@ class Shading(SurfaceShading):
     """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that shades."""
 
     halos: Any
+    prop: Any
+    _scalars: Any
 
     def _init_shading(self) -> None:
         super()._init_shading()
         self._style = STYLES[0]
+
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        super()._shade(name, kind, wanted)
+        self._relight()
+
+    def _relight(self) -> None:
+        """Bring the light in step that lines have where nothing else says which."""
+        kind = self._usual_light()
+        present = self._mapper.effects.get(_LIGHT)
+        if kind is not (None if present is None else type(present)):
+            self._mapper.set_effect(_LIGHT, None if kind is None else kind())
+
+    def _usual_light(self) -> type | None:
+        bodies = "tubes" in self._shades or (self._read_tube_shading() and self._mapper.line_width > 1.0)
+        if bodies or "illuminated" in self._shades or self._style != STYLES[0] or not self.prop.GetLighting():
+            return None
+        return LegendColours if self._scalars is not None and self._scalars.mapped else LineLight
+
+    def _read_tube_shading(self) -> bool:
+        return bool(self.prop.GetRenderLinesAsTubes())
+
+    def _write_tube_shading(self, wanted: bool) -> None:
+        with own_writes():
+            self.prop.SetRenderLinesAsTubes(wanted)
+        self._take_tube_shading()
+        self._relight()
+
+    def _take_tube_shading(self) -> None:
+        wanted = self._read_tube_shading()
+        if wanted != (_ROUND in self._mapper.effects):
+            self._mapper.set_effect(_ROUND, TubeShading() if wanted else None)
 
     def _read_tube_radius(self) -> float | None:
         settings = self._shades.get("tubes")
@@ -76,5 +113,6 @@ class Shading(SurfaceShading):
             return
         self._style = style
         self._mapper.set_effect("ink", Ink() if style == "halo" else None)
+        self._relight()
         if style == "surface" or not self.halos:
             self.halos = style == "halo"

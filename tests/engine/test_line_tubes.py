@@ -13,7 +13,7 @@ from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 from .emulated import emulated_renderer
-from .line_tubes import entries
+from .line_tubes import entries, smoothed
 from .pictures import SIZE, assert_same, draw, near, read, unpacked_tangent
 from .polylines import to_clip, to_window
 from .test_mesh import link
@@ -64,7 +64,7 @@ def known():
 
     def find(key, *arguments):
         if key not in kept:
-            kept[key] = entries(*arguments)
+            kept[key] = smoothed(entries(*arguments), arguments[0])
         return kept[key]
 
     return find

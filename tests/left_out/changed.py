@@ -9,35 +9,35 @@ CHANGED = {
         resolve="-colour_orientation, colour_solid",
     ),
     "colours: per streamline": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "colours: stored": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, colour_point_scalar",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
-        resolve="-colour_orientation, colour_point_scalar",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
-        resolve="-colour_orientation, colour_point_scalar",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
-        resolve="-colour_orientation, colour_point_scalar",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, volume",
     ),
     "colours: logarithm": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "wide lines": What(
@@ -45,7 +45,7 @@ CHANGED = {
     ),
     "wide lines, shaded": What(
         features="CROSS_LINE, WIDE_LINES",
-        resolve="tube_shading",
+        resolve="-line_light, tube_shading",
     ),
     "tubes": What(
         ran="""
@@ -59,7 +59,7 @@ CHANGED = {
             fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal",
+        resolve="-line_light, tube_normal",
         passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
@@ -76,7 +76,7 @@ CHANGED = {
             fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal, tube_shading",
+        resolve="-line_light, tube_normal, tube_shading",
         passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
@@ -89,7 +89,7 @@ CHANGED = {
         buffers="across (no layer), layers, normal (no layer)",
     ),
     "illuminated": What(
-        resolve="illuminated",
+        resolve="-line_light, illuminated",
     ),
     "ambient occlusion": What(
         ran="effects/ssao.frag, effects/ssao_blur.frag",
@@ -110,7 +110,7 @@ CHANGED = {
     ),
     "ink": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
-        resolve="halo, ink",
+        resolve="-line_light, halo, ink",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",

@@ -14,7 +14,7 @@ PLAIN = {
             culling/pyramid_reduce.frag, screen/triangle.vert
         """,
         features="CLIPPING, CLIPPING_DEPTH, CULL_PYRAMID, DIRECTION, LEVEL_OF_DETAIL, ONE_SEGMENT",
-        resolve="colour_orientation, gbuffer, normal",
+        resolve="colour_orientation, gbuffer, line_light, normal",
         passes="""
             clear, cull, depth, last picture, occlusion, predicted, pyramid, refine, resolve_owner, resolve_ties,
             visible

@@ -191,7 +191,7 @@ class SelectionOverlay:
         if self._changed("planes", mapper.GetClippingPlanes()):
             self.mapper.SetClippingPlanes(mapper.GetClippingPlanes())
         effects = mapper.effects
-        for name in SHADES:
+        for name in SHADES if self._radius is not None else (*SHADES, "light"):
             if self._changed(name, effects.get(name)):
                 effect = effects.get(name)
                 self.mapper.set_effect(name, None if effect is None else _OfAll(effect, self._fiblets))
@@ -241,7 +241,7 @@ class SelectionOverlay:
         self.mapper.detach()
         self.mapper, self._plan = mapper, plan
         self.mapper.attach(self.actor)
-        for name in ("options", "colouring", "planes", "region", "filtering", *SHADES):
+        for name in ("options", "colouring", "planes", "region", "filtering", "light", *SHADES):
             self._taken.pop(name, None)
 
     def _changed(self, name: str, value: Any, *, equal: bool = False) -> bool:

@@ -234,6 +234,9 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
             self._of_surfaces[name] = self._mapper.effects.get(name)
             self._look()
 
+    def _property_changed(self) -> None:
+        """Leave the colour to the volume's settings."""
+
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
         surface = self.mode == SURFACE

@@ -28,7 +28,7 @@ void begin_values(uint f) {
     values_last = fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u);
 }
 
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_along(uint segment, float t, uint step, float rest) {
     segment += step;
@@ -60,7 +60,7 @@ void begin_values(uint f) {
 }
 
 // A whole fiblet drawn as one segment is longer than that: its length is that of its steps.
-void start_values(uint segment, vec3 delta, float steps) {
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {
     arc_from = arc_to;
     if (steps <= 1.0) arc_to += length(delta);
     else if (!ends(arc_fiblet)) arc_to = start_value(arc_fiblet + 1u);
@@ -96,7 +96,7 @@ void begin_values(uint f) {
     }
 }
 
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_along(uint segment, float t, uint step, float rest) {
     return mix(curvatures[segment + step], curvatures[segment + step + 1u], rest);
@@ -127,10 +127,9 @@ float value_of_point(uint i) {
     return volume_values_at.y;
 }
 
-// The walk is at the segment's end.
-void start_values(uint segment, vec3 delta, float steps) {
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {
     volume_from = volume_to;
-    volume_to = walk_point;
+    volume_to = to;
     volume_steps = steps;
     volume_values_at.x = volume_values_at.y;
     volume_known = bvec2(volume_known.y, false);
@@ -151,7 +150,7 @@ float value_along_capsule(uint f, float steps, uint step, float rest) {
 
 #else
 void begin_values(uint f) {}
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 float value_along(uint segment, float t, uint step, float rest) { return 0.0; }
 float value_of_point(uint i) { return 0.0; }
 #endif

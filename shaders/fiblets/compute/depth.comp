@@ -32,7 +32,10 @@ bool won;
 
 uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
 
-void start_segment(uint segment, vec3 delta, float steps) {}
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit) { return hit.normal; }
+#endif
 
 // Whether a pixel that would show is there: kept by the caller's region, and of no earlier layer's surface.
 bool may_show(ivec2 pixel, float z, uint segment) {

@@ -35,8 +35,9 @@ void plot(Fragment fragment, Segment segment) {
     uint before = imageAtomicMin(owner_image, pixel, owner);
     if (before < owner) return;
     if (before > owner && before != NO_FIBLET) tied = true;
-    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    float t = along(fragment, segment);
+    imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
     store_relief(pixel, fragment.relief);
 }
 

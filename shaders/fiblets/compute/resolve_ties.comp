@@ -25,8 +25,9 @@ void plot(Fragment fragment, Segment segment) {
     ivec2 pixel = fragment.pixel;
     if (imageLoad(owner_image, pixel).x != owner || depth_key(fragment.z) != imageLoad(depth_image, pixel).x) return;
     if (!new_surface(pixel, segment.index)) return;
-    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    float t = along(fragment, segment);
+    imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
     store_relief(pixel, fragment.relief);
 }
 

@@ -11,3 +11,6 @@ void store_relief(ivec2 pixel, vec3 across) { imageStore(across_image, pixel, ve
 #else
 void store_relief(ivec2 pixel, vec3 relief) {}
 #endif
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit) { return smooth_normal(hit, tangent_between(tangents, hit.t)); }
+#endif

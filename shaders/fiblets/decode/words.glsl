@@ -68,3 +68,27 @@ vec4 turned(vec4 a, vec4 t) {
                           a.w * t.z + a.x * t.y + a.z * t.w, a.w * t.w - a.y * t.y - a.z * t.z);
     return q;
 }
+
+#if FEATURE_LATTICE
+// The box of a lattice fiblet: its least corner, its size, bytes per code, and where the codes start.
+void lattice_box(uvec3 words, inout uint byte, out ivec3 lo, out uvec2 n, out uint width) {
+    int shape = int(fiblet_shape(words));
+    lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
+    n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);
+    width = fiblet_kind(words);
+#if FEATURE_WIDE_LATTICE
+    if (fiblet_kind(words) == KIND_WIDE && fiblet_last(words) > 0u) {
+        lo = ivec3(codes_at(byte), codes_at(byte + 4u), codes_at(byte + 8u));
+        n = uvec2(codes_at(byte + 12u), codes_at(byte + 16u));
+        width = fiblet_step(words) & 7u;
+        byte += FIBLET_WIDE_HEADER;
+    }
+#endif
+}
+
+ivec3 lattice_cell(uint byte, uint width, ivec3 lo, uvec2 n) {
+    uint code = codes_at(byte) & (0xFFFFFFFFu >> (32u - 8u * width));
+    uint row = code / n.x;
+    return lo + ivec3(code - row * n.x, row % n.y, row / n.y);
+}
+#endif

@@ -19,7 +19,7 @@
 
 void main() {
     precise vec4 c0 = to_homogeneous(varying_from), c1 = to_homogeneous(varying_to);
-    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u);
+    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u);
     Hit hit;
 #if FEATURE_PEEL
     Outline outline;
@@ -29,11 +29,12 @@ void main() {
     if (!tube_found(body, c0, c1, gl_FragCoord.xy, hit)) discard;
 #endif
 #if FEATURE_CROSS_LINE
-    out_across = packed_direction(hit.normal);
+    out_across = packed_direction(smooth_normal(hit, tangent_between(varying_tangents(), hit.t)));
 #endif
     shade(hit.t, 1.0, hit.z);
 }
 #else
+#include "fiblets/segments/joint.glsl"
 
 #if FEATURE_CLIP_PLANES
 // Heights over clip w are linear in the window; `away` is how far the pixel is from the segment's point s.
@@ -54,6 +55,7 @@ void main() {
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
     if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
+    if (foot > 1.0 && beyond_joint(unpacked_onward(varying_onward), centre - run)) discard;
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif

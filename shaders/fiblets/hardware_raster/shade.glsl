@@ -16,6 +16,7 @@
 #endif
 #include "fiblets/hardware_raster/varyings.glsl"
 #include "fiblets/segments/peel.glsl"
+#include "fiblets/attributes/tangent.glsl"
 #include "fiblets/attributes/fragment_value.glsl"
 
 layout(location = 0) out uint out_depth;
@@ -33,6 +34,8 @@ uniform usampler2D first_round;  // depth key and owner
 #endif
 
 const float NEARLY_ONE = 0.99999988;  // the largest depth drawn: that of an empty pixel is 1
+
+Tangents varying_tangents() { return unpacked_tangents(uvec2(varying_ids.y, varying_tangent)); }
 
 // s: position along the part in the window, where depth is linear; ratio: clip w at its start over that at its end.
 void shade(float s, float ratio, float depth) {
@@ -57,6 +60,6 @@ void shade(float s, float ratio, float depth) {
 #endif
     out_depth = key;
     out_owner = varying_ids.z;
-    out_ids = varying_ids.xy;
+    out_ids = uvec2(varying_ids.x, packed_tangent(tangent_between(varying_tangents(), t), 0u));
     out_position = vec2(varying_first + float(segment) + t * steps, value_at(segment, t, steps));
 }

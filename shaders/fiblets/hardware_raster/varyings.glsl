@@ -10,9 +10,11 @@
 //                      thin lines   wide lines   tubes
 //   position                4            4         4
 //   varying_ids              4            4         4
+//   varying_tangent          1            1         1
 //   varying_first            1            1         1
 //   varying_ends             4            8         0
 //   varying_ratio            1            0         0
+//   varying_onward           0            1         0
 //   varying_part             1            1         0     where segments may be cut
 //   varying_from, _to        0            6         6     of wide lines, at planes of the caller's
 //   varying_values           2            2         2     with some per-point values
@@ -21,8 +23,9 @@
 #define EACH
 #endif
 
-VARYING uvec4 varying_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
-                                   // and whether the streamline starts here in bit 16
+VARYING uvec4 varying_ids EACH;      // streamline; tangent at the segment's start; fiblet counted over all chunks; segment, its
+                                   // steps in bits 8 to 15, and whether the streamline starts here in bit 16, ends in bit 17
+VARYING uint varying_tangent EACH;   // at the segment's end
 VARYING float varying_first EACH;    // index of the fiblet's first point within the streamline
 #if FEATURE_TUBES
 VARYING vec3 varying_from EACH;      // ends of the segment, local mm
@@ -31,6 +34,7 @@ VARYING vec3 varying_to EACH;
 #if FEATURE_WIDE_LINES
 VARYING vec4 varying_start EACH;     // ends of the part that is drawn: window x, y; depth; clip w
 VARYING vec4 varying_end EACH;
+VARYING uint varying_onward EACH;    // which way the line goes on from there: fiblets/segments/joint.glsl
 #else
 VARYING uvec2 varying_cells EACH;    // pixels of its ends, x in the lower half
 VARYING vec2 varying_depths EACH;    // and their depths

@@ -2,6 +2,7 @@
 // over: itself, or with a mesh stage an element of an array.
 
 #include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/joint.glsl"
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
@@ -9,17 +10,20 @@
 #include "fiblets/hardware_raster/varyings.glsl"
 
 struct Varyings {
-    uvec2 ids;      // streamline; tangent
+    uint streamline;
+    uvec2 tangents; // at the segment's start and end
     uint owner;     // fiblet counted over all chunks
     float first;    // index of its first point within the streamline
     uint segment;
     float steps;    // from point to point that the segment stands for
     vec2 values;    // per-point value at its ends, where that is not looked up by the fragments
+    vec3 ahead;     // of wide lines: fiblets/segments/joint.glsl
 };
 
 void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
-    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u);
-    TO(varying_ids) = uvec4(varyings.ids, varyings.owner, flags);
+    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u) | (piece.cap ? 0x20000u : 0u);
+    TO(varying_ids) = uvec4(varyings.streamline, varyings.tangents.x, varyings.owner, flags);
+    TO(varying_tangent) = varyings.tangents.y;
     TO(varying_first) = varyings.first;
 #if FEATURE_TUBES
     TO(varying_from) = from;
@@ -28,6 +32,7 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
 #if FEATURE_WIDE_LINES
     TO(varying_start) = piece.a;
     TO(varying_end) = piece.b;
+    TO(varying_onward) = packed_onward(piece.cap ? vec2(0.0) : onward_at(piece.b, varyings.ahead));
 #else
     uvec2 p = uvec2(pixel_of(piece.a)), q = uvec2(pixel_of(piece.b));
     TO(varying_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));

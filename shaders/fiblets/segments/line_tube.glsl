@@ -47,6 +47,7 @@ struct Tube {
     float size;    // |b - a|
     vec4 from;     // a: window x, y; depth; W
     bool start;    // the half sphere at a is this segment's
+    bool cap;      // the line ends at b
     bool beside;   // a is not in front of the eye
 };
 
@@ -55,7 +56,17 @@ struct Hit {
     float z;       // depth
     float t;       // position along the segment
     vec3 normal;   // unit vector, local mm
+    bool side;     // that of the body's side, where the line goes on; not of a cut, nor of the line's round ends
 };
+
+// A chain of capsules bends at its joints, the line does not: a normal of its side is turned to be perpendicular to the line's
+// tangent (fiblets/attributes/tangent.glsl), which is continuous, and so are lights on it. Depth stays that of the capsules. On
+// the outer side of the sharpest bends normals nearly point along the tangent, and are left where they are.
+vec3 smooth_normal(Hit hit, vec3 tangent) {
+    vec3 t = normalize(tangent);
+    float along = dot(t, hit.normal), share = clamp((1.0 - along * along - 0.1) / 0.3, 0.0, 1.0);
+    return hit.side ? normalize(hit.normal - share * along * t) : hit.normal;
+}
 
 const float OUTLINE_ROUNDING = 0.05;
 
@@ -103,10 +114,10 @@ bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
     return true;
 }
 
-Tube tube_of(vec3 a, vec3 b, vec4 c0, bool start) {
+Tube tube_of(vec3 a, vec3 b, vec4 c0, bool start, bool cap) {
     precise vec3 run = b - a;
     precise float size = length(run);
-    return Tube(a, size > 0.0 ? run / size : vec3(0.0), size, to_window(c0), start, c0.w < max(0.25 * tube_w_reach, 1e-30));
+    return Tube(a, size > 0.0 ? run / size : vec3(0.0), size, to_window(c0), start, cap, c0.w < max(0.25 * tube_w_reach, 1e-30));
 }
 
 vec2 sphere_range(vec3 o, vec3 d) {
@@ -126,7 +137,7 @@ float depth_at(Tube t, vec4 c0, vec3 v) {
 }
 
 bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
-    hit = Hit(0.0, 0.0, vec3(0.0));
+    hit = Hit(0.0, 0.0, vec3(0.0), false);
     vec2 off = pixel - t.from.xy;
     precise vec3 way = tube_ray + tube_perspective * (pixel.x * tube_ray_x + pixel.y * tube_ray_y);
     precise vec3 d = way / max(length(way), 1e-30);
@@ -175,6 +186,7 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
 #if FEATURE_CLIP_PLANES
     if (y < 0.0 && !t.start) return false;  // only now: a plane may have cut the ball off, and the tube behind it shows
 #endif
+    hit.side = face == vec3(0.0) && t.size > 0.0 && (y >= 0.0 || !t.start) && (y <= t.size || !t.cap);
     y = clamp(y, 0.0, t.size);
     hit.t = t.size > 0.0 ? y / t.size : 0.0;
     hit.normal = face != vec3(0.0) ? face : normalize(v - y * t.axis);
@@ -183,7 +195,7 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
 
 // A pixel that no ray makes part of a thin tube, but half a pixel's distance from its axis does.
 bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
-    hit = Hit(0.0, 0.0, vec3(0.0));
+    hit = Hit(0.0, 0.0, vec3(0.0), false);
     vec2 run = outline.b.xy - outline.a.xy, centre = pixel - outline.a.xy;
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);

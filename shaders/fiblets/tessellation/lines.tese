@@ -15,7 +15,7 @@ void main() {
     }
     Thin line = thin_line(piece);
     gl_Position = at_start ? line.first : line.last;
-    Varyings varyings = Varyings(segment.ids, patch_ids.y, patch_first, segment.index, segment.steps,
-                           vec2(segment.from.w, segment.to.w));
+    Varyings varyings = Varyings(patch_ids.x, segment.tangents, patch_ids.y, patch_first, segment.index, segment.steps,
+                           vec2(segment.from.w, segment.to.w), vec3(0.0));
     write_varyings(varyings, piece, segment.from.xyz, segment.to.xyz);
 }

@@ -4,7 +4,7 @@
 void cover(Segment segment) {
     ClippedSegment piece = segment.piece;
     Outline outline = Outline(piece.a, piece.b, piece.t0, piece.t1, piece.reach, piece.thin);
-    Tube body = tube_of(segment.from.local, segment.to.local, segment.from.clip, piece.start);
+    Tube body = tube_of(segment.from.local, segment.to.local, segment.from.clip, piece.start, piece.cap);
     float r = outline.reach;
     vec2 run = outline.b.xy - outline.a.xy;
     peel_segment(outline.a.xy, outline.b.xy, r, segment.steps);
@@ -21,7 +21,7 @@ void cover(Segment segment) {
             ivec2 pixel = steep ? ivec2(row, column) : ivec2(column, row);
             Hit hit;
             if (tube_at(body, segment.from.clip, outline, vec2(pixel) + 0.5, hit)) {
-                put(Fragment(pixel, hit.z, hit.t, hit.normal), segment);
+                put(Fragment(pixel, hit.z, hit.t, shown_normal(hit)), segment);
             }
         }
     }

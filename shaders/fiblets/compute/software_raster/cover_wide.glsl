@@ -1,5 +1,6 @@
 // The pixels of a wide line's segment: all whose centre is at most half the width r from it: a capsule, whose round ends join
-// segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's.
+// segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's, and
+// of that what lies beside the next segment is left out (fiblets/segments/joint.glsl).
 //
 // Algorithm: column by column of the longer axis, those rows that the capsule may reach; each pixel's distance decides.
 //
@@ -9,6 +10,7 @@
 //   away         from there to the pixel
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
+#include "fiblets/segments/joint.glsl"
 
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pvfiblets/engine/fiblets/pipelines/compute.py
 
@@ -23,6 +25,8 @@ void cover(Segment segment) {
     vec2 from = steep ? piece.a.yx : piece.a.xy, to = steep ? piece.b.yx : piece.b.xy, size = steep ? viewport.yx : viewport;
     vec2 run = to - from;
     float inverse = 1.0 / max(dot(run, run), 1e-12);
+    vec2 onward = piece.cap || !goes_on(segment.index + 1u) ? vec2(0.0) : onward_at(piece.b, segment.ahead);
+    if (steep) onward = onward.yx;
     vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
     float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
@@ -40,7 +44,7 @@ void cover(Segment segment) {
             precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = piece.a.z + (piece.b.z - piece.a.z) * s;
-            bool covered = foot >= least && dot(away, away) <= r * r && brush_kept(heights, s, steep ? away.yx : away);
+            bool covered = foot >= least && dot(away, away) <= r * r && !(foot > 1.0 && beyond_joint(onward, centre - run)) && brush_kept(heights, s, steep ? away.yx : away);
             vec3 relief = vec3(clamp(dot(left, centre), -1.0, 1.0), 0.0, 0.0);
             if (covered) put(Fragment(steep ? ivec2(row, column) : ivec2(column, row), z, s, relief), segment);
         }

@@ -2,8 +2,9 @@
 //
 // The including pass defines
 //   void plot(Fragment fragment)                                called for each pixel that a segment covers
-//   void start_segment(uint segment, vec3 delta, float steps)   called before the pixels of a segment; steps from point
-//                to point that it stands for: 1, or 0 for a single point, or all of a far fiblet's
+//   void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead)   called before the pixels of a segment, with its end,
+//                its run and that of the next one
+//   vec3 shown_normal(Hit hit)                                   of tubes, the normal that a pixel is given
 //
 // What covers a pixel is told by the file of cover() that is included:
 //   thin lines   fiblets/compute/software_raster/cover_thin.glsl: the pixels of fiblets/segments/thin_line_rule.glsl
@@ -27,6 +28,7 @@ struct Segment {
     Vertex to;
     ClippedSegment piece;
     float steps;     // from point to point that it stands for
+    vec3 ahead;      // the next one's run
 };
 
 // What a segment shows in a pixel.
@@ -38,7 +40,10 @@ struct Fragment {
 };
 
 void plot(Fragment fragment, Segment segment);
-void start_segment(uint segment, vec3 delta, float steps);
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead);
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit);
+#endif
 
 // Plots a pixel, unless it does not lie behind the layers drawn so far. Whether the caller's region cuts it away is for
 // fiblets/compute/depth.comp to ask, and only of what would show: the later passes look for depths that were kept.
@@ -66,15 +71,16 @@ void draw_fiblet(uint f) {
     begin_peel(streamline_of(f), float(points_before(f)));
 #endif
     Vertex from = vertex_of(walk_point);
+    next_point(1u);
     for (uint i = 1u; i <= polyline.count; ++i) {
-        next_point(i);
         Vertex to = vertex_of(walk_point);
+        vec3 delta = walk_delta, ahead = walk_ahead(i);
         bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
         bool drawn = mask_segment(i - 1u, start, cap);
-        start_segment(i - 1u, walk_delta, polyline.steps);
+        start_segment(i - 1u, to.local, delta, ahead);
         ClippedSegment piece;
         bool any_part = piece_of(from, to, start, cap, piece);
-        if (any_part && drawn) cover(Segment(i - 1u, from, to, piece, polyline.steps));
+        if (any_part && drawn) cover(Segment(i - 1u, from, to, piece, polyline.steps, ahead));
         from = to;
     }
 }
