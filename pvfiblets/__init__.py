@@ -12,12 +12,14 @@ __version__ = "0.1.0"
 
 _HOME = {
     "CodingError": "codec.error",
+    "DensityMap": "query.density_map",
     "FibletSet": "codec.fibletset",
     "FormatError": "errors",
     "SplineTubes": "tubes.spline_tubes",
     "Streamlines": "streamlines",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
+    "density": "query.density",
     "iter_chunks": "formats",
     "measure_error": "codec.error",
     "read": "formats",
@@ -25,6 +27,9 @@ _HOME = {
 }
 
 _ROOMS = ("synthetic",)
+
+FORMATS = {".fiblets": "pvfiblets.codec.fiblets_format"}
+"""Formats of rooms that `pvfiblets.formats` knows nothing of: suffix to module, imported with the first such file."""
 
 __all__ = ["__version__", *_HOME, *_ROOMS]
 
@@ -36,6 +41,8 @@ if TYPE_CHECKING:
     from .codec.fibletset import FibletSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
+    from .query.density import density as density
+    from .query.density_map import DensityMap
     from .streamlines import Streamlines
     from .tubes.spline_tubes import SplineTubes
 

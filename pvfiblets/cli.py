@@ -122,6 +122,8 @@ def make_parser() -> argparse.ArgumentParser:
     _quiet_and_json(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
 
+    _density(commands.add_parser("density", help="write a volume of how many streamlines pass each voxel, or of more"))
+
     screenshot = commands.add_parser(
         "screenshot",
         help="draw files into a PNG, without a display",
@@ -194,6 +196,33 @@ def _json(parser: argparse.ArgumentParser) -> None:
 def _quiet_and_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
     _json(parser)
+
+
+def _density(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Add the streamlines of IN up in the voxels of a grid, with every segment cut at the voxels' faces, and write "
+        "the volume to OUT."
+    )
+    parser.add_argument("source", metavar="IN", help="a tractogram of any format; it is read in parts")
+    parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz")
+    grid = parser.add_mutually_exclusive_group(required=True)
+    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
+    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI, MGH, NRRD, MetaImage or .vti")
+    parser.add_argument(
+        "--contrast",
+        default="count",
+        metavar="WHAT",
+        help="count: streamlines that visit a voxel; length: mm in it; direction: mean |x|, |y|, |z| of the tangent; "
+        "or the mean of values: the name of an array, or a file with a number per streamline or point (default: count)",
+    )
+    parser.add_argument(
+        "--weights",
+        metavar="WHAT",
+        help="of the streamlines, such as SIFT2's: a file of numbers, or the name of an array",
+    )
+    parser.add_argument("--ends-only", action="store_true", help="count end points instead")
+    _quiet_and_json(parser)
+    parser.set_defaults(run="pvfiblets.cli_density:density")
 
 
 def _serve(parser: argparse.ArgumentParser) -> None:

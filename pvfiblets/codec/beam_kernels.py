@@ -15,8 +15,7 @@ import numba
 import numpy as np
 
 from .capsule_kernels import capsule
-from .jit import kernel, parallel_kernel
-from .kernels import (
+from .direction_kernels import (
     BLOCK,
     _nearest,
     _smallest_cap,
@@ -28,6 +27,7 @@ from .kernels import (
     take_points,
     turn,
 )
+from .jit import kernel, parallel_kernel
 from .layout import MAX_POINTS, STEP_LEVELS
 
 __all__ = ["encode_directions", "neighbours"]
@@ -163,7 +163,7 @@ def encode_directions(
     tables: Any,
     out: Any,
 ) -> None:
-    """Try to code every slot with direction bytes, looking ahead; arguments as :func:`.kernels.encode_directions`."""
+    """Try to code every slot with direction bytes, looking ahead; see :func:`.direction_kernels.encode_directions`."""
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise

@@ -10,6 +10,7 @@ import numpy as np
 from ..streamlines import Streamlines
 from .encode import Effort, Encoder, FibletChunk
 from .fibletset import FibletSet
+from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
 from .parameters import Parameters, Survey, survey
 from .quantised import QuantisedPoints, quantise_values
@@ -74,7 +75,7 @@ def compress(
     Notes
     -----
     Paper: Schertzer et al., "Fiblets for Real-Time Rendering of Massive Brain Tractograms", 2022, section 3.2 and
-    appendix A, with the changes that :mod:`pvfiblets.codec.tables` states.
+    appendix A, with the changes that :mod:`pvfiblets.codec.direction_codebook` states.
     """
     if not isinstance(streamlines, Streamlines):
         raise TypeError(
@@ -121,8 +122,8 @@ def join(chunks: list[FibletChunk]) -> dict[str, Any]:
     """Arrays of consecutive chunks, end to end."""
     if not chunks:
         return {
-            "anchors": np.empty((0, 2), np.uint32),
-            "decoding": np.empty((0, 3), np.uint32),
+            "anchors": np.empty((0, WORDS["anchors"]), np.uint32),
+            "decoding": np.empty((0, WORDS["decoding"]), np.uint32),
             "reach": np.empty(0, np.uint16),
             "codes": np.empty(0, np.uint8),
             "ends": np.empty(0, np.uint32),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from os import PathLike
 from pathlib import Path
@@ -12,7 +12,6 @@ from typing import IO, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from tqdm import tqdm
 
 from .. import formats
 from ..streamlines import Streamlines
@@ -21,8 +20,10 @@ from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
+from .layout import WORDS
 from .ordering import Order, check_order
 from .parameters import Parameters, survey
+from .progress import Progress, shown
 from .quantised import QuantisedPoints
 from .resample import resample
 from .storage import make_header
@@ -40,7 +41,7 @@ def compress_file(
     order: Order = "input",
     per_point: Sequence[str] = (),
     per_point_bits: int = 8,
-    progress: bool | Callable[[str, float], None] = False,
+    progress: Progress = False,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a ``.fiblets`` file.
 
@@ -86,7 +87,7 @@ def compress_file(
             check_per_point(chunk, per_point, per_point_bits)
             yield chunk if step == "auto" else resample(chunk, step)
 
-    found = survey(_shown(chunks(), None, "surveying", progress), per_point)
+    found = survey(shown(chunks(), None, "surveying", progress), per_point)
     encoder = Encoder(Parameters.choose(found, max_error), effort)
     folder = Path(target).resolve().parent
     with (
@@ -94,7 +95,7 @@ def compress_file(
         closing(_Spool(Path(scratch))) as spool,  # before its folder goes, whatever happens
     ):
         whole = _Whole()
-        for chunk in _shown(chunks(), found.n_points, "compressing", progress):
+        for chunk in shown(chunks(), found.n_points, "compressing", progress):
             records = encoder.add(chunk)
             for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
                 if getattr(records, name) is not None:
@@ -114,7 +115,7 @@ def compress_file(
         header_set = FibletSet(
             parameters=encoder.parameters,
             anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
-            decoding=np.empty((0, 3), np.uint32),
+            decoding=np.empty((0, WORDS["decoding"]), np.uint32),
             reach=np.empty(0, np.uint16),
             codes=np.empty(0, np.uint8),
             ends=np.empty(0, np.uint32),
@@ -170,7 +171,7 @@ def _compare(
     originals: Iterable[Streamlines],
     total: int,
     target: str | PathLike[str],
-    progress: bool | Callable[[str, float], None],
+    progress: Progress,
 ) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = FibletSet.open(target)
@@ -178,7 +179,7 @@ def _compare(
     decoded = coded.iter_chunks(CHUNK_POINTS)
     rest: Streamlines | None = None
     seen = 0
-    for chunk in _shown(originals, total, "measuring", progress):
+    for chunk in shown(originals, total, "measuring", progress):
         done = 0
         while done < len(chunk):
             if rest is None or len(rest) == 0:
@@ -206,22 +207,6 @@ def _plain(s: Streamlines, a: int, b: int) -> Streamlines:
     """Streamlines ``a`` to ``b`` without their data."""
     offsets = np.asarray(s.offsets)
     return Streamlines(s.points[offsets[a] : offsets[b]], offsets[a : b + 1] - offsets[a])
-
-
-def _shown(
-    chunks: Iterable[Streamlines], total: int | None, what: str, progress: bool | Callable[[str, float], None]
-) -> Iterator[Streamlines]:
-    if callable(progress):
-        done = 0
-        for chunk in chunks:
-            progress(what, done / total if total else 0.0)
-            yield chunk
-            done += chunk.n_points
-        return
-    with tqdm(total=total, desc=what, unit="points", unit_scale=True, disable=not progress) as bar:
-        for chunk in chunks:
-            yield chunk
-            bar.update(chunk.n_points)
 
 
 class _Whole:
@@ -278,8 +263,8 @@ class _Spool:
     def add_empty(self, per_point: Sequence[str], bits: int, whole: _Whole) -> None:
         """Empty arrays, for a source without points."""
         for name, dtype, shape in (
-            ("anchors.npy", np.uint32, (0, 2)),
-            ("decoding.npy", np.uint32, (0, 3)),
+            ("anchors.npy", np.uint32, (0, WORDS["anchors"])),
+            ("decoding.npy", np.uint32, (0, WORDS["decoding"])),
             ("reach.npy", np.uint16, (0,)),
             ("codes.npy", np.uint8, (0,)),
             ("ends.npy", np.uint32, (0,)),

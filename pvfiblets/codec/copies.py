@@ -25,7 +25,7 @@ import numpy.typing as npt
 from . import copy_kernels
 from .archive import Member, array_member, write_archive
 from .fibletset import FibletSet
-from .layout import PAGE, unpack
+from .layout import PAGE, WORDS, unpack
 from .storage import make_header
 
 __all__ = ["CHUNK", "Copies"]
@@ -197,7 +197,7 @@ class Copies:
             n = int(s.fiblets[-1] - s.fiblets[0])
             out: npt.NDArray[Any]
             if name == "anchors":
-                out, fine = np.empty((n, 2), np.uint32), pool.anchors_low is not None
+                out, fine = np.empty((n, WORDS[name]), np.uint32), pool.anchors_low is not None
                 copy_kernels.copy_anchors(
                     pool.anchors, low, fine, self._first, s.which, s.shift, s.fiblets, s.first, pages, out
                 )
@@ -205,7 +205,7 @@ class Copies:
                 out = np.empty((n, 3), np.uint16)
                 copy_kernels.copy_anchors_low(low, self._first, s.which, s.shift, s.fiblets, out)
             elif name == "decoding":
-                out = np.empty((n, 3), np.uint32)
+                out = np.empty((n, WORDS[name]), np.uint32)
                 copy_kernels.copy_decoding(
                     pool.decoding, self._within, self._first, s.which, s.fiblets, s.codes, s.points, pages, out
                 )
@@ -223,8 +223,8 @@ class Copies:
         pool, pages = self.pool, self._plan[0]
         n = sum(int(s.fiblets[-1] - s.fiblets[0]) for s in self._stretches())
         shapes: dict[str, tuple[Any, tuple[int, ...]]] = {
-            "anchors": (np.uint32, (n, 2)),
-            "decoding": (np.uint32, (n, 3)),
+            "anchors": (np.uint32, (n, WORDS["anchors"])),
+            "decoding": (np.uint32, (n, WORDS["decoding"])),
             "reach": (np.uint16, (n,)),
             "codes": (np.uint8, (int(pages[-1, 1]),)),
             "ends": (np.uint32, (self.n_streamlines,)),

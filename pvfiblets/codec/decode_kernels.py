@@ -7,8 +7,8 @@ from typing import Any
 import numba
 import numpy as np
 
+from .direction_kernels import first_frame, turn
 from .jit import kernel, parallel_kernel
-from .kernels import first_frame, turn
 from .layout import DIRECTION, PAGE_BITS, STEP_LEVELS, WIDE, WIDE_HEADER
 
 __all__ = ["decode"]

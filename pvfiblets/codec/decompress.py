@@ -12,9 +12,9 @@ from ..errors import FormatError
 from ..ragged import blocks
 from ..streamlines import Streamlines
 from .archive import forget
+from .direction_codebook import quaternions
 from .layout import MAX_POINTS, PAGE_BITS, unpack
-from .places import Places, places_of
-from .tables import quaternions
+from .streamline_ranges import StreamlineRanges, ranges_of
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
@@ -121,11 +121,15 @@ def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: 
             per_group={k: dict(v) for k, v in fiblets.per_group.items()},
             **meta,
         )
-    return _take(fiblets, places_of(fiblets, chosen), chosen, kind, meta)
+    return _take(fiblets, ranges_of(fiblets, chosen), chosen, kind, meta)
 
 
 def _take(
-    fiblets: FibletSet, places: Places, chosen: npt.NDArray[np.int64], kind: np.dtype[Any], meta: dict[str, Any]
+    fiblets: FibletSet,
+    places: StreamlineRanges,
+    chosen: npt.NDArray[np.int64],
+    kind: np.dtype[Any],
+    meta: dict[str, Any],
 ) -> Streamlines:
     """Decode chosen streamlines, in the order given; ``places`` are theirs."""
     lengths = places.points
@@ -226,7 +230,7 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
 
 def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:
     """Streamlines in their own order, gathered from wherever they are coded."""
-    places = Places.of(fiblets)
+    places = StreamlineRanges.of(fiblets)
     for a, b in blocks(np.concatenate([[0], np.cumsum(places.points)]), max_points):
         meta = {
             "affine": fiblets.affine,

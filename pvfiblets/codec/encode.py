@@ -16,12 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from . import beam_kernels, kernels, lattice_kernels, nearest
+from . import beam_kernels, direction_kernels, lattice_kernels, nearest
 from .capsules import capsule_ends
+from .direction_codebook import cap_ratios, directions, quaternions
 from .jit import parallel_kernel
 from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack, unpack_ends
 from .parameters import Parameters
-from .tables import cap_ratios, directions, quaternions
 
 __all__ = ["Encoder", "FibletChunk", "search_tables"]
 
@@ -96,7 +96,7 @@ class Encoder:
         ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
         cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(len(points), np.uint8)
         end_words = np.zeros(m, np.uint32)
-        encode = kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
+        encode = direction_kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
         out = (ok, shape, step, cap, radius, end, end_words, codes)
         steps = (p.step_lo, p.step_hi)
         encode(points, origin, slots, scale, self.top, steps, p.budget, p.end_scale, search_tables(), out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
 from .quantised import QuantisedPoints
+
+if TYPE_CHECKING:
+    from ..query.density_map import DensityMap
 
 __all__ = ["FibletSet"]
 
@@ -224,7 +227,7 @@ class FibletSet:
         """
         if self.in_order:
             return np.asarray(values)
-        from .places import coded_rows
+        from .streamline_ranges import coded_rows
 
         return np.asarray(values)[coded_rows(self)]
 
@@ -290,6 +293,24 @@ class FibletSet:
                 "ask passes(region), ends_in(region) or stays_in(region)"
             )
         return predicate.choose(self, flags=flags)
+
+    def density(self, voxel_size: Any = None, **options: Any) -> DensityMap:
+        """Add the streamlines up in the voxels of a grid; see :func:`pvfiblets.density`.
+
+        Parameters
+        ----------
+        voxel_size : float or array_like, optional
+            mm; either this or `like`, an image whose grid it is.
+        **options
+            ``like, weights, contrast, ends_only, progress`` of that function.
+
+        Returns
+        -------
+        DensityMap
+        """
+        from .. import density  # by the package's own name for it: this room knows nothing of questions
+
+        return density(self, voxel_size, **options)
 
     # ----------------------------------------------------------------------------------------------------- decoding
 

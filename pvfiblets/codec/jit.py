@@ -9,6 +9,10 @@ those of a folder of the codec by that folder's besides.
 from __future__ import annotations
 
 import hashlib
+import logging
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,8 +20,11 @@ from typing import Any
 import numba
 from numba.core.caching import FunctionCache
 
-__all__ = ["kernel", "parallel_kernel", "sources_digest"]
+__all__ = ["compilation_noticed", "kernel", "parallel_kernel", "sources_digest"]
 
+logger = logging.getLogger("pvfiblets.codec")
+NOTICED = 1.0  # seconds, after which one wonders
+_DISPATCHERS: list[Any] = []
 HOME = Path(__file__).resolve().parent
 
 
@@ -43,6 +50,7 @@ def _compiled(function: Any, parallel: bool) -> Any:
     # would have to be raised out of a parallel loop.
     dispatcher = numba.njit(function, error_model="numpy", parallel=parallel)
     dispatcher._cache = _KeyedBySources(function)  # noqa: SLF001 - numba offers no public way to key its cache
+    _DISPATCHERS.append(dispatcher)
     return dispatcher
 
 
@@ -54,3 +62,34 @@ def kernel(function: Any) -> Any:
 def parallel_kernel(function: Any) -> Any:
     """The same for one whose ``numba.prange`` loops run on all cores."""
     return _compiled(function, parallel=True)
+
+
+@contextmanager
+def compilation_noticed(what: str) -> Iterator[None]:
+    """Log a warning if kernels are compiled within, which takes more than a second: nobody has used them here before.
+
+    Parameters
+    ----------
+    what : str
+        Which kernels, for people.
+    """
+    done, before = threading.Event(), _compilations()
+
+    def watch() -> None:
+        while not done.wait(NOTICED):
+            if _compilations() > before:
+                logger.warning("compiling %s for this machine; this happens once, and takes up to a minute", what)
+                return
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        done.set()
+        watcher.join()
+
+
+def _compilations() -> int:
+    """How many kernels were not found compiled on disk so far."""
+    return sum(sum(dispatcher.stats.cache_misses.values()) for dispatcher in _DISPATCHERS)

@@ -8,8 +8,8 @@ import numba
 import numpy as np
 
 from .capsule_kernels import capsule
+from .direction_kernels import quantise, take_points
 from .jit import kernel, parallel_kernel
-from .kernels import quantise, take_points
 from .layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
 
 __all__ = ["encode_lattices", "plan_lattices"]

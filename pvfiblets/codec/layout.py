@@ -43,6 +43,7 @@ __all__ = [
     "PAGE",
     "PAGE_BITS",
     "WIDE",
+    "WORDS",
     "Field",
     "Kind",
     "glsl_source",
@@ -115,6 +116,9 @@ FIELDS: dict[str, Field] = {
 the page; ``shape`` is the first direction (two snorm16) or the lattice box; ``step`` is an index between the file's
 least and greatest step, or lattice box and byte width; ``cap`` is a cap angle's index, or the lattice's halvings."""
 
+WORDS = {name: 1 + max(f.word for f in FIELDS.values() if f.array == name) for name in ("anchors", "decoding")}
+"""Words (uint32) of a fiblet in ``anchors`` and in ``decoding``: columns of these arrays."""
+
 
 def unpack(name: str, words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Take one field out of its array.
@@ -160,7 +164,7 @@ def pack(array: str, **values: Any) -> np.ndarray[Any, Any]:
         raise ValueError(f"pack({array!r}) needs exactly the fields {[f.name for f in fields]}, got {sorted(values)}")
     columns = {name: np.atleast_1d(np.asarray(value, np.int64)) for name, value in values.items()}
     n = max(len(c) for c in columns.values())
-    words = np.zeros((n, 1 + max(f.word for f in fields)), np.uint32)
+    words = np.zeros((n, WORDS[array]), np.uint32)
     for f in fields:
         column = columns[f.name]
         if column.size and (column.min() < 0 or column.max() > f.mask):
@@ -229,11 +233,11 @@ def glsl_source() -> str:
         f"const float FIBLET_STEP_LEVELS = {float(STEP_LEVELS)};",
         f"const uint FIBLET_WIDE_HEADER = {WIDE_HEADER}u;",
     ]
+    lines += [f"const uint FIBLET_{name.upper()}_WORDS = {words}u;" for name, words in WORDS.items()]
     lines += [f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()]
     for f in FIELDS.values():
-        vector = "uvec2" if f.array == "anchors" else "uvec3"
         lines.append(
-            f"uint fiblet_{f.name}({vector} words) "
+            f"uint fiblet_{f.name}(uvec{WORDS[f.array]} words) "
             f"{{ return bitfieldExtract(words.{'xyz'[f.word]}, {f.shift}, {f.width}); }}"
         )
     parts = ", ".join(f"bitfieldExtract(int(word), {END_BITS * axis}, {END_BITS})" for axis in range(3))

@@ -1,9 +1,10 @@
 """Exact nearest code without trying all 256: candidates by cell of the disc.
 
-The disc of :mod:`~pvfiblets.codec.tables` is cut into square cells. For each cap angle and cell the codes that can be
-nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the nearest one plus
-the cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so that the answer
-is the same as that of a search through the whole table. Directions beyond the cells are searched in full.
+The disc of :mod:`~pvfiblets.codec.direction_codebook` is cut into square cells. For each cap angle and cell the codes
+that can be nearest to *some* direction of the cell are listed: those no farther from the cell's middle than the
+nearest one plus the cell's own diameter. Most cells list one code; where they list more, the encoder compares them, so
+that the answer is the same as that of a search through the whole table. Directions beyond the cells are searched in
+full.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .direction_codebook import CAP_DEGREES, CODES, cap_ratios, directions
 from .jit import kernel
-from .tables import CAP_DEGREES, CODES, cap_ratios, directions
 
 __all__ = ["CELLS", "EXTENT", "Candidates", "candidates"]
 
@@ -77,7 +78,7 @@ def candidates(cap: int) -> Candidates:
     Parameters
     ----------
     cap : int
-        Index into :data:`~pvfiblets.codec.tables.CAP_DEGREES`.
+        Index into :data:`~pvfiblets.codec.direction_codebook.CAP_DEGREES`.
 
     Returns
     -------

@@ -73,7 +73,7 @@ class Survey:
                 self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
         if not len(points):
             return
-        from .kernels import scan  # numba loads only when something is compressed
+        from .direction_kernels import scan  # numba loads only when something is compressed
 
         rows = np.empty((-(-len(streamlines) // 1024), 8))
         scan(points, streamlines.offsets, rows)

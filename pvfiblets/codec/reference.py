@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .direction_codebook import cap_ratios, directions, quaternions
 from .layout import DIRECTION_SCALE, STEP_LEVELS, WIDE_HEADER, Kind
-from .tables import cap_ratios, directions, quaternions
 
 __all__ = [
     "DirectionPiece",

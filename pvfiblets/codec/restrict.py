@@ -19,7 +19,7 @@ import numpy.typing as npt
 from .archive import forget
 from .check import code_bytes
 from .decompress import select_streamlines
-from .layout import FIELDS, PAGE, PAGE_BITS, unpack
+from .layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
@@ -271,9 +271,9 @@ class _Arrays:
     def empty(cls, fiblets: FibletSet, n: int, n_codes: int, n_points: int) -> _Arrays:
         """Room for so many fiblets, code bytes and points."""
         return cls(
-            anchors=np.empty((n, 2), np.uint32),
+            anchors=np.empty((n, WORDS["anchors"]), np.uint32),
             anchors_low=None if fiblets.anchors_low is None else np.empty((n, 3), np.uint16),
-            decoding=np.empty((n, 3), np.uint32),
+            decoding=np.empty((n, WORDS["decoding"]), np.uint32),
             reach=np.empty(n, np.uint16),
             codes=np.empty(n_codes, np.uint8),
             pages=np.zeros((-(-n // PAGE) + 1, 3), np.int64),

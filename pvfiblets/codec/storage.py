@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 from .archive import Member, array_member, open_archive, write_archive
-from .layout import PAGE
+from .layout import PAGE, WORDS
 from .parameters import Parameters
 from .quantised import QuantisedPoints
 
@@ -30,8 +30,8 @@ VERSION = 2
 _CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 _OPTIONAL = ("anchors_low", "rank_to_id")
 _SHAPES: dict[str, tuple[str, int]] = {
-    "anchors": ("<u4", 2),
-    "decoding": ("<u4", 3),
+    "anchors": ("<u4", WORDS["anchors"]),
+    "decoding": ("<u4", WORDS["decoding"]),
     "reach": ("<u2", 0),
     "anchors_low": ("<u2", 3),
 }

@@ -16,7 +16,7 @@ from typing import Any
 import moderngl
 
 from .errors import EngineError
-from .opengl import INTEGERS, OpenGL
+from .moderngl_extras import INTEGERS, GLExtras
 from .passes import is_software
 
 __all__ = [
@@ -136,7 +136,7 @@ class Capabilities:
     @classmethod
     def of(cls, ctx: moderngl.Context) -> Capabilities:
         """Describe a context, which must be current."""
-        functions, info = OpenGL(ctx), ctx.info
+        functions, info = GLExtras(ctx), ctx.info
         limits = {name: functions.get_integer(name) for name in _limits_of(ctx)}
         return cls(
             version=_number(ctx.version_code),

@@ -1,4 +1,4 @@
-"""The caller's clip planes as the shaders take them: the uniform block of ``shaders/frame/clip_planes.glsl``.
+"""The caller's clip planes: the uniform block ``ClipPlanes``, whose symbols ``shaders/frame/clip_planes.glsl`` has.
 
 Planes cut before the nearest is chosen, so that what lies behind a cut shows. The cull pass drops fiblets beyond a
 plane and tells those that a plane touches from the others, which are drawn by the same programs as in a view without
@@ -8,17 +8,22 @@ left out: no pixel shows, or stands for, a position that a plane cuts away.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from .frame import Array, local_frame
+from .uniform_struct import Field, UniformStruct
 from .view import MAX_CLIP_PLANES, View
 
-__all__ = ["BLOCK_BYTES", "clip_planes_block"]
+__all__ = ["CLIP_PLANES_BLOCK", "clip_planes_block"]
 
-BLOCK_BYTES = (2 * MAX_CLIP_PLANES + 1) * 16
+CLIP_PLANES_BLOCK = UniformStruct(
+    "ClipPlanes",
+    Field("clip_planes", f"vec4[{MAX_CLIP_PLANES}]", "(n, d)"),
+    Field("clip_tilts", f"vec2[{MAX_CLIP_PLANES}]", "tilt of each"),
+    Field("clip_brushes", f"float[{MAX_CLIP_PLANES}]", "its length times half a line's width, 0 for thin lines"),
+    Field("clip_plane_count", "int", "of clip_planes"),
+    Field("clip_rounding", "float", "mm that rounding may cost a height"),
+)
 _HUGE = 1e30  # in float32, and so is its double
 
 
@@ -60,13 +65,13 @@ def clip_planes_block(
     near = heights.min(axis=0) < reach + 4.0 * slack + w * brush
     if not near.any():
         return None
-    block: npt.NDArray[Any] = np.zeros((2 * MAX_CLIP_PLANES + 1, 4))
-    count = int(near.sum())
-    block[:count] = local[near]
-    block[MAX_CLIP_PLANES : MAX_CLIP_PLANES + count, :2] = tilts[near]
-    block[MAX_CLIP_PLANES : MAX_CLIP_PLANES + count, 2] = brush[near]
-    block[-1, :3] = count, slack[near].max(), slope
-    return np.clip(block, -_HUGE, _HUGE).astype("<f4").tobytes()
+    return CLIP_PLANES_BLOCK.pack(
+        clip_planes=np.clip(local[near], -_HUGE, _HUGE),
+        clip_tilts=np.clip(tilts[near], -_HUGE, _HUGE),
+        clip_brushes=np.clip(brush[near], -_HUGE, _HUGE),
+        clip_plane_count=int(near.sum()),
+        clip_rounding=min(slack[near].max(), _HUGE),
+    )
 
 
 def _normalised(planes: Array) -> Array:

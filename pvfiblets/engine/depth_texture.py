@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import moderngl
 
-from .opengl import OpenGL
+from .moderngl_extras import GLExtras
 
 __all__ = ["depth_texture"]
 
@@ -12,7 +12,7 @@ _TEXTURE_2D = 0x0DE1
 _DEPTH_COMPONENT, _DEPTH_COMPONENT_32F, _FLOAT = 0x1902, 0x8CAC, 0x1406
 
 
-def depth_texture(ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int]) -> moderngl.Texture:
+def depth_texture(ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> moderngl.Texture:
     """Make it; its values are read as they are, by ``texelFetch``."""
     texture = ctx.depth_texture(size)
     texture.compare_func = ""

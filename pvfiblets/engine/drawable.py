@@ -20,7 +20,7 @@ import moderngl
 
 from .errors import EngineError
 from .gbuffer import GBuffer
-from .opengl import OpenGL
+from .moderngl_extras import GLExtras
 from .passes import Passes
 from .shaders import Programs
 from .view import Style, View
@@ -28,7 +28,7 @@ from .view import Style, View
 __all__ = ["Drawable", "Target", "sizes_of"]
 
 
-class Kept(Protocol):
+class GpuResource(Protocol):
     """What a renderer keeps on the GPU; ``sizes``, ``buffers`` or ``nbytes`` say how large it is."""
 
     def release(self) -> None:
@@ -36,7 +36,7 @@ class Kept(Protocol):
         ...
 
 
-class Target(Kept, Protocol):
+class Target(GpuResource, Protocol):
     """Textures that a renderer draws a picture into."""
 
     @property
@@ -46,7 +46,7 @@ class Target(Kept, Protocol):
 
 
 AnyStyle = TypeVar("AnyStyle", bound=Style)
-AnyKept = TypeVar("AnyKept", bound=Kept)
+AnyResource = TypeVar("AnyResource", bound=GpuResource)
 AnyTarget = TypeVar("AnyTarget", bound=Target)
 
 
@@ -79,10 +79,10 @@ class Drawable(ABC, Generic[AnyStyle]):
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, Any]) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._passes = Passes(ctx)
         self._programs = Programs(ctx, constants)
-        self._kept_on_gpu: list[tuple[str, Kept]] = []
+        self._kept_on_gpu: list[tuple[str, GpuResource]] = []
         self._targets: dict[str, tuple[Hashable, Target]] = {}
         self._buffer: GBuffer | None = None
         self._made: tuple[View, Style] | None = None
@@ -190,12 +190,12 @@ class Drawable(ABC, Generic[AnyStyle]):
             self.release()
             raise
 
-    def _keep(self, kept: AnyKept, name: str = "") -> AnyKept:
+    def _keep(self, kept: AnyResource, name: str = "") -> AnyResource:
         """Release something with the renderer, and tell its size, by name where it has none for its parts."""
         self._kept_on_gpu.append((name, kept))
         return kept
 
-    def _drop(self, kept: Kept) -> None:
+    def _drop(self, kept: GpuResource) -> None:
         """Give one thing back before the others."""
         self._kept_on_gpu = [(name, other) for name, other in self._kept_on_gpu if other is not kept]
         kept.release()

@@ -1,24 +1,37 @@
-"""What a view means to the shaders: the uniform block of ``shaders/frame/blocks.glsl``, computed in float64.
+"""What a view means to the shaders: the uniform block ``Frame``, computed in float64.
 
 Positions reach the shader as integers (anchors) relative to a reference anchor near what the camera looks at, and the
 matrix is composed with that reference in float64: float32 then rounds relative to what is seen, not to where the data
-lie in the world.
+lie in the world. ``shaders/frame/blocks.glsl`` says what the symbols are.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
+from .uniform_struct import Field, UniformStruct
 from .view import Style, View
 
-__all__ = ["FRAME_BYTES", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
+__all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
 
-FRAME_BYTES = 224
 FAR_SIZE = 4.0
 """Pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4)."""
+
+FRAME_BLOCK = UniformStruct(
+    "Frame",
+    Field("window_from_local", "mat4", "(X, Y, Z, W) of (local mm, 1)"),
+    Field("view_planes", "vec4[6]", "left, right, bottom, top, near, far; moved outwards"),
+    Field("reference", "uvec3", "anchor integers of local 0"),
+    Field("half_line_width", "float", "pixels; 0 for lines of one pixel, which have no brush"),
+    Field("viewport", "vec2", "width and height in pixels"),
+    Field("line_reach", "float", "mm, over W, from a wide line's axis to its edge"),
+    Field("plane_rounding", "float", "mm inside the planes from where on nothing can round outside"),
+    Field("most_pixels_per_mm", "float", "times W, anywhere in the picture"),
+    Field("w_per_mm", "float", "change of W, at most"),
+    Field("segment_deviation", "float", "pixels of deviation up to which a fiblet is one segment"),
+    Field("segment_size", "float", "pixels of size up to which it is"),
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -117,7 +130,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     Returns
     -------
     block : bytes
-        :data:`FRAME_BYTES` of them.
+        As many as :data:`FRAME_BLOCK` has.
     margin : float
         How far inside the view volume all anchors lie (mm); negative if some do not. A set whose spheres all have a
         smaller radius needs no clipping.
@@ -136,28 +149,24 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
     planes[:, 3] += style.thickness
     window = np.array([width / 2 * (x + w), height / 2 * (y + w), (z + w) / 2, w])
 
-    block: npt.NDArray[Any] = np.zeros(
-        (),
-        [
-            ("window_from_local", "<f4", (4, 4)),
-            ("planes", "<f4", (6, 4)),
-            ("reference", "<u4", 4),
-            ("viewport", "<f4", 4),
-            ("guard", "<f4", 4),
-            ("detail", "<f4", 4),
-        ],
+    pixels_per_mm, w_per_mm = _pixels_per_length(window, view.size)
+    block = FRAME_BLOCK.pack(
+        window_from_local=window,
+        view_planes=planes,
+        reference=reference,
+        half_line_width=half,
+        viewport=view.size,
+        line_reach=half * _length_per_pixel(local, view.size),
+        plane_rounding=2.0 * slack,
+        most_pixels_per_mm=pixels_per_mm,
+        w_per_mm=w_per_mm,
+        segment_deviation=style.detail,
+        segment_size=FAR_SIZE,
     )
-    block["window_from_local"] = window.T  # columns first
-    block["planes"] = planes
-    block["reference"][:3] = reference
-    block["viewport"] = width, height, half, 0.0
-    block["guard"][0] = half * _length_per_pixel(local, view.size)
-    block["guard"][2] = 2.0 * slack
-    block["detail"] = (*_pixels_per_length(window, view.size), style.detail, FAR_SIZE)
     # Distances to the planes are least at a corner of the anchors' box.
     corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
     least = float((corners @ planes[:, :3].T + planes[:, 3]).min())
-    return block.tobytes(), least - 4.0 * slack
+    return block, least - 4.0 * slack
 
 
 def _length_per_pixel(local: Array, size: tuple[int, int]) -> float:

@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 import moderngl
 
 from .bindings import HIT_KEYS
-from .culling.listing import LEAST_SEGMENTS, Listing, supports_listing
+from .culling.two_phase_items import LEAST_SEGMENTS, Listing, supports_listing
 from .depth_texture import depth_texture
 from .drawable import AnyStyle, Drawable
 from .errors import EngineError
 from .gbuffer import EMPTY, GBuffer
-from .opengl import OpenGL
+from .moderngl_extras import GLExtras
 from .shaders import Programs
 
 __all__ = ["HitDrawable", "HitTarget"]
@@ -29,7 +29,7 @@ class HitTarget:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     size : tuple of int
         Pixels.
     coloured : bool
@@ -55,7 +55,7 @@ class HitTarget:
     """
 
     def __init__(
-        self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int], coloured: bool, relief: str = "normal"
+        self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], coloured: bool, relief: str = "normal"
     ) -> None:
         self.size, self.coloured = size, coloured
         self._ctx, self._gl = ctx, gl

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import moderngl
 
 from .errors import EngineError
-from .opengl import OpenGL
+from .moderngl_extras import GLExtras
 
 __all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere"]
 
@@ -78,7 +78,7 @@ GROUP_SIZE = 64
 
 
 @contextlib.contextmanager
-def nowhere(ctx: moderngl.Context, gl: OpenGL) -> Iterator[None]:
+def nowhere(ctx: moderngl.Context, gl: GLExtras) -> Iterator[None]:
     """Draw into a pixel that nobody looks at: no drawing call runs without a target, not even one that only counts."""
     with gl.framebuffers_kept():
         pixel = ctx.renderbuffer((1, 1))

@@ -3,7 +3,9 @@
 Sources live in the repository's ``shaders`` folder, which the wheel carries as ``pvfiblets/shaders``. In them:
 
 ``#include "fiblets/decode/record.glsl"``
-    Pastes that file, once per program; :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``.
+    Pastes that file, once per program. :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``, and
+    :class:`.uniform_struct.UniformStruct` writes ``"uniforms/NAME.glsl"`` of the uniform block `NAME`. Below
+    ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no block that nobody packs is looked for.
 ``FEATURE_NAME``
     1 or 0, for every name in :data:`FEATURES`; ``#if FEATURE_NAME`` keeps unused code out of the program.
 ``{{ name }}``
@@ -28,6 +30,7 @@ import moderngl
 from ..codec import layout
 from .bindings import BLOCKS, CONSTANTS
 from .errors import EngineError
+from .uniform_struct import find_struct
 
 __all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
 
@@ -80,7 +83,7 @@ FEATURES: dict[str, str] = {
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",
     "VOLUME_SURFACE": "surfaces in a volume",
-    "VOLUME_LIGHT": "light through a volume",
+    "VOLUME_COMPOSITE": "light through a volume",
     "VOLUME_LOCAL": "the first peak in a volume, not the greatest",
     "VOLUME_NEAREST": "the field of the nearest voxel",
     "VOLUME_TRICUBIC": "the field of cubics between voxels",
@@ -117,6 +120,8 @@ EXTENDED = 450
 _VERSION = re.compile(r"^#version \d+$", re.MULTILINE)
 _BINDING = re.compile(r",\s*binding\s*=\s*\d+")
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[ \t]*$', re.MULTILINE)
+_UNIFORMS = re.compile(r"uniforms/(\w+)\.glsl")
+_CONDITION = re.compile(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b[ \t]*(.*?)[ \t]*$", re.MULTILINE)
 _CONSTANT = re.compile(r"\{\{\s*(\w*)\s*\}\}")
 _FEATURE = re.compile(r"\bFEATURE_(\w+)")
 _SWITCHED_ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
@@ -129,15 +134,17 @@ def read_shader(name: str) -> str:
     Parameters
     ----------
     name : str
-        Path below the shader folder, with forward slashes.
+        Path below the shader folder, with forward slashes; or one of the names that Python writes.
 
     Raises
     ------
     EngineError
-        If there is no such file.
+        If there is no such file, or no such uniform block.
     """
     if name == "codec/layout.glsl":
         return layout.glsl_source()
+    if block := _UNIFORMS.fullmatch(name):
+        return find_struct(block[1]).glsl
     packaged = resources.files("pvfiblets") / "shaders"
     folder = packaged if packaged.is_dir() else Path(__file__).resolve().parents[2] / "shaders"
     source = folder.joinpath(*name.split("/"))
@@ -186,7 +193,7 @@ def assemble(
     included: set[str] = {name}
 
     def include(match: re.Match[str]) -> str:
-        if match[1] in included:
+        if match[1] in included or _left_out(match.string, match.start(), active):
             return ""
         included.add(match[1])
         return _INCLUDE.sub(include, read_shader(match[1]))
@@ -218,6 +225,20 @@ def assemble(
             switches += read_shader("fiblets/data/glsl330.glsl")
         return f"#version {version}\n{switches}{head}{body}"
     return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
+
+
+def _left_out(text: str, place: int, active: set[str]) -> bool:
+    """Say whether a place in a file lies below ``#if FEATURE_NAME`` of a feature that is off."""
+    off: list[bool] = []
+    for condition in _CONDITION.finditer(text, 0, place):
+        if condition[1] == "endif":
+            off.pop()
+        elif condition[1] in ("elif", "else"):
+            off[-1] = False
+        else:
+            feature = _FEATURE.fullmatch(condition[2])
+            off.append(condition[1] == "if" and feature is not None and feature[1] not in active)
+    return any(off)
 
 
 def switched_on(*sources: str) -> frozenset[str]:

@@ -35,6 +35,7 @@ from pvfiblets.streamlines import Streamlines, offsets_from_counts
 Array = NDArray[Any]
 
 MAGIC_SCALARS = "mrtrix track scalars"
+SUFFIXES = (".tsf", ".npy", ".txt", ".csv")
 
 
 def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None = None) -> str:
@@ -45,13 +46,40 @@ def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None
     if suffix == ".tsf":
         streamlines.per_point[key] = _scalars_of(streamlines, text)
         return "per_point"
+    return _place(streamlines, text, key, _read_rows(text, suffix))
+
+
+def read_values(path: str | PathLike[str]) -> Array:
+    """Read one number per row of a ``.tsf``, ``.npy``, ``.txt`` or ``.csv`` file, whatever they belong to.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n,)``; a single row of numbers counts as a column.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, or has several numbers per row.
+    UnknownFormatError
+        If it has another suffix.
+    """
+    text = fspath(path)
+    suffix = Path(text).suffix.lower()
+    values = read_scalars(text)[0] if suffix == ".tsf" else _read_rows(text, suffix)
+    if values.ndim == 2 and 1 in values.shape:
+        values = values.reshape(-1)
+    if values.ndim != 1:
+        raise FormatError(text, None, f"values of shape {values.shape}", "one number per row")
+    return values
+
+
+def _read_rows(path: str, suffix: str) -> Array:
     if suffix == ".npy":
-        values = _read_npy(text)
-    elif suffix in (".txt", ".csv"):
-        values = _read_text(text)
-    else:
-        raise UnknownFormatError(f"{text}: values can be attached from .tsf, .npy, .txt and .csv, not {suffix!r}")
-    return _place(streamlines, text, key, values)
+        return _read_npy(path)
+    if suffix in (".txt", ".csv"):
+        return _read_text(path)
+    raise UnknownFormatError(f"{path}: values can be attached from {', '.join(SUFFIXES)}, not {suffix!r}")
 
 
 def _place(streamlines: Streamlines, path: str, key: str, values: Array) -> str:

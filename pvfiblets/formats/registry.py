@@ -3,8 +3,8 @@
 A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
 ``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are
 named by strings and imported when a file of theirs is first touched: a program that reads tck
-files never loads the trx code, and the codec, which lies downstream of this room, can serve
-``.fiblets`` without being imported from here.
+files never loads the trx code. Here stand the modules of this room. The package itself, which
+knows all rooms, names those of others, such as the codec's (`pvfiblets.FORMATS`).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from importlib import import_module
 from os import PathLike, fspath
 from types import ModuleType
 
+import pvfiblets
 from pvfiblets.errors import FibletsError
 
 _MODULES: dict[str, str] = {
@@ -24,7 +25,7 @@ _MODULES: dict[str, str] = {
     ".vtk": "pvfiblets.formats.vtk_legacy",
     ".vtp": "pvfiblets.formats.vtp",
     ".tt.gz": "pvfiblets.formats.tinytrack",
-    ".fiblets": "pvfiblets.codec.fiblets_format",
+    **pvfiblets.FORMATS,
 }
 
 

@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.gzipped import check_swelling, inflate
+from pvfiblets.formats.read_whole import facts, pieces
 from pvfiblets.formats.rows import finite, transformed
-from pvfiblets.formats.whole import facts, pieces
 from pvfiblets.streamlines import Streamlines
 
 Array = NDArray[Any]

@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.errors import FormatError
+from pvfiblets.formats.read_whole import facts, only_finite, pieces
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
-from pvfiblets.formats.whole import facts, only_finite, pieces
 from pvfiblets.streamlines import Streamlines, from_cells
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]

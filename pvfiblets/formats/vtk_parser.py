@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
-from pvfiblets.formats.whole import TEXT_ARRAYS
+from pvfiblets.formats.read_whole import TEXT_ARRAYS
 from pvfiblets.streamlines import offsets_from_counts
 
 Array = NDArray[Any]

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
+from pvfiblets.formats.read_whole import TEXT_ARRAYS, facts, only_finite, pieces
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.formats.vtk_xml import Element, XmlFile
-from pvfiblets.formats.whole import TEXT_ARRAYS, facts, only_finite, pieces
 from pvfiblets.streamlines import Streamlines, from_cells
 
 Array = NDArray[Any]

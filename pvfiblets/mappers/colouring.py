@@ -11,9 +11,9 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 
-Mode = Literal["orientation", "solid", "streamline_rgb", "streamline_scalar", "point_value", "point_rgb"]
+Mode = Literal["orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba"]
 
-_TABLE_MODES = ("streamline_scalar", "point_value")
+_TABLE_MODES = ("streamline_scalar", "point_scalar")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
 
@@ -39,10 +39,10 @@ class Colouring:
     mode : str
         ``'orientation'``: the absolute tangent in data coordinates as RGB.
         ``'solid'``: `color`.
-        ``'streamline_rgb'``: `values`, one RGB or RGBA colour per streamline.
+        ``'streamline_rgba'``: `values`, one RGB or RGBA colour per streamline.
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
-        ``'point_value'``: `source`, a number per point, through `lut`.
-        ``'point_rgb'``: `source`, an RGBA colour per point, of spline tubes only.
+        ``'point_scalar'``: `source`, a number per point, through `lut`.
+        ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes only.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
@@ -53,7 +53,7 @@ class Colouring:
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
-        Values of the table's two ends. Needed by ``'point_value'``; by default the finite range of
+        Values of the table's two ends. Needed by ``'point_scalar'``; by default the finite range of
         `values`.
     log_scale : bool, default False
         Spread the table over the logarithms; `clim` must be positive.
@@ -61,8 +61,8 @@ class Colouring:
         For NaN.
     below_color, above_color : sequence of 3 or 4 floats, optional
         For values outside `clim`; by default the colour of the nearer end.
-    see_through : bool, default False
-        Whether some colour of ``'point_rgb'`` has an alpha below 1.
+    has_alpha : bool, default False
+        Whether some colour of ``'point_rgba'`` has an alpha below 1.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class Colouring:
     nan_color: tuple[float, ...] = (0.5, 0.5, 0.5, 1.0)
     below_color: tuple[float, ...] | None = None
     above_color: tuple[float, ...] | None = None
-    see_through: bool = False
+    has_alpha: bool = False
 
     def __post_init__(self) -> None:
         """Check the fields and bring them into one form."""
@@ -91,12 +91,12 @@ class Colouring:
         for name in ("below_color", "above_color"):
             if getattr(self, name) is not None:
                 self._set(name, _rgba(getattr(self, name), name))
-        if self.mode == "streamline_rgb":
+        if self.mode == "streamline_rgba":
             self._check_rgb()
-        if self.mode == "point_value" and not self.source:
-            raise ValueError("mode 'point_value' needs source: the name of a per-point array, or a volume")
-        if self.mode == "point_rgb" and not isinstance(self.source, str):
-            raise ValueError(f"mode 'point_rgb' needs source: the name of the tubes' colours, not {self.source!r}")
+        if self.mode == "point_scalar" and not self.source:
+            raise ValueError("mode 'point_scalar' needs source: the name of a per-point array, or a volume")
+        if self.mode == "point_rgba" and not isinstance(self.source, str):
+            raise ValueError(f"mode 'point_rgba' needs source: the name of the tubes' colours, not {self.source!r}")
         if self.mode in _TABLE_MODES:
             self._check_table()
 
@@ -107,9 +107,9 @@ class Colouring:
         values = None if self.values is None else np.asarray(self.values)
         if values is None or values.ndim != 2 or values.shape[1] not in (3, 4):
             found = "nothing" if values is None else f"shape {values.shape}"
-            raise ValueError(f"streamline_rgb: values has {found}; expected (n_streamlines, 3 or 4)")
+            raise ValueError(f"streamline_rgba: values has {found}; expected (n_streamlines, 3 or 4)")
         if values.dtype != np.uint8:
-            raise ValueError(f"streamline_rgb: values has dtype {values.dtype}; expected uint8")
+            raise ValueError(f"streamline_rgba: values has dtype {values.dtype}; expected uint8")
         self._set("values", values)
 
     def _check_table(self) -> None:
@@ -126,7 +126,7 @@ class Colouring:
             if self.clim is None:
                 self._set("clim", _finite_range(values, positive=self.log_scale))
         if self.clim is None:
-            raise ValueError("mode 'point_value' needs clim: the values of the table's two ends")
+            raise ValueError("mode 'point_scalar' needs clim: the values of the table's two ends")
         low, high = (float(end) for end in self.clim)
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise ValueError(f"clim is {self.clim!r}; expected two finite numbers in rising order")
@@ -140,19 +140,19 @@ class Colouring:
         names = {
             "orientation": ["colour_orientation"],
             "solid": ["colour_solid"],
-            "streamline_rgb": ["colour_streamline"],
+            "streamline_rgba": ["colour_streamline"],
             "streamline_scalar": ["colour_streamline"],
-            "point_value": ["colour_point_value"],
-            "point_rgb": ["colour_point"],
+            "point_scalar": ["colour_point_scalar"],
+            "point_rgba": ["colour_point_rgba"],
         }[self.mode]
-        if self.mode == "point_value" and self.log_scale:
+        if self.mode == "point_scalar" and self.log_scale:
             names = [*names, "scale_logarithm"]
         return frozenset(names)
 
     @property
     def point_source(self) -> str | VolumeSource | None:
         """Per-point value or colour that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode in ("point_value", "point_rgb") else None
+        return self.source if self.mode in ("point_scalar", "point_rgba") else None
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -211,7 +211,7 @@ class Colouring:
 
     def streamline_colours(self) -> npt.NDArray[np.uint8] | None:
         """Return (n_streamlines, 4) uint8 RGBA, or None where the colour is not per streamline."""
-        if self.values is None or self.mode not in ("streamline_rgb", "streamline_scalar"):
+        if self.values is None or self.mode not in ("streamline_rgba", "streamline_scalar"):
             return None
         if self.mode == "streamline_scalar":
             return self.map_values(self.values)
@@ -238,10 +238,10 @@ class Colouring:
 
     def translucent(self) -> bool:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
-        if self.mode == "streamline_rgb" and self.values is not None:
+        if self.mode == "streamline_rgba" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
-        if self.mode == "point_rgb":
-            return self.see_through
+        if self.mode == "point_rgba":
+            return self.has_alpha
         return self.mode in _TABLE_MODES and bool((self.table()[:, 3] < 255).any())
 
 

@@ -1,4 +1,4 @@
-"""An extra that lets lines be looked through: several layers of the picture, blended in order.
+"""An effect that lets lines be looked through: several layers of the picture, blended in order.
 
 The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
 engine keeps as many layers (`pvfiblets.engine.fiblets.depth_peeling`). While the actor is opaque neither is drawn,
@@ -14,10 +14,10 @@ from typing import Any, ClassVar
 import moderngl
 
 from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
-from pvfiblets.mappers.shader_effects import Piece
+from pvfiblets.mappers.shader_effects import ShaderEffect
 
 _BESIDE = {
-    "colour_point_value": "layers_value",
+    "colour_point_scalar": "layers_value",
     "tube_normal": "layers_normal",
     "tube_shading": "layers_across",
 }
@@ -77,7 +77,7 @@ class _Held:
 
 
 @dataclass(frozen=True)
-class Layers(Piece):
+class Layers(ShaderEffect):
     """Where the actor is translucent, several layers show.
 
     Parameters
@@ -115,14 +115,14 @@ class Layers(Piece):
             textures[sampler] = arrays["across"] if held else kept.blank(relief)
         return textures
 
-    def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all extras
+    def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all effects
         """Say how many there are."""
         program.SetUniformi("fibletLayerCount", kept.count)
 
 
-def layers_of(extras: Iterable[Any]) -> int:
+def layers_of(effects: Iterable[Any]) -> int:
     """Return how many layers a mapper's geometry must have."""
-    return max((extra.count for extra in extras if isinstance(extra, Layers)), default=1)
+    return max((effect.count for effect in effects if isinstance(effect, Layers)), default=1)
 
 
 def with_layers(features: frozenset[str]) -> frozenset[str]:

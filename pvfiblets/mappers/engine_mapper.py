@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
 from pvfiblets.mappers import resolve
-from pvfiblets.mappers.active import ActiveRenderer
+from pvfiblets.mappers.active_renderer import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import layers_of, with_layers
 from pvfiblets.mappers.engines import Options
@@ -29,7 +29,7 @@ from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, world_planes
-from pvfiblets.mappers.shader_effects import Draw, Extra, prepare_extras, set_extra_uniforms, styled
+from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
@@ -88,7 +88,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._observer = 0
         self._active = ActiveRenderer()
         self._installed: tuple[resolve.Replacement, ...] = ()
-        self._extras: dict[str, Extra] = {}
+        self._effects: dict[str, MapperEffect] = {}
         self._error: BaseException | None = None
         self._colouring = colouring
         self.SetScalarVisibility(False)
@@ -110,8 +110,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     def _set_proxy(self) -> None:
         """Give VTK its geometry; setting it makes VTK build the shaders anew."""
-        self._layers = layers_of(self._extras.values())
-        self._thickness = thickness_of(self._extras.values())
+        self._layers = layers_of(self._effects.values())
+        self._thickness = thickness_of(self._effects.values())
         bounds = None if self._empty else thickened(self._drawn.bounds, self._thickness)
         self.SetInputData(proxy_polydata(bounds, self._layers))
 
@@ -138,18 +138,18 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._actor_modified()
 
     @property
-    def extras(self) -> Mapping[str, Extra]:
-        """Looks beside the colours, by name; see `set_extra`."""
-        return dict(self._extras)
+    def effects(self) -> Mapping[str, MapperEffect]:
+        """Looks beside the colours, by name; see `set_effect`."""
+        return dict(self._effects)
 
-    def set_extra(self, name: str, extra: Extra | None) -> None:
+    def set_effect(self, name: str, effect: MapperEffect | None) -> None:
         """Set or, with None, take away one of the looks beside the colours (`pvfiblets.mappers.shader_effects`)."""
-        if extra is None:
-            self._extras.pop(name, None)
+        if effect is None:
+            self._effects.pop(name, None)
         else:
-            self._extras[name] = extra
+            self._effects[name] = effect
         made_for = self._layers, self._thickness
-        if (layers_of(self._extras.values()), thickness_of(self._extras.values())) != made_for:
+        if (layers_of(self._effects.values()), thickness_of(self._effects.values())) != made_for:
             self._set_proxy()
         self._install()
         self._actor_modified()
@@ -197,8 +197,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     @property
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader in use."""
-        extras = frozenset().union(*(extra.features for extra in self._extras.values()))
-        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | extras))
+        effects = frozenset().union(*(effect.features for effect in self._effects.values()))
+        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | effects))
 
     def _install(self) -> None:
         """Bring the actor's shader pieces and its translucency up to date."""
@@ -272,14 +272,14 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             buffer = engine.render(view, style, outside=outside)
             draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
-            textures |= prepare_extras(slot, self._extras, draw)
+            textures |= prepare_effects(slot, self._effects, draw)
             units = context.texture_units(len(textures))
             for unit, texture in zip(units, textures.values(), strict=True):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
-        set_extra_uniforms(slot, self._extras, program, draw)
+        set_effect_uniforms(slot, self._effects, program, draw)
         if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")
@@ -304,9 +304,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         raise NotImplementedError
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
-        """Return the style, with the values that the colours need and what extras want."""
+        """Return the style, with the values that the colours need and what effects want."""
         style = self._style(renderer, pixel_scale(renderer, viewport))
-        return styled(replace(style, values=self._colouring.point_source), self._extras.values())
+        return styled(replace(style, values=self._colouring.point_source), self._effects.values())
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         """Return the engine's renderer of a window, made anew for other data and other options."""

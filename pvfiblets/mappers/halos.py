@@ -20,7 +20,7 @@ from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.shader_effects import Draw, Piece
+from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
@@ -73,8 +73,8 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Strips(Piece):
-    """An `pvfiblets.mappers.shader_effects.Extra` by which the halos in the G-buffer have a colour.
+class Strips(ShaderEffect):
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which the halos in the G-buffer have a colour.
 
     Parameters
     ----------
@@ -98,11 +98,11 @@ class Strips(Piece):
             raise ValueError(f"color of halos is {self.color!r}; expected 3 numbers between 0 and 1")
         object.__setattr__(self, "color", channels)
 
-    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+    def prepare(self, kept: None, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
         """Return the engine's texture."""
         return {"fibletInkMap": draw.buffer.across}
 
-    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: None, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colours at the lower and the upper edge."""
         lower, upper = _behind(draw) if self.color is None else (self.color, self.color)
         program.SetUniform3f("fibletStripLower", lower)
@@ -195,12 +195,12 @@ class HaloMapper(EngineMapper[HaloOptions]):
     @property
     def halo_color(self) -> Colour | None:
         """RGB of the halos, 0 to 1; None for the renderer's background."""
-        strips = self._extras["strips"]
+        strips = self._effects["strips"]
         return strips.color if isinstance(strips, Strips) else None
 
     @halo_color.setter
     def halo_color(self, color: Colour | None) -> None:
-        self.set_extra("strips", Strips(color))
+        self.set_effect("strips", Strips(color))
 
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2

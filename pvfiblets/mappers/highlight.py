@@ -1,4 +1,4 @@
-"""An extra that singles streamlines out: a colour for them, and less of it for all others."""
+"""An effect that singles streamlines out: a colour for them, and less of it for all others."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.mappers.shader_effects import Piece
+from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import MAX_ROW
 
 __all__ = ["Highlight"]
@@ -56,7 +56,7 @@ class _Bits:
 
 
 @dataclass(frozen=True, eq=False)
-class Highlight(Piece):
+class Highlight(ShaderEffect):
     """Selected streamlines in a colour of their own, all others faded.
 
     It costs a bit per streamline, 1 MB for 8 million, which is all that another selection writes.
@@ -95,11 +95,11 @@ class Highlight(Piece):
         """Make room for a window's texture."""
         return _Bits(ctx)
 
-    def prepare(self, kept: _Bits, draw: Any) -> Mapping[str, Any]:  # noqa: ARG002  as all extras
+    def prepare(self, kept: _Bits, draw: Any) -> Mapping[str, Any]:  # noqa: ARG002  as all effects
         """Return the bits."""
         return {"fibletChosenMap": kept.update(self.selected)}
 
-    def set_uniforms(self, kept: _Bits, program: Any, draw: Any) -> None:  # noqa: ARG002  as all extras
+    def set_uniforms(self, kept: _Bits, program: Any, draw: Any) -> None:  # noqa: ARG002  as all effects
         """Set the two colours and how much of each."""
         color = (0.0, 0.0, 0.0, 0.0) if self.color is None else (*self.color[:3], 1.0)
         faded = draw.renderer.GetBackground() if self.faded is None else self.faded[:3]

@@ -42,7 +42,7 @@ class Questions:
         -------
         dict
             Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
-            shader; ``textures``: name and bytes of the mapper's own textures and those of its extras.
+            shader; ``textures``: name and bytes of the mapper's own textures and those of its effects.
         """
         windows, textures = [], []
         for context in contexts_with(self):
@@ -51,7 +51,7 @@ class Questions:
                 context.window.MakeCurrent()
                 with context.foreign():
                     windows.append(slot.renderer.explain())
-                    for _, kept in slot.extras.values():
+                    for _, kept in slot.effects.values():
                         if hasattr(kept, "explain"):
                             costs = kept.explain()
                             windows[-1]["passes"] += costs["passes"]

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
-from pvfiblets.engine.effects.lens import Lens
 from pvfiblets.engine.effects.picture import PictureEffects
+from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import is_number
 from pvfiblets.mappers.scene import pixel_scale, samples_per_pixel, to_array
 
@@ -108,7 +108,7 @@ class Focusing:
         return abs(self.distance - self._aim) <= SETTLED * self._aim
 
     def focus(
-        self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Lens, *, held: bool = False
+        self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Projection, *, held: bool = False
     ) -> Focus:
         """Return what the lens is set to for a picture that has just been copied.
 
@@ -119,7 +119,7 @@ class Focusing:
             That draws the picture.
         effects : PictureEffects
             Have the copy, with depths.
-        lens : Lens
+        lens : Projection
             Of the picture.
         held : bool
             Whether a focus that follows stays where it was in the last picture.
@@ -158,13 +158,13 @@ class Focusing:
             self.distance = self._aim
 
 
-def lens_of(renderer: Any, size: tuple[int, int]) -> Lens:
+def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
     """Return the camera's lens for a picture of some pixels, stereo eye and tile included."""
     aspect = renderer.GetTiledAspectRatio()
-    return Lens(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
+    return Projection(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
 
 
-def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Lens, samples: float) -> float | None:
+def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float) -> float | None:
     """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles."""
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) != (1, 1):

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.mappers.shader_effects import Draw, Extra, Piece
+from pvfiblets.mappers.shader_effects import Draw, MapperEffect, ShaderEffect
 
 __all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
 
 
-def thickness_of(extras: Iterable[Extra]) -> float:
-    """Return the radius (mm) of the tubes that extras want; 0 for lines."""
-    return max((extra.style.get("radius") or 0.0 for extra in extras), default=0.0)
+def thickness_of(effects: Iterable[MapperEffect]) -> float:
+    """Return the radius (mm) of the tubes that effects want; 0 for lines."""
+    return max((effect.style.get("radius") or 0.0 for effect in effects), default=0.0)
 
 
 def thickened(bounds: Sequence[float], radius: float) -> Sequence[float]:
@@ -68,8 +68,8 @@ class _Blank:
 
 
 @dataclass(frozen=True)
-class TubeShading(Piece):
-    """An `pvfiblets.mappers.shader_effects.Extra` by which lights fall on wide lines as on round tubes.
+class TubeShading(ShaderEffect):
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which lights fall on wide lines as on round tubes.
 
     Only the light changes: depths stay those of flat lines, which face the viewer. Lines one pixel wide look as they
     did, and tubes have their own normals. It costs two bytes for each pixel.
@@ -93,8 +93,8 @@ class TubeShading(Piece):
 
 
 @dataclass(frozen=True)
-class SurfaceNormals(Piece):
-    """An `pvfiblets.mappers.shader_effects.Extra` by which lights fall on the surface normals in ``GBuffer.across``."""
+class SurfaceNormals(ShaderEffect):
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which lights fall on the normals in ``GBuffer.across``."""
 
     features = frozenset({"tube_normal"})
 
@@ -110,7 +110,7 @@ class SurfaceNormals(Piece):
 
 @dataclass(frozen=True)
 class Tubes(SurfaceNormals):
-    """An `pvfiblets.mappers.shader_effects.Extra` that draws streamlines as tubes: bodies with round ends.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that draws streamlines as tubes: bodies with round ends.
 
     Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and
     into VTK's meshes, and lights, ambient occlusion and selection take them for surfaces. Those thinner than a pixel

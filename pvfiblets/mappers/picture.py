@@ -195,7 +195,7 @@ class Picture:
         """Return what the effects cost: ``buffers``, name and bytes of what they keep on the GPU."""
         slots = [] if self._prop is None else [c.slot(self._prop) for c in contexts_with(self._prop)]
         kept = [("picture", slot.renderer) for slot in slots if slot.renderer is not None]
-        kept += [(name, sums) for slot in slots for name, (_, sums) in slot.extras.items()]
+        kept += [(name, sums) for slot in slots for name, (_, sums) in slot.effects.items()]
         return {"buffers": [{"name": name, "bytes": effects.nbytes} for name, effects in kept]}
 
     # Drawing

@@ -12,7 +12,7 @@ from vtkmodules.vtkRenderingContext2D import vtkContextActor
 from vtkmodules.vtkRenderingContextOpenGL2 import vtkOpenGLContextActor  # noqa: F401  what VTK makes of the former
 
 from pvfiblets.engine.effects.picture_passes import Attachment
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.mappers.windows import WindowContext
 
 __all__ = ["COLOUR", "DEPTH", "Painted", "PictureProp", "attachment"]
@@ -79,7 +79,7 @@ def attachment(context: WindowContext, point: int) -> Attachment:
     RuntimeError
         It is no texture.
     """
-    gl = OpenGL(context.ctx)
+    gl = GLExtras(context.ctx)
     values = []
     if gl.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") != 0:
         for what in (_TYPE, _NAME, _COMPONENTS):

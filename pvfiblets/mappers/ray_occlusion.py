@@ -1,4 +1,4 @@
-"""`RayOcclusion`, an extra of a mapper: surfaces of a volume are darker where rays from them meet it again."""
+"""`RayOcclusion`, an effect of a mapper: surfaces of a volume are darker where rays from them meet it again."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from pvfiblets.mappers.shader_effects import Piece
+from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.shading import extent, positive, share
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
+    from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
     from pvfiblets.mappers.shader_effects import Draw
 
 __all__ = ["RayOcclusion"]
@@ -21,7 +21,7 @@ _WHAT = "of ray occlusion"
 
 
 @dataclass(frozen=True)
-class RayOcclusion(Piece):
+class RayOcclusion(ShaderEffect):
     """Surfaces of a volume are darker where the volume itself stands over them, seen or not.
 
     From every pixel's point of a surface rays are cast into the hemisphere around its normal, the more the steeper. The
@@ -60,7 +60,7 @@ class RayOcclusion(Piece):
     features: ClassVar[frozenset[str]] = frozenset({"ray_occlusion"})
 
     def __post_init__(self) -> None:
-        from pvfiblets.engine.volumes.occlusion import MAX_SAMPLES
+        from pvfiblets.engine.volumes.ray_occlusion import MAX_SAMPLES
 
         for name, low, high in (("samples", 1, MAX_SAMPLES), ("seed", 0, 2**32 - 1)):
             number = getattr(self, name)
@@ -74,7 +74,7 @@ class RayOcclusion(Piece):
 
     def make(self, ctx: Any) -> RayOcclusionPass:
         """Make the pass."""
-        from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
+        from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
 
         return RayOcclusionPass(ctx)
 
@@ -95,6 +95,6 @@ class RayOcclusion(Piece):
         )
         return {"fibletRayOcclusionMap": texture}
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the strength, which changes without any ray cast anew."""
         program.SetUniform2f("fibletRayOcclusion", (self.strength, self.strength / self.samples))

@@ -170,11 +170,11 @@ class Refinement:
             What the picture was drawn into.
         viewport : tuple of 4 ints
         """
-        if self._name == _WHOLE and _TILE in slot.extras:
-            slot.drop_extra(_TILE)
-        if self._name not in slot.extras:
-            slot.extras[self._name] = Accumulation, Accumulation(ctx)
-        sums: Accumulation = slot.extras[self._name][1]
+        if self._name == _WHOLE and _TILE in slot.effects:
+            slot.drop_effect(_TILE)
+        if self._name not in slot.effects:
+            slot.effects[self._name] = Accumulation, Accumulation(ctx)
+        sums: Accumulation = slot.effects[self._name][1]
         if self._frame is _Frame.PLAIN:
             sums.keep(colour, viewport)
             return

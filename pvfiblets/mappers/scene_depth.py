@@ -13,7 +13,7 @@ from typing import Any
 import moderngl
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
 
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import read_shader
 
 _DRAW_FRAMEBUFFER, _DEPTH_ATTACHMENT = 0x8CA9, 0x8D00
@@ -36,7 +36,7 @@ class OutsideDepth:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._programs: dict[int, tuple[Any, Any]] = {}
         self._target: moderngl.Framebuffer | None = None
         self._texture: moderngl.Texture | None = None

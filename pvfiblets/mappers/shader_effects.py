@@ -1,8 +1,8 @@
 """What a mapper can be given beside colours: pieces of the resolve that have textures and uniforms of their own.
 
-An extra is a value: it says which pieces of ``shaders/resolve`` it takes and what it wants of the engine. What it keeps
-on the GPU is made once for each window and lives in the window's slot. A mapper without extras draws as if this module
-did not exist.
+An effect is a value: it says which pieces of ``shaders/resolve`` it takes and what it wants of the engine. What it
+keeps on the GPU is made once for each window and lives in the window's slot. A mapper without effects draws as if this
+module did not exist.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
 
-__all__ = ["Draw", "Extra", "Kept", "Piece", "prepare_extras", "set_extra_uniforms", "styled"]
+__all__ = ["Draw", "GpuResource", "MapperEffect", "ShaderEffect", "prepare_effects", "set_effect_uniforms", "styled"]
 
 AnyStyle = TypeVar("AnyStyle", bound="Style")
 
 
 @dataclass(frozen=True, eq=False)
 class Draw:
-    """One draw of a mapper, as its extras see it.
+    """One draw of a mapper, as its effects see it.
 
     Attributes
     ----------
@@ -55,15 +55,15 @@ class Draw:
     actor: Any
 
 
-class Kept(Protocol):
-    """What an extra keeps on the GPU of one window."""
+class GpuResource(Protocol):
+    """What an effect keeps on the GPU of one window."""
 
     def release(self) -> None:
         """Give it back; twice is harmless."""
         ...
 
 
-class Extra(Protocol):
+class MapperEffect(Protocol):
     """A piece of looks beside the colours. Instances do not change: set another one to change a setting."""
 
     @property
@@ -76,8 +76,8 @@ class Extra(Protocol):
         """Fields of the engine's ``Style`` that it sets."""
         ...
 
-    def make(self, ctx: Any) -> Kept | None:
-        """Make what it keeps on the GPU of a window; another extra of the same name and class takes that over."""
+    def make(self, ctx: Any) -> GpuResource | None:
+        """Make what it keeps on the GPU of a window; another effect of the same name and class takes that over."""
         ...
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
@@ -92,8 +92,8 @@ class Extra(Protocol):
         ...
 
 
-class Piece:
-    """What most extras have in common: nothing of their own on the GPU, and no wishes to the engine."""
+class ShaderEffect:
+    """What most effects have in common: nothing of their own on the GPU, and no wishes to the engine."""
 
     features: ClassVar[frozenset[str]]
 
@@ -102,11 +102,11 @@ class Piece:
         """Nothing of the engine."""
         return {}
 
-    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all extras
+    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all effects
         """Keep nothing on the GPU."""
         return None
 
-    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
         """Have no textures."""
         return {}
 
@@ -114,29 +114,29 @@ class Piece:
         """Have no uniforms."""
 
 
-def styled(style: AnyStyle, extras: Iterable[Extra]) -> AnyStyle:
-    """Return a style with what extras want of it."""
-    for extra in extras:
-        if extra.style:
-            style = replace(style, **extra.style)
+def styled(style: AnyStyle, effects: Iterable[MapperEffect]) -> AnyStyle:
+    """Return a style with what effects want of it."""
+    for effect in effects:
+        if effect.style:
+            style = replace(style, **effect.style)
     return style
 
 
-def prepare_extras(slot: Slot, extras: Mapping[str, Extra], draw: Draw) -> dict[str, Any]:
-    """Return the textures of all extras, and release what those kept that are gone."""
-    for name in set(slot.extras) - set(extras):
-        slot.drop_extra(name)
+def prepare_effects(slot: Slot, effects: Mapping[str, MapperEffect], draw: Draw) -> dict[str, Any]:
+    """Return the textures of all effects, and release what those kept that are gone."""
+    for name in set(slot.effects) - set(effects):
+        slot.drop_effect(name)
     textures: dict[str, Any] = {}
-    for name, extra in extras.items():
-        if name in slot.extras and slot.extras[name][0] is not type(extra):
-            slot.drop_extra(name)
-        if name not in slot.extras:
-            slot.extras[name] = type(extra), extra.make(draw.ctx)
-        textures |= extra.prepare(slot.extras[name][1], draw)
+    for name, effect in effects.items():
+        if name in slot.effects and slot.effects[name][0] is not type(effect):
+            slot.drop_effect(name)
+        if name not in slot.effects:
+            slot.effects[name] = type(effect), effect.make(draw.ctx)
+        textures |= effect.prepare(slot.effects[name][1], draw)
     return textures
 
 
-def set_extra_uniforms(slot: Slot, extras: Mapping[str, Extra], program: Any, draw: Draw) -> None:
-    """Set the uniforms of all extras."""
-    for name, extra in extras.items():
-        extra.set_uniforms(slot.extras[name][1], program, draw)
+def set_effect_uniforms(slot: Slot, effects: Mapping[str, MapperEffect], program: Any, draw: Draw) -> None:
+    """Set the uniforms of all effects."""
+    for name, effect in effects.items():
+        effect.set_uniforms(slot.effects[name][1], program, draw)

@@ -1,6 +1,6 @@
-"""Shading as extras of a mapper: light of illuminated lines, ambient occlusion, depth cueing, halos, ink, outlines.
+"""Shading as effects of a mapper: light of illuminated lines, ambient occlusion, depth cueing, halos, ink, outlines.
 
-Each is a value that ``FibletMapper.set_extra`` takes; none leaves a trace in a mapper that has not been given it.
+Each is a value that ``FibletMapper.set_effect`` takes; none leaves a trace in a mapper that has not been given it.
 Lengths are mm of the world. All work with perspective and parallel cameras, and in pictures that are supersampled.
 """
 
@@ -16,10 +16,10 @@ import numpy.typing as npt
 
 from pvfiblets.mappers.line_tubes import normals_to_view
 from pvfiblets.mappers.scene import pixel_scale
-from pvfiblets.mappers.shader_effects import Draw, Piece
+from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
+    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
 
 __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
 
@@ -32,12 +32,12 @@ MAX_OUTLINE = 16.0
 """Pixels of the window; an outline's cost grows with the square of its width."""
 
 
-class Illuminated(Piece):
+class Illuminated(ShaderEffect):
     """Every light finds the normal of a line that reflects most of it (Zöckler 1996, Mallo 2005), see `resolve`."""
 
     features = frozenset({"illuminated"})
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set what the lights of the scene add up to."""
         lights = draw.renderer.GetLights()
         strengths = [
@@ -49,7 +49,7 @@ class Illuminated(Piece):
 
 
 @dataclass(frozen=True)
-class Ink(Piece):
+class Ink(ShaderEffect):
     """One colour for all lines whatever they are coloured by, without light.
 
     Parameters
@@ -64,13 +64,13 @@ class Ink(Piece):
     def __post_init__(self) -> None:
         object.__setattr__(self, "color", _colour(self.color, "color of ink"))
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour."""
         program.SetUniform3f("fibletInk", self.color)
 
 
 @dataclass(frozen=True)
-class AmbientOcclusion(Piece):
+class AmbientOcclusion(ShaderEffect):
     """Lines and surfaces are darker where others stand over them.
 
     Parameters
@@ -129,7 +129,7 @@ class AmbientOcclusion(Piece):
 
 
 @dataclass(frozen=True)
-class DepthCue(Piece):
+class DepthCue(ShaderEffect):
     """Lines fade towards one colour with their distance from the viewer's plane.
 
     Parameters
@@ -163,7 +163,7 @@ class DepthCue(Piece):
                 raise ValueError(f"range of depth cueing is {self.range!r}; give two rising distances in mm, or None")
             object.__setattr__(self, "range", ends)
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set colours and distances."""
         near, far = distances(draw) if self.range is None else self.range
         lower, upper = background(draw.renderer) if self.color is None else (self.color, self.color)
@@ -173,7 +173,7 @@ class DepthCue(Piece):
 
 
 @dataclass(frozen=True)
-class Halos(Piece):
+class Halos(ShaderEffect):
     """Depth-dependent halos: a line cuts a gap into the lines behind it, the wider the farther they are behind.
 
     Everts et al. 2009. A halo is there where no line is, too: it hides what is behind it, and has a depth in the scene.
@@ -231,7 +231,7 @@ class Halos(Piece):
             width = max(extent(draw) / 250.0, LEAST_HALO * pixel)
         return width, extent(draw) / 20.0 if self.depth is None else self.depth
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour, and widen the rectangle in which anything can be."""
         lower, upper = background(draw.renderer) if self.color is None else (self.color, self.color)
         program.SetUniform3f("fibletHaloLower", lower)
@@ -240,7 +240,7 @@ class Halos(Piece):
 
 
 @dataclass(frozen=True, eq=False)
-class Silhouette(Piece):
+class Silhouette(ShaderEffect):
     """An outline around the pixels that show chosen streamlines.
 
     Parameters
@@ -292,17 +292,17 @@ class Silhouette(Piece):
             )
         return {"fibletOutlineMap": kept.draw(draw.buffer, self.selected, width=self.width * _pixel_scale(draw))}
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour, and widen the rectangle in which anything can be."""
         program.SetUniform3f("fibletOutlineColour", self.color)
         widen(program, draw)
 
 
-def lens_of(draw: Draw) -> Lens:
+def lens_of(draw: Draw) -> Projection:
     """Return what effects must know of a draw's camera."""
-    from pvfiblets.engine.effects import Lens
+    from pvfiblets.engine.effects import Projection
 
-    return Lens(draw.view.size, draw.frame.projection)
+    return Projection(draw.view.size, draw.frame.projection)
 
 
 def extent(draw: Draw) -> float:

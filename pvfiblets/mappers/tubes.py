@@ -113,7 +113,7 @@ class TubeMapper(EngineMapper[TubeOptions]):
             options=TubeOptions() if options is None else options,
             renderer_factory=renderer_factory,
         )
-        self.set_extra("normals", SurfaceNormals())
+        self.set_effect("normals", SurfaceNormals())
 
     @property
     def tubes(self) -> SplineTubes:

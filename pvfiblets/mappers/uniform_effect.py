@@ -14,7 +14,7 @@ __all__ = ["UniformEffect"]
 
 @dataclass(frozen=True)
 class UniformEffect:
-    """An `pvfiblets.mappers.shader_effects.Extra` that sets one number of one piece.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that sets one number of one piece.
 
     Parameters
     ----------
@@ -36,14 +36,14 @@ class UniformEffect:
         """The piece."""
         return frozenset({self.piece})
 
-    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all extras
+    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all effects
         """Keep nothing on the GPU."""
         return
 
-    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all extras
+    def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
         """Have no textures."""
         return {}
 
-    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all extras
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the number."""
         program.SetUniformf(self.uniform, self.value)

@@ -19,10 +19,10 @@ def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) ->
     name = None
     if "colour_streamline" in features:
         name, pixels = "fibletStreamlineColours", colouring.streamline_colours
-    elif "colour_point_value" in features:
+    elif "colour_point_scalar" in features:
         textures["fibletPositionMap"] = buffer.position
         name, pixels = "fibletTable", colouring.table
-    elif "colour_point" in features:
+    elif "colour_point_rgba" in features:
         textures["fibletColourMap"] = buffer.colours
     for unused in set(slot.textures) - {name}:
         slot.textures.pop(unused).release()
@@ -45,6 +45,6 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
     if colouring.mode == "solid":
         program.SetUniform3f("fibletColour", colouring.color)
-    if colouring.mode == "point_value" and colouring.lut is not None:
+    if colouring.mode == "point_scalar" and colouring.lut is not None:
         program.SetUniformi("fibletTableSize", len(colouring.lut))
         program.SetUniform3f("fibletTableRange", colouring.scaled_range())

@@ -78,8 +78,8 @@ class VolumeMapper(CutMapper[Options]):
     casting : RaycastOptions
         How.
     colouring : Colouring, optional
-        Of surfaces and peaks: ``'solid'``, or ``'point_value'`` of any source, whose values are those of the volume. By
-        default white. Light has the colours of its transfer function.
+        Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, whose values are those of the volume.
+        By default white. Light has the colours of its transfer function.
     renderer_factory : callable, optional
         Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`.
 
@@ -154,8 +154,8 @@ class VolumeMapper(CutMapper[Options]):
         self._casting = casting
         CutMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
         surface = casting.mode == "isosurface"
-        if surface != ("normals" in self._extras):
-            self.set_extra("normals", SurfaceNormals() if surface else None)
+        if surface != ("normals" in self._effects):
+            self.set_effect("normals", SurfaceNormals() if surface else None)
 
     @property
     def colouring(self) -> Colouring:
@@ -217,13 +217,13 @@ class VolumeMapper(CutMapper[Options]):
 def _plain(casting: RaycastOptions) -> Colouring:
     """Colours without any choice."""
     if casting.mode == "composite":
-        return Colouring("point_rgb", source=_LIGHT, see_through=True)
+        return Colouring("point_rgba", source=_LIGHT, has_alpha=True)
     return Colouring("solid")
 
 
 def _check(casting: RaycastOptions, colouring: Colouring) -> None:
     light = casting.mode == "composite"
-    known = ("point_rgb",) if light else ("solid", "point_value")
+    known = ("point_rgba",) if light else ("solid", "point_scalar")
     if colouring.mode not in known:
         instead = "light has the colours of casting.transfer: leave colouring out" if light else f"choose of {known}"
         raise ValueError(f"the colouring of mode {casting.mode!r} is {colouring.mode!r}; {instead}")

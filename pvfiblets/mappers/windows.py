@@ -72,8 +72,8 @@ class Slot:
         Name to the object the texture was made from.
     drawn : dict
         Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
-    extras : dict
-        Name of an extra to its class and what it keeps on the GPU (`pvfiblets.mappers.shader_effects`).
+    effects : dict
+        Name of an effect to its class and what it keeps on the GPU (`pvfiblets.mappers.shader_effects`).
     """
 
     def __init__(self, mapper: Any) -> None:
@@ -82,12 +82,12 @@ class Slot:
         self.textures: dict[str, Any] = {}
         self.versions: dict[str, Any] = {}
         self.drawn: dict[str, Any] = {}
-        self.extras: dict[str, tuple[type, Any]] = {}
+        self.effects: dict[str, tuple[type, Any]] = {}
         self._outside: OutsideDepth | None = None
 
-    def drop_extra(self, name: str) -> None:
-        """Delete what an extra keeps. The window's context must be current."""
-        kept = self.extras.pop(name)[1]
+    def drop_effect(self, name: str) -> None:
+        """Delete what an effect keeps. The window's context must be current."""
+        kept = self.effects.pop(name)[1]
         if kept is not None:
             kept.release()
 
@@ -105,8 +105,8 @@ class Slot:
         if self._outside is not None:
             self._outside.release()
             self._outside = None
-        for name in list(self.extras):
-            self.drop_extra(name)
+        for name in list(self.effects):
+            self.drop_effect(name)
         for texture in self.textures.values():
             texture.release()
         self.textures.clear()

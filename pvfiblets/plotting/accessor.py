@@ -12,6 +12,7 @@ from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.query.density_map import DensityMap
 
 
 @pv.register_dataset_accessor("fiblets", pv.PolyData)
@@ -74,3 +75,22 @@ class FibletsAccessor:
             self._dataset, per_point=per_point, max_error=max_error, progress=progress, **options
         )
         return fiblets
+
+    def density(self, voxel_size: Any = None, **options: Any) -> DensityMap:
+        """Add the lines up in the voxels of a grid, as they are; see :func:`pvfiblets.density`.
+
+        Parameters
+        ----------
+        voxel_size : float or array_like, optional
+            mm; either this or ``like``, an image whose grid it is.
+        **options
+            Further arguments of :func:`pvfiblets.density`; arrays go by the names of point and cell data.
+
+        Returns
+        -------
+        DensityMap
+            ``to_image()`` makes it a :class:`pyvista.ImageData`.
+        """
+        from pvfiblets.query.density import density
+
+        return density(self.to_streamlines(), voxel_size, **options)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 import pyvista as pv
 
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.linked_property import LinkedProperty, own_writes
 from pvfiblets.plotting.setting_places import COLOURS, PROPERTY
 from pvfiblets.plotting.settings import Given, Setting, Settings
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
-class Coloured(Settings):
+class Coloured(Settings, LinkedProperty):
     """The part of actors that has colours; see :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`.
 
     What an actor draws, and what ``scalars`` mean for that, is its own: it brings ``scalars`` and
@@ -26,6 +27,7 @@ class Coloured(Settings):
     _mapper: Any
     prop: Any
     scalars: Any
+    color: Any
 
     def _init_colours(self, choice: Any, given: Given, theme: Any) -> None:
         self._theme = theme
@@ -35,6 +37,7 @@ class Coloured(Settings):
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
         self._bar_changed: Callable[[Any], None] | None = None
+        self._property_color: tuple[float, ...] | None = None
 
     @property
     def _drawn(self) -> Any:
@@ -49,10 +52,13 @@ class Coloured(Settings):
         """Attach the mapper to an actor that VTK has made, and set what needs both."""
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
-        for name, value in given.items():
-            one = self.DECLARED[name]
-            if one.where is PROPERTY and isinstance(one, Setting):
-                setattr(self, name, getattr(self._theme, one.field) if value is None else value)
+        self._property_color = self.prop.GetColor()
+        with own_writes():
+            for name, value in given.items():
+                one = self.DECLARED[name]
+                if one.where is PROPERTY and isinstance(one, Setting):
+                    setattr(self, name, getattr(self._theme, one.field) if value is None else value)
+        self._take_property()
 
     def _be_like(self, other: Any, deep: bool) -> None:
         """Take over place, property and all settings that an actor is not made with."""
@@ -136,7 +142,17 @@ class Coloured(Settings):
         self._mapper.colouring = make_colouring(self._settings, scalars, self._table, self._theme)
         self._scalars = scalars
         colour = pv.Color(self._settings.color, default_color=self._theme.color)
-        self.prop.color = colour if scalars is None else "white"
+        with own_writes():
+            self.prop.color = colour if scalars is None else "white"
+        self._property_color = self.prop.GetColor()
+
+    def _property_changed(self) -> None:
+        """Take over another colour of the property; scalars that were chosen go before it."""
+        color = self.prop.GetColor()
+        if color != self._property_color:
+            self._property_color = color
+            if self._choice is None:
+                self.color = color
 
 
 class Plotted:

@@ -157,8 +157,8 @@ def make_colouring(
         return Colouring(
             mode="solid", color=pv.Color(settings.color, default_color=theme.color).float_rgb
         )
-    if scalars.kind == "point_rgb":
-        return Colouring(mode="point_rgb", source=scalars.name, see_through=scalars.see_through)
+    if scalars.kind == "point_rgba":
+        return Colouring(mode="point_rgba", source=scalars.name, has_alpha=scalars.has_alpha)
     if not scalars.mapped:
         return Colouring(mode=scalars.kind, values=scalars.values)
     return Colouring(

@@ -93,7 +93,7 @@ class Effect(Place):
     Parameters
     ----------
     kind : str
-        ``"module:class"`` of an extra (`pvfiblets.mappers.shader_effects`), whose fields are the settings.
+        ``"module:class"`` of an effect (`pvfiblets.mappers.shader_effects`), whose fields are the settings.
     """
 
     made_with = False
@@ -103,7 +103,7 @@ class Effect(Place):
 
     @property
     def kind(self) -> Any:
-        """The class of the extra, imported when it is first needed."""
+        """The class of the effect, imported when it is first needed."""
         module, _, name = self._kind.partition(":")
         return getattr(import_module(module), name)
 
@@ -146,7 +146,7 @@ class Uniform(Place):
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         """Return the number."""
-        effect = actor.mapper.extras.get(setting.field)
+        effect = actor.mapper.effects.get(setting.field)
         return setting.default if effect is None else effect.value
 
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
@@ -155,7 +155,7 @@ class Uniform(Place):
 
         off = value == setting.default
         effect = None if off else UniformEffect(self.piece, self.uniform, float(value))
-        actor.mapper.set_extra(setting.field, effect)
+        actor.mapper.set_effect(setting.field, effect)
 
 
 OPTIONS, COLOURS, PROPERTY, OWN, LATER = _Options(), _Colours(), _Property(), Own(), _Later()

@@ -8,11 +8,15 @@ from typing import Any
 
 import pyvista as pv
 
-from pvfiblets.mappers.line_tubes import Tubes
+from pvfiblets.mappers.line_light import LegendColours, LineLight
+from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import Halos, Ink
 from pvfiblets.plotting.fiblets.settings import STYLES
+from pvfiblets.plotting.linked_property import own_writes
 
 _BACKGROUND = "background"
+_LIGHT = "light"
+_ROUND = "tube_shading"
 
 
 class SurfaceShading:
@@ -32,7 +36,7 @@ class SurfaceShading:
         """Set one effect; a refused value leaves all as it was."""
         if wanted is None or wanted is False:
             self._shades.pop(name, None)
-            self._mapper.set_extra(name, None)
+            self._mapper.set_effect(name, None)
             return
         if wanted is not True and not isinstance(wanted, Mapping):
             raise ValueError(f"{name} is {wanted!r}; give True, False or a dict of settings")
@@ -45,19 +49,52 @@ class SurfaceShading:
             colour = settings.setdefault("color", "white" if kind is Halos else None)
             plain = colour is None or (isinstance(colour, str) and colour == _BACKGROUND)
             given["color"] = None if plain else pv.Color(colour).float_rgb
-        extra = kind(**given)
-        self._mapper.set_extra(name, extra)
-        self._shades[name] = {key: settings.get(key, getattr(extra, key)) for key in known}
+        effect = kind(**given)
+        self._mapper.set_effect(name, effect)
+        self._shades[name] = {key: settings.get(key, getattr(effect, key)) for key in known}
 
 
 class Shading(SurfaceShading):
     """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that shades."""
 
     halos: Any
+    prop: Any
+    _scalars: Any
 
     def _init_shading(self) -> None:
         super()._init_shading()
         self._style = STYLES[0]
+
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        super()._shade(name, kind, wanted)
+        self._relight()
+
+    def _relight(self) -> None:
+        """Bring the light in step that lines have where nothing else says which."""
+        kind = self._usual_light()
+        present = self._mapper.effects.get(_LIGHT)
+        if kind is not (None if present is None else type(present)):
+            self._mapper.set_effect(_LIGHT, None if kind is None else kind())
+
+    def _usual_light(self) -> type | None:
+        bodies = "tubes" in self._shades or (self._read_tube_shading() and self._mapper.line_width > 1.0)
+        if bodies or "illuminated" in self._shades or self._style != STYLES[0] or not self.prop.GetLighting():
+            return None
+        return LegendColours if self._scalars is not None and self._scalars.mapped else LineLight
+
+    def _read_tube_shading(self) -> bool:
+        return bool(self.prop.GetRenderLinesAsTubes())
+
+    def _write_tube_shading(self, wanted: bool) -> None:
+        with own_writes():
+            self.prop.SetRenderLinesAsTubes(wanted)
+        self._take_tube_shading()
+        self._relight()
+
+    def _take_tube_shading(self) -> None:
+        wanted = self._read_tube_shading()
+        if wanted != (_ROUND in self._mapper.effects):
+            self._mapper.set_effect(_ROUND, TubeShading() if wanted else None)
 
     def _read_tube_radius(self) -> float | None:
         settings = self._shades.get("tubes")
@@ -75,6 +112,7 @@ class Shading(SurfaceShading):
         if style == self._style:
             return
         self._style = style
-        self._mapper.set_extra("ink", Ink() if style == "halo" else None)
+        self._mapper.set_effect("ink", Ink() if style == "halo" else None)
+        self._relight()
         if style == "surface" or not self.halos:
             self.halos = style == "halo"

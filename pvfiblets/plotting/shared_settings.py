@@ -113,14 +113,14 @@ FLIP_SCALARS = Argument(False, "Reverse the colour map.", kind="bool", where=COL
 def opacity(of: str) -> Setting[float]:
     """Return the opacity of some drawable; ``of`` says what of it."""
     return Setting(
-        1.0,
+        None,
         "From 0, not to be seen, to 1.",
-        argument=of,
-        kind="float",
+        argument=f"{of} The theme's by default.",
+        kind="float | None",
         where=PROPERTY,
         low=0.0,
         high=1.0,
-        row=Row("Opacity", "From 0, not to be seen, to 1."),
+        row=Row("Opacity", "From 0, not to be seen, to 1.", default=1.0),
     )
 
 

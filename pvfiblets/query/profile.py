@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from ..codec.decompress import select_streamlines
 from ..codec.layout import PAGE, unpack
-from ..codec.places import Places, places_of
 from ..codec.quantised import QuantisedPoints
+from ..codec.streamline_ranges import StreamlineRanges, ranges_of
 from ..ragged import blocks
 from .measures import Distance, Values, by_rank, measure
 
@@ -62,7 +62,7 @@ def mean_profile(
     if values.kind != "point":
         raise ValueError(f"{values.name!r} has a value per {values.kind}; a profile needs values per point")
     chosen = select_streamlines(fiblets.n_streamlines, ids)
-    places = places_of(fiblets, chosen)
+    places = ranges_of(fiblets, chosen)
     filled = np.flatnonzero(places.points > 0)
     chosen, places = chosen[filled], places.at(filled)
     tally = _Tally(n)
@@ -83,12 +83,12 @@ def mean_profile(
     return tally.result()
 
 
-def _ranks(fiblets: FibletSet, places: Places) -> npt.NDArray[np.int64]:
+def _ranks(fiblets: FibletSet, places: StreamlineRanges) -> npt.NDArray[np.int64]:
     within = unpack("rank", np.asarray(fiblets.anchors[places.fiblet])).astype(np.int64)
     return within + fiblets.pages[places.fiblet // PAGE, 0]
 
 
-def _values_at(values: Values, places: Places) -> Floats:
+def _values_at(values: Values, places: StreamlineRanges) -> Floats:
     """Values of the points of some streamlines, end to end."""
     starts = np.cumsum(places.points) - places.points
     rows = np.arange(int(places.points.sum())) + np.repeat(places.point - starts, places.points)

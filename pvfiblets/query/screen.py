@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..codec.decompress import decode_fiblets
 from ..codec.layout import PAGE_BITS, unpack
-from ..codec.places import places_of
+from ..codec.streamline_ranges import ranges_of
 from . import screen_kernels
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def _nearest(fiblets: FibletSet, ranks: Ints, depths: Array, places: Array) -> U
     best = best[np.argsort(depths[best], kind="stable")]
     chosen = ranks[best]
     ids = chosen if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id)[chosen].astype(np.int64)
-    within = places[best] - places_of(fiblets, ids).point
+    within = places[best] - ranges_of(fiblets, ids).point
     return Under(ids, within, np.clip(0.5 * depths[best] + 0.5, 0.0, 1.0))
 
 

@@ -15,8 +15,8 @@ from pvfiblets.streamlines import Streamlines
 from .baselines.directions import PaperFiblets, QFib
 from .baselines.linearised import linearised
 from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
-from .data import SMALL, DataSet, data_sets
-from .measure import Turns, distances, error_figures, median_step
+from .data_sets import SMALL, DataSet, data_sets
+from .errors_and_times import Turns, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 

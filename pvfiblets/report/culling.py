@@ -14,7 +14,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
 
 from .culling_pictures import Singles, Visible, averaged, colours, difference, errors, views, visible
-from .data import file_sets
+from .data_sets import file_sets
 from .drawing import LATE, drawing_context, turns_of
 from .flights import Flight
 from .record import FRAME, Axes, Figure, LeftOut, Record
@@ -23,7 +23,7 @@ from .study import Options
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-    from .measure import Turns
+    from .errors_and_times import Turns
 
 __all__ = ["STUDY", "CullingStudy", "Scene", "Variant", "variants"]
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.codec.direction_codebook import CAP_DEGREES, quaternions
 from pvfiblets.codec.reference import first_frame
-from pvfiblets.codec.tables import CAP_DEGREES, quaternions
 
 from . import decoders
-from .measure import Turns, error_figures
+from .errors_and_times import Turns, error_figures
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 

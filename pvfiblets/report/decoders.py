@@ -8,8 +8,8 @@ Here one
   thread does the work of all 32, so its time is that of the work, not that of a graphics card;
 
 with rotations as *quaternions* or *matrices*, from a *table*, or by the *closed form* of
-:mod:`pvfiblets.codec.tables`: ``rho = (i / 256)^(7/8)``, turned by ``i`` golden angles, lifted to the cap by
-``x = 1 - Ratio rho^2``. The codec's table holds 16-bit integers; *rounded* rounds to these as well.
+:mod:`pvfiblets.codec.direction_codebook`: ``rho = (i / 256)^(7/8)``, turned by ``i`` golden angles, lifted to the cap
+by ``x = 1 - Ratio rho^2``. The codec's table holds 16-bit integers; *rounded* rounds to these as well.
 
 Numbers are float32 or float64, as the arrays given are. Constants come in an array of that kind, since numba would
 take float64 for literals and no float32 would be left.
@@ -23,8 +23,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.codec.direction_codebook import cap_ratios, packed_scales, quaternions
 from pvfiblets.codec.jit import kernel
-from pvfiblets.codec.tables import cap_ratios, packed_scales, quaternions
 
 __all__ = ["CLOSED", "MATRIX", "POINTS", "PREFIX", "QUATERNION", "ROUNDED", "SEQUENTIAL", "TABLE", "decode", "inputs"]
 

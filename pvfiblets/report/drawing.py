@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .measure import Turns
+from .errors_and_times import Turns
 from .record import LeftOut, Record, Timing
 from .study import Options, Unavailable
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.engine.effects.depth_of_field import Focus
-from pvfiblets.engine.effects.lens import Lens
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
+from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.gbuffer import EMPTY
 
@@ -24,9 +24,9 @@ APERTURE, MAX_BLUR = 0.06, 16.0
 DEEPEST = 4294967295.0  # of depth keys
 
 
-def lens_of(camera: Camera) -> Lens:
+def lens_of(camera: Camera) -> Projection:
     """Return what effects must know of a camera."""
-    return Lens(camera.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
+    return Projection(camera.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
-from .data import DataSet, file_sets, synthetic_tracking
+from .data_sets import DataSet, file_sets, synthetic_tracking
 from .drawing import LATE, clock_of, drawing_context, timing, turns_of
 from .flights import Flight
 from .halos_drawing import Drawing, FibletHalos, Strips
@@ -25,7 +25,7 @@ from .study import Options
 
 if TYPE_CHECKING:
     from .cameras import Camera
-    from .measure import Turns
+    from .errors_and_times import Turns
 
 __all__ = ["STUDY", "HaloStudy", "Scene", "Variant", "variants"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.effects import HaloPass, Lens
+from pvfiblets.engine.effects import HaloPass, Projection
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
@@ -105,7 +105,7 @@ class FibletHalos:
         """Draw."""
         view = _view(camera, self._times)
         buffer = self._renderer.render(view, FibletStyle(radius=0.5 * look.line_width))
-        lens = Lens(view.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
+        lens = Projection(view.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
         width = 0.5 * (look.strip_width - look.line_width)
         return buffer, self._halos.draw(buffer, lens, width=width, depth=look.max_displacement, nearest=camera.near)
 

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from . import machine, studies
-from .data import files_of
-from .front import mark_fronts
+from .data_sets import files_of
+from .pareto import mark_fronts
 from .record import CaseResult, StudyResult
 from .report_file import Report
 from .study import Budget, Options, Unavailable

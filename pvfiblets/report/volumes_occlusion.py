@@ -83,7 +83,7 @@ class _Picture:
     ) -> None:
         from pvfiblets.engine import View
         from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-        from pvfiblets.engine.volumes.occlusion import RayOcclusionPass
+        from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
 
         self._ctx, self._volume, self._value = ctx, volume, value
         self._casting = RaycastOptions(values=(value,))

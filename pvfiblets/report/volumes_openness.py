@@ -67,7 +67,7 @@ def exact_openness(
     numpy.ndarray
         ``(k,)``: share of the directions that meet nothing.
     """
-    from pvfiblets.engine.volumes.occlusion import LIFT
+    from pvfiblets.engine.volumes.ray_occlusion import LIFT
 
     # The open side is the viewer's by the field next to the hit, not by differences over two voxels.
     before, after = (reference.sample(volume, through.points(t + beside)) for beside in (-BESIDE, BESIDE))

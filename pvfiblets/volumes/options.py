@@ -15,12 +15,15 @@ from .volume import FILTERS
 if TYPE_CHECKING:
     from .transfer import Transfer
 
-__all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "REFINEMENTS", "RaycastOptions"]
+__all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "PROJECTIONS", "REFINEMENTS", "RaycastOptions"]
 
-MODES = ("isosurface", "composite", "mip", "local-mip")
-"""What a ray shows: a surface, all that it passes through, the greatest value, or the first peak above a threshold."""
+MODES = ("composite", "isosurface", "mip", "local-mip")
+"""What a ray shows: all that it passes through, a surface, the greatest value, or the first peak above a threshold."""
 
-REFINEMENTS = ("none", "regula-falsi", "newton")
+PROJECTIONS = ("mip", "local-mip")
+"""Modes that show one value of a ray."""
+
+REFINEMENTS = ("regula-falsi", "newton", "none")
 """How the place of a crossing is refined (paper: equations 3 and 4)."""
 
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")

@@ -17,18 +17,18 @@ from trame.app import TrameApp
 
 from pvfiblets.web import describe, layout
 from pvfiblets.web.camera import CameraActions
+from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
-from pvfiblets.web.cuts import CutActions
 from pvfiblets.web.document import volume_in
 from pvfiblets.web.exporting import ExportActions
-from pvfiblets.web.filtering import FilterActions
+from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
-from pvfiblets.web.picks import SelectionActions
 from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
+from pvfiblets.web.selection_tab import SelectionActions
 from pvfiblets.web.sliders import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream

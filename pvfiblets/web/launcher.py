@@ -22,7 +22,7 @@ from pathlib import Path
 
 from pvfiblets import memory
 from pvfiblets.web import endings, scratch, tokens
-from pvfiblets.web.journal import printable
+from pvfiblets.web.log_limiter import printable
 from pvfiblets.web.options import Options
 
 logger = logging.getLogger("pvfiblets.web")

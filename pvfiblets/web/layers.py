@@ -16,8 +16,8 @@ from pvfiblets.plotting.settings import Settings, arguments
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
+from pvfiblets.web.layer_properties import MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.properties import TYPES, Choices, Property
-from pvfiblets.web.tables import MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.values import shown
 
 __all__ = [

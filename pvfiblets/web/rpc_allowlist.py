@@ -15,7 +15,7 @@ from typing import Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.memory import TooLargeError, limited_to, shown
-from pvfiblets.web.journal import printable
+from pvfiblets.web.log_limiter import printable
 
 logger = logging.getLogger("pvfiblets.web")
 

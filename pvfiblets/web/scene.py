@@ -13,14 +13,14 @@ from typing import Any
 
 from pvfiblets.web import layers
 from pvfiblets.web.actors import add_actor, cut, filter_as, look_as, put_in_order, remove_actor, select_as, split_cuts
-from pvfiblets.web.bars import Bars
 from pvfiblets.web.cameras import Cameras
+from pvfiblets.web.distance_label import hide_distance
 from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State, as_volume_choice, volume_in
+from pvfiblets.web.layer_queries import LayerQueries
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
-from pvfiblets.web.marks import hide_distance
-from pvfiblets.web.questions import Questions
-from pvfiblets.web.selecting import Selecting
-from pvfiblets.web.showing import Showing
+from pvfiblets.web.scalar_bars import Bars
+from pvfiblets.web.scene_filters import SceneFilters
+from pvfiblets.web.scene_selection import SceneSelection
 from pvfiblets.web.store import Store
 from pvfiblets.web.values import colour, text
 
@@ -55,7 +55,7 @@ class _Drawn:
     whole: Any = None  # of a mesh: what the actor draws where nothing is cut
 
 
-class Scene(Showing, Selecting, Questions, Cameras):
+class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
     """What a session shows.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.

@@ -12,8 +12,8 @@ from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
-from pvfiblets.web.bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.document import LINES, Clip, Layer, Source
+from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ from aiohttp import web
 from pvfiblets.web import pages
 from pvfiblets.web.access import Access, RefusedError
 from pvfiblets.web.connections import BACKLOG, Connection, Connections, room
-from pvfiblets.web.journal import Quiet
 from pvfiblets.web.launcher import SHARED, WORKER, Launcher, Session
+from pvfiblets.web.log_limiter import LogLimiter
 from pvfiblets.web.options import Options
 from pvfiblets.web.pages import HEADERS
 from pvfiblets.web.relay import HEARTBEAT, Relay
@@ -54,7 +54,7 @@ class FrontServer:
         self.options = options
         self.patience = patience
         self.connections = Connections(options.connections, options.by_address, options.proxies)
-        self._quiet = Quiet()
+        self._quiet = LogLimiter()
         self._counting: asyncio.Task[None] | None = None
         self._listener: asyncio.Server | None = None
         self.access = Access(options, secrets.token_bytes(32))

@@ -33,8 +33,8 @@ from pvfiblets.web.document import (
     as_volume_choice,
     volume_in,
 )
+from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
-from pvfiblets.web.showing import MOST_CLIPS, check_filters
 from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.journal import Quiet
+from pvfiblets.web.log_limiter import LogLimiter
 
 if TYPE_CHECKING:
     from pvfiblets.web.options import Options
@@ -38,7 +38,7 @@ def main() -> int:
     sys.argv = sys.argv[:1]  # trame reads the command line too
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s", stream=sys.stderr)
     for handler in logging.root.handlers:  # browsers report errors of their scripts here, as many as they like
-        handler.addFilter(Quiet())
+        handler.addFilter(LogLimiter())
     try:
         _run(told, speaker)
     except FibletsError as error:

@@ -29,7 +29,7 @@ bool covered(vec3 p) {
     vec4 c = to_homogeneous(p);
     if (c.w <= 0.0) return false;
     vec2 at = c.xy / c.w;
-    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, viewport.xy))) return false;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, viewport))) return false;
     float limit = texelFetch(coverage, ivec2(at / coverage_side), 0).x;
     return limit > UNCOVERED && dot(coverage_axis.xyz, p) > limit;
 }

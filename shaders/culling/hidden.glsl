@@ -19,14 +19,14 @@
 //   4. A fiblet is hidden if all its pieces are. One that reaches beside or behind the camera never is.
 //
 // Invariant: never hides a fiblet of which one pixel would be kept. Pixels of thin lines are up to one pixel off the line
-// (fiblets/raster/cells.glsl), those of wide ones half the width. Depth is that of the line itself; but the first pixel of a thin
+// (fiblets/segments/thin_line_rule.glsl), those of wide ones half the width. Depth is that of the line itself; but the first pixel of a thin
 // segment shows a place before its start, CELL_SHIFT / n of the segment, and the last one after its end: `overshoot`.
 // Rounding of h is paid by `slack`.
 
 #include "culling/bounds.glsl"
 #include "frame/project.glsl"
 
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 
 const float MARGIN = 1.5;  // pixels
 const float PIECES = 4.0;
@@ -35,7 +35,7 @@ vec3 gradient(int row) { return vec3(window_from_local[0][row], window_from_loca
 
 // Pixels that a ball of radius r around a point with these coordinates reaches at most, to either side.
 vec2 reach_of(vec4 c, vec2 s, float r) {
-    float w = c.w - r * detail.y;
+    float w = c.w - r * w_per_mm;
     vec2 across = vec2(length(gradient(0) - s.x * gradient(3)), length(gradient(1) - s.y * gradient(3)));
     return r * across / w;
 }
@@ -43,13 +43,13 @@ vec2 reach_of(vec4 c, vec2 s, float r) {
 // Depth from a ball's middle to its ends, at most.
 float rise_of(vec4 c, float r) {
     float z = c.z / c.w;
-    return r * length(gradient(2) - z * gradient(3)) / (c.w - r * detail.y);
+    return r * length(gradient(2) - z * gradient(3)) / (c.w - r * w_per_mm);
 }
 
 // How much nearer than the line the first pixel of a thin segment may be.
 float overshoot_of(vec4 a, vec4 b, float r) {
     float rise = abs(a.z / a.w - b.z / b.w) + rise_of(a, r) + rise_of(b, r);
-    return viewport.z > 0.0 ? 0.0 : max(CELL_SHIFT.x, CELL_SHIFT.y) * rise;
+    return half_line_width > 0.0 ? 0.0 : max(CELL_SHIFT.x, CELL_SHIFT.y) * rise;
 }
 
 // What h may lose to rounding, here and where the line is drawn: some parts in 2^23 of the terms that it is summed from,
@@ -60,10 +60,10 @@ float slack_of(Capsule c) {
 }
 
 bool piece_hidden(vec4 a, vec4 b, float r, float overshoot, float slack, bool whole) {
-    vec2 sa = a.xy / a.w, sb = b.xy / b.w, pad = max(reach_of(a, sa, r), reach_of(b, sb, r)) + viewport.z + MARGIN;
+    vec2 sa = a.xy / a.w, sb = b.xy / b.w, pad = max(reach_of(a, sa, r), reach_of(b, sb, r)) + half_line_width + MARGIN;
     vec2 low = min(sa, sb) - pad, high = max(sa, sb) + pad;
-    bool beside = any(greaterThanEqual(low, viewport.xy)) || any(lessThan(high, vec2(0.0)));
-    ivec2 first = ivec2(clamp(low, vec2(0.0), viewport.xy - 1.0)), last = ivec2(clamp(high, vec2(0.0), viewport.xy - 1.0));
+    bool beside = any(greaterThanEqual(low, viewport)) || any(lessThan(high, vec2(0.0)));
+    ivec2 first = ivec2(clamp(low, vec2(0.0), viewport - 1.0)), last = ivec2(clamp(high, vec2(0.0), viewport - 1.0));
     float m = whole ? farthest_around(first, last) : farthest_in(first, last);
     bool deep = m > 1.0;
     m += overshoot;
@@ -71,7 +71,7 @@ bool piece_hidden(vec4 a, vec4 b, float r, float overshoot, float slack, bool wh
     return beside || (!deep && min(a.z - m * a.w, b.z - m * b.w) > away + slack);
 }
 
-bool in_front(vec4 a, vec4 b, float r) { return min(a.w, b.w) > 1.01 * r * detail.y; }
+bool in_front(vec4 a, vec4 b, float r) { return min(a.w, b.w) > 1.01 * r * w_per_mm; }
 
 bool hidden_as_a_whole(Capsule c) {
     vec4 a = to_homogeneous(c.a), b = to_homogeneous(c.b);

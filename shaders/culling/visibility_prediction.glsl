@@ -3,33 +3,33 @@
 //
 // A camera that moves opens gaps between lines, and gaps hide nothing: if only what was seen in the last picture were drawn
 // first, the depth so far would be full of them. Points of a fiblet are compared with the last picture's depth pyramid as
-// if the camera had not moved, at a level coarse enough to take in what lies a little behind. Whether the guess is good
+// if the camera had not moved, at a level coarse enough to take in what lies a little behind. Whether the prediction is good
 // decides how long a picture takes, not what it shows.
 
 #include "culling/bounds.glsl"
 #include "frame/project.glsl"
 
-const int GUESS_POINTS = 5;
+const int PREDICTION_POINTS = 5;
 
 uniform usampler2D last_pyramid;
-uniform int guess_level;  // of the pyramid; -1: there is no last picture
+uniform int prediction_level;  // of the pyramid; -1: there is no last picture
 
-bool probably_shows(Capsule c) {
-    if (guess_level < 0) return false;
+bool predicted_visible(Capsule c) {
+    if (prediction_level < 0) return false;
     vec4 a = to_homogeneous(c.a), b = to_homogeneous(c.b);
     bool any = false;
 #if FEATURE_TUBES
     // From a tube's axis to where it shows.
-    vec3 v = tube_ray.xyz * (tube.x / max(length(tube_ray.xyz), 1e-30));
+    vec3 v = tube_ray * (tube_radius / max(length(tube_ray), 1e-30));
     vec4 front = window_from_local[0] * v.x + window_from_local[1] * v.y + window_from_local[2] * v.z;
 #endif
-    for (int k = 0; k < GUESS_POINTS; ++k) {
-        vec4 c = mix(a, b, (float(k) + 0.5) / float(GUESS_POINTS)), s = to_window(c);
+    for (int k = 0; k < PREDICTION_POINTS; ++k) {
+        vec4 c = mix(a, b, (float(k) + 0.5) / float(PREDICTION_POINTS)), s = to_window(c);
 #if FEATURE_TUBES
         s.z = to_window(c - front).z;
 #endif
-        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport.xy - 1.0)) >> (guess_level + 1);
-        any = any || s.z <= float(texelFetch(last_pyramid, at, guess_level).x) / 4294967296.0;
+        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport - 1.0)) >> (prediction_level + 1);
+        any = any || s.z <= float(texelFetch(last_pyramid, at, prediction_level).x) / 4294967296.0;
     }
     return any;
 }

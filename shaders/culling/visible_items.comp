@@ -1,4 +1,4 @@
-// Two-phase culling: notes which items (pvfiblets/engine/culling/listing.py) the last picture shows, a bit each.
+// Two-phase culling: notes which items (pvfiblets/engine/culling/two_phase_items.py) the last picture shows, a bit each.
 //
 // One invocation per pixel.
 

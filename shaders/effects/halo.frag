@@ -19,7 +19,7 @@
 
 #version 430
 
-#include "effects/place.glsl"
+#include "effects/view_position.glsl"
 
 uniform sampler2D distances;
 uniform sampler2D tiles;

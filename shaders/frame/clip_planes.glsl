@@ -1,4 +1,4 @@
-// Planes of the caller's; pvfiblets/engine/clipping.py packs them. Without the feature there are none.
+// Planes of the caller's; pvfiblets/engine/clipping.py declares and packs them. Without the feature there are none.
 //
 // Symbols
 //   plane        (n, d) with |n| = 1 per local millimetre; h(p) = n . p + d is the height of p, kept where h >= 0
@@ -6,13 +6,7 @@
 //                of a line and a pixel of its brush, which lies beside that point in the plane of the screen
 
 #if FEATURE_CLIP_PLANES
-layout(std140, binding = 3) uniform ClipPlanes {
-    vec4 clip_planes[{{ max_clip_planes }}];
-    vec4 clip_tilts[{{ max_clip_planes }}];    // xy: tilt; z: its length times half a line's width, 0 for thin lines
-    vec4 clip_info;        // x: number of planes; y: mm that rounding may cost a height; z: change of clip w per mm
-};
-
-int clip_count() { return int(clip_info.x); }
+#include "uniforms/ClipPlanes.glsl"
 
 float clip_height_of(int plane, vec3 p) {
     precise float h = dot(clip_planes[plane].xyz, p) + clip_planes[plane].w;
@@ -22,17 +16,17 @@ float clip_height_of(int plane, vec3 p) {
 // Height above the nearest plane, negative on the far side of any.
 float clip_height(vec3 p) {
     float least = clip_height_of(0, p);
-    for (int plane = 1; plane < clip_count(); ++plane) least = min(least, clip_height_of(plane, p));
+    for (int plane = 1; plane < clip_plane_count; ++plane) least = min(least, clip_height_of(plane, p));
     return least;
 }
 
 // Whether a line inside a sphere, its brush included, may reach across a plane.
 bool clip_touches(vec3 centre, float radius) {
-    float margin = radius + 2.0 * clip_info.y;
+    float margin = radius + 2.0 * clip_rounding;
     float w = window_from_local[0].w * centre.x + window_from_local[1].w * centre.y + window_from_local[2].w * centre.z;
-    w = max(w + window_from_local[3].w + radius * clip_info.z, 0.0);
-    for (int plane = 0; plane < clip_count(); ++plane) {
-        if (clip_height_of(plane, centre) < margin + w * clip_tilts[plane].z) return true;
+    w = max(w + window_from_local[3].w + radius * w_per_mm, 0.0);
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
+        if (clip_height_of(plane, centre) < margin + w * clip_brushes[plane]) return true;
     }
     return false;
 }
@@ -40,7 +34,7 @@ bool clip_touches(vec3 centre, float radius) {
 // Narrows t to the part of the segment on the kept side of all planes, as clip_segment() of frame/project.glsl does for
 // the view volume.
 bool clip_by_planes(vec3 a, vec3 b, inout float t0, inout float t1) {
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         precise float ha = clip_height_of(plane, a), hb = clip_height_of(plane, b);
         if (ha < 0.0 && hb < 0.0) return false;
         precise float t = ha / (ha - hb);

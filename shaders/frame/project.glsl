@@ -18,12 +18,12 @@ vec4 to_homogeneous(vec3 p) {
 
 // Signed distances, times something positive, from the three lower and from the three upper planes of the volume.
 vec3 above_lower(vec4 c) {
-    precise vec3 d = c.xyz + vec3(viewport.zz, 0.0) * c.w;
+    precise vec3 d = c.xyz + vec3(vec2(half_line_width), 0.0) * c.w;
     return d;
 }
 
 vec3 below_upper(vec4 c) {
-    precise vec3 d = vec3(viewport.xy + viewport.z, 1.0) * c.w - c.xyz;
+    precise vec3 d = vec3(viewport + half_line_width, 1.0) * c.w - c.xyz;
     return d;
 }
 
@@ -55,9 +55,9 @@ bool clip_segment(vec4 a, vec4 b, out float t0, out float t1) {
 
 // The same for a segment in front of the camera, in the window and against its four edges only.
 bool clip_window(vec2 a, vec2 b, out float t0, out float t1) {
-    vec2 margin = vec2(viewport.z), run = b - a;
+    vec2 margin = vec2(half_line_width), run = b - a;
     precise vec2 inverse = 1.0 / mix(run, vec2(1e-20), equal(run, vec2(0.0)));
-    precise vec2 low = (-margin - a) * inverse, high = (viewport.xy + margin - a) * inverse;
+    precise vec2 low = (-margin - a) * inverse, high = (viewport + margin - a) * inverse;
     vec2 enter = min(low, high), leave = max(low, high);
     t0 = clamp(max(enter.x, enter.y), 0.0, 1.0);
     t1 = clamp(min(leave.x, leave.y), 0.0, 1.0);
@@ -67,5 +67,5 @@ bool clip_window(vec2 a, vec2 b, out float t0, out float t1) {
 // Window depth as the G-buffer's fixed-point key. 2^32 (1 - 2^-23) is the largest drawn; all ones means empty.
 uint depth_key(float z) { return uint(int(clamp(z, 0.0, 0.99999988) * 2147483648.0)) << 1u; }
 
-// Thin lines run from pixel centre to pixel centre, moved by this: see fiblets/raster/cells.glsl.
+// Thin lines run from pixel centre to pixel centre, moved by this: see fiblets/segments/thin_line_rule.glsl.
 const vec2 CELL_SHIFT = vec2(23.0, 23.0) / 256.0;

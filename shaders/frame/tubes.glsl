@@ -1,4 +1,4 @@
-// Tubes of a radius in millimetres; pvfiblets/engine/fiblets/line_tubes.py packs them. Without the feature nothing of this file is left.
+// Tubes of a radius in millimetres; pvfiblets/engine/fiblets/line_tubes.py declares and packs them. Without the feature nothing of this file is left.
 //
 // Symbols
 //   r            radius (mm)
@@ -8,11 +8,5 @@
 //   E            the eye, local mm: in perspective all rays come from there
 
 #if FEATURE_TUBES
-layout(std140, binding = 7) uniform Tubes {
-    vec4 tube;             // x: r; y: change of W over r; z: W of the near plane or less, 0 if unknown; w: 1 in perspective, else 0
-    vec4 tube_ray;         // xyz: D_0
-    vec4 tube_ray_x;       // xyz: D_x
-    vec4 tube_ray_y;       // xyz: D_y
-    vec4 tube_eye;         // xyz: E
-};
+#include "uniforms/Tubes.glsl"
 #endif

@@ -1,5 +1,5 @@
 // Two-phase culling of lines and points with halos: lists the items to draw, each of some neighbouring quads
-// (pvfiblets/engine/culling/listing.py). The first round lists those that the last picture showed; the second, of the others,
+// (pvfiblets/engine/culling/two_phase_items.py). The first round lists those that the last picture showed; the second, of the others,
 // those that the depth of the first does not hide.
 //
 // Nothing of a strip is nearer than its axis, and that is nearest at a vertex: an item whose vertices are all behind everything in
@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;
 
 #include "halos/vertices.glsl"
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 #include "frame/groups.glsl"
 
 layout(std430, binding = {{ items_seen }}) readonly buffer SeenBits { uint seen[]; };
@@ -37,10 +37,10 @@ struct Cover {
 bool may_show(Cover cover) {
     if (cover.nearest < 0.0) return false;
     if (cover.beside) return true;
-    vec2 low = cover.low + halo_mask.yz, high = cover.high + halo_mask.yz;
-    if (any(lessThan(high, vec2(0.0))) || any(greaterThan(low, viewport.xy))) return false;
+    vec2 low = cover.low + half_picture, high = cover.high + half_picture;
+    if (any(lessThan(high, vec2(0.0))) || any(greaterThan(low, viewport))) return false;
     if (second_round == 0) return true;
-    ivec2 from = ivec2(clamp(low - 0.6, vec2(0.0), viewport.xy - 1.0)), to = ivec2(clamp(high + 0.6, vec2(0.0), viewport.xy - 1.0));
+    ivec2 from = ivec2(clamp(low - 0.6, vec2(0.0), viewport - 1.0)), to = ivec2(clamp(high + 0.6, vec2(0.0), viewport - 1.0));
     return 1.0 - cover.nearest <= farthest_in(from, to) + SLACK;
 }
 
@@ -49,11 +49,11 @@ bool may_show(int first) {
     Cover covers[2];
     covers[0] = covers[1] = Cover(vec2(3e38), vec2(-3e38), -1.0, false);
 #if FEATURE_HALO_POINTS
-    int count = min(first + QUADS, halo_counts.x);
+    int count = min(first + QUADS, halo_items);
     const int part = 0;
     for (int k = first; k < count; ++k) {
 #else
-    int count = min(first + QUADS, halo_counts.x) + 1, part = 0, next = 0;
+    int count = min(first + QUADS, halo_items) + 1, part = 0, next = 0;
     bool before = false;                           // whether a segment of this item ends at vertex k
     for (int k = first; k < count; ++k) {
         bool after = k + 1 < count && !is_last(k), used = before || after;

@@ -22,7 +22,7 @@ vec2 cut(float a, float b, vec2 part) { return vec2(a + part.x * (b - a), b - (1
 
 // False if nothing is left.
 bool cut_strip(vec3 start, vec3 stop, vec4 a, vec4 b, vec2 cue, inout vec2 part, inout vec4 first, inout vec4 last) {
-    vec2 margin = BESIDE * halo_mask.yz;
+    vec2 margin = BESIDE * half_picture;
     float reach = 2.0 * max(reaches(cue.x, a.w).y, reaches(cue.y, b.w).y);
     narrow(a.w - a.z, b.w - b.z, part);
     narrow(a.z, b.z, part);
@@ -31,7 +31,7 @@ bool cut_strip(vec3 start, vec3 stop, vec4 a, vec4 b, vec2 cue, inout vec2 part,
     narrow(margin.y * a.w + reach + a.y, margin.y * b.w + reach + b.y, part);
     narrow(margin.y * a.w + reach - a.y, margin.y * b.w + reach - b.y, part);
 #if FEATURE_CLIP_PLANES
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         narrow(clip_height_of(plane, start), clip_height_of(plane, stop), part);
     }
 #endif

@@ -25,7 +25,7 @@ void main() {
 #if FEATURE_HALO_FILTER
     varying_filter = vec4(0.0);
 #endif
-    if (point >= halo_counts.x) return;
+    if (point >= halo_items) return;
     vec3 here = local_place(point);
     vec4 at = window_of(here);
     if (!(at.w > 0.0 && at.z >= 0.0 && at.z <= at.w)) return;
@@ -34,7 +34,7 @@ void main() {
 #endif
     float cue = cue_at(here);
     vec2 centre = at.xy / at.w, corner = 2.0 * vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) - 1.0;
-    gl_Position = vec4((centre + reaches(cue, at.w).y / at.w * corner) / halo_mask.yz, 0.0, 1.0);
+    gl_Position = vec4((centre + reaches(cue, at.w).y / at.w * corner) / half_picture, 0.0, 1.0);
     varying_item = uint(point);
     varying_ends = centre.xyxy;
     varying_depths = vec4(1.0 / at.w, 1.0 / at.w, at.z / at.w, at.z / at.w);

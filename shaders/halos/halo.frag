@@ -27,10 +27,10 @@ layout(location = 0) out uvec2 shown;
 
 float displacement(float x) {
 #if FEATURE_HALO_BENT
-    if (halo_counts.y == 1) return x * x;
-    if (halo_counts.y == 2) return sqrt(x);
-    float at = x * float(halo_counts.z - 1);
-    int before = min(int(at), halo_counts.z - 2), after = before + 1;
+    if (halo_displacement_kind == 1) return x * x;
+    if (halo_displacement_kind == 2) return sqrt(x);
+    float at = x * float(halo_table_entries - 1);
+    int before = min(int(at), halo_table_entries - 2), after = before + 1;
     return mix(halo_table[before >> 2][before & 3], halo_table[after >> 2][after & 3], at - float(before));
 #else
     return x;
@@ -44,7 +44,7 @@ float mask(float x) {
 
 void main() {
     uint beyond = 0u;       // which end of the segment the pixel is beyond
-    vec2 from_start = gl_FragCoord.xy - halo_mask.yz - varying_ends.xy;
+    vec2 from_start = gl_FragCoord.xy - half_picture - varying_ends.xy;
     float over_w = varying_depths.x, far = varying_depths.z, t = 0.0;
 #if !FEATURE_HALO_POINTS
     vec2 axis = varying_ends.zw - varying_ends.xy;
@@ -69,21 +69,21 @@ void main() {
 #if FEATURE_HALO_FILTER
     vec2 change = varying_filter.yw - varying_filter.xz;      // of number.x, and of how much that changes per mm
     vec2 number = t < 0.5 ? varying_filter.xz + t * change : varying_filter.yw - (1.0 - t) * change;      // exact at both ends
-    float inside = min(number.x - halo_filter.x, halo_filter.y - number.x);
-    if (!(number.x >= halo_filter.x && number.x <= halo_filter.y)) discard;       // NaN as well
-    float fall = number.y * halo_filter.z;
+    float inside = min(number.x - halo_filter_low, halo_filter_high - number.x);
+    if (!(number.x >= halo_filter_low && number.x <= halo_filter_high)) discard;       // NaN as well
+    float fall = number.y * halo_filter_taper;
     if (fall > 0.0) m = min(m, mask(inside / fall));
 #endif
     if (!(r <= m)) discard;
     float edge = share * m;
     bool line = r <= edge;
-    float d = line ? 0.0 : halo_depth.x * displacement(r);
-    float back = d * (halo_depth.y + halo_depth.z / (w * (w + halo_depth.w * d)));
+    float d = line ? 0.0 : halo_displacement * displacement(r);
+    float back = d * (halo_depth_per_mm + halo_depth_swing / (w * (w + halo_w_per_mm * d)));
     // A halo beyond the far plane is there. Of what is equally deep lines lie before halos, and segments before the ends of
     // others that go on round; by the least steps of a float32, so that it does not matter which is drawn first.
     uint steps = (beyond >> 29u) + (line ? 0u : 8u);
     gl_FragDepth = uintBitsToFloat(floatBitsToUint(max(far - back, 1e-9)) - steps);
-    float ink = halo_filter.w > 0.0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
+    float ink = halo_smooth != 0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
 #if FEATURE_HALO_CUT
     t = varying_part.x + t * (varying_part.y - varying_part.x);
 #endif

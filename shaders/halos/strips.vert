@@ -36,13 +36,13 @@ const float STEEPEST = 0.5;    // pixels by which half a strip widens per pixel 
 
 // A way in the window from a place whose window is p. xy: its direction; z: pixels by which half a strip widens per pixel.
 vec3 course(vec4 p, vec3 way) {
-    vec4 d = vec4(way, 0.0) * halo_rows;
+    vec4 d = vec4(way, 0.0) * halo_window_rows;
     vec2 v = d.xy * p.w - p.xy * d.w;          // W W times the way on the screen
     float size = max(abs(v.x), abs(v.y));
     if (!(size > 0.0)) return vec3(0.0);
     v /= size;
     float straight = inversesqrt(dot(v, v));
-    return vec3(v * straight, -(halo_widths.x + halo_widths.y) * d.w / size * straight);
+    return vec3(v * straight, -(halo_line_reach + halo_border_reach) * d.w / size * straight);
 }
 
 void main() {
@@ -51,7 +51,7 @@ void main() {
     varying_item = 0u;
     varying_ends = varying_depths = vec4(0.0);
     clear_optional_varyings();
-    if (segment >= halo_counts.x || is_last(segment)) return;
+    if (segment >= halo_items || is_last(segment)) return;
     vec3 start = local_place(segment), stop = local_place(segment + 1), way = stop - start;
     vec4 a = window_of(start), b = window_of(stop);
     vec2 cue = vec2(cue_at(start), cue_at(stop));
@@ -85,7 +85,7 @@ void main() {
     }
     if (abs(own.z) > STEEPEST) width = max(widths.x, widths.y);
     vec2 pixel = (end == 0 ? ends.xy : ends.zw) + width * side * corner - past * forward * own.xy;
-    gl_Position = vec4(pixel / halo_mask.yz, 0.0, 1.0);
+    gl_Position = vec4(pixel / half_picture, 0.0, 1.0);
 
     varying_item = uint(segment) | (free.x ? FREE_START : 0u) | (free.y ? FREE_END : 0u);
     varying_ends = ends;

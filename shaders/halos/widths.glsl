@@ -3,6 +3,6 @@
 // Reaches (halos/block.glsl) of half a line and of half a strip: x, y. A line that would be thinner than the least width is
 // widened, and its halos keep theirs.
 vec2 reaches(float cue, float w) {
-    float line = halo_widths.x * (1.0 - cue), wider = max(halo_widths.z * w - line, 0.0);
-    return vec2(line + wider, halo_widths.x + halo_widths.y + wider);
+    float line = halo_line_reach * (1.0 - cue), wider = max(halo_least_half_width * w - line, 0.0);
+    return vec2(line + wider, halo_line_reach + halo_border_reach + wider);
 }

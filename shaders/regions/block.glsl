@@ -1,22 +1,12 @@
 // The region that the caller drew or asked about: shapes and the expression that joins them. pvfiblets/engine/regions/uniform_block.py
-// packs the block, pvfiblets/query/shapes.py says what the unit shapes are.
+// declares and packs the block, pvfiblets/query/shapes.py says what the unit shapes are.
 //
 // Symbols
 //   u            coordinates in which a leaf is its unit shape, from local millimetres by an affine map that is composed in
 //                float64; for leaves with a distance field they are the field's texel coordinates, texel centres at integers
 //   slack        how far u may be off: the rounding of p, of the map and of the product, and of what was composed
 
-layout(std140, binding = 5) uniform Regions {
-    ivec4 region_info;                                  // x: words of the program; y: leaves
-    ivec4 region_program[{{ max_region_ops }} / 4];     // postfix, four words to a row: a leaf, or one of the words below
-    ivec4 region_leaves[{{ max_region_leaves }}];       // x: kind; yzw: first texel of its field
-    vec4 region_rows[3 * {{ max_region_leaves }}];      // three rows a leaf: u = xyz . p + w
-    vec4 region_slopes[{{ max_region_leaves }}];        // xyz: lengths of the rows (change of u per mm); w: of u as a whole,
-                                                        // in the units of the field where there is one, at most
-    vec4 region_slacks[{{ max_region_leaves }}];        // xyz: slack that does not depend on p
-    ivec4 region_field_sizes[{{ max_region_leaves }}];  // xyz: texels
-    vec4 region_field_steps[{{ max_region_leaves }}];   // xyz: units of the field from texel to texel
-};
+#include "uniforms/Regions.glsl"
 
 const int REGION_AND = -1, REGION_OR = -2, REGION_NOT = -3;
 const int REGION_PLANE = 0, REGION_SLAB = 1, REGION_BOX = 2, REGION_SPHERE = 3, REGION_SURFACE = 4, REGION_LABELS = 5;
@@ -29,6 +19,6 @@ vec3 region_unit(int leaf, vec3 p, out vec3 slack) {
     precise vec3 u = vec3(dot(x.xyz, p) + x.w, dot(y.xyz, p) + y.w, dot(z.xyz, p) + z.w);
     vec3 q = abs(p);
     vec3 sizes = vec3(dot(abs(x.xyz), q), dot(abs(y.xyz), q), dot(abs(z.xyz), q)) + abs(vec3(x.w, y.w, z.w));
-    slack = REGION_ROUNDING * sizes + region_slacks[leaf].xyz;
+    slack = REGION_ROUNDING * sizes + region_slacks[leaf];
     return u;
 }

@@ -13,12 +13,12 @@
 int region_side(bool inside, bool outside) { return inside ? 1 : outside ? -1 : 0; }
 
 int region_leaf(int leaf, vec3 a, vec3 b, float radius) {
-    int kind = region_leaves[leaf].x;
+    int kind = region_kinds[leaf];
 #if FEATURE_REGION_FIELDS
     if (kind >= REGION_SURFACE) return region_field_capsule(leaf, a, b, radius);
 #endif
     vec3 sa, sb, ua = region_unit(leaf, a, sa), ub = region_unit(leaf, b, sb);
-    vec3 slack = sa + sb, low = min(ua, ub), high = max(ua, ub), reach = slack + radius * region_slopes[leaf].xyz;
+    vec3 slack = sa + sb, low = min(ua, ub), high = max(ua, ub), reach = slack + radius * region_slopes[leaf];
     if (kind == REGION_PLANE) return region_side(low.z > reach.z, high.z < -reach.z);
     if (kind == REGION_SLAB) {
         return region_side(max(-low.z, high.z) + reach.z < 1.0, low.z - reach.z > 1.0 || high.z + reach.z < -1.0);
@@ -31,7 +31,7 @@ int region_leaf(int leaf, vec3 a, vec3 b, float radius) {
         vec3 d = ub - ua;
         float t = clamp(-dot(ua, d) / max(dot(d, d), 1.0e-37), 0.0, 1.0);
         float la = length(ua), lb = length(ub), far = max(la, lb);
-        float margin = radius * region_slopes[leaf].w + length(slack) + 4.0 * REGION_ROUNDING * (1.0 + far);
+        float margin = radius * region_whole_slopes[leaf] + length(slack) + 4.0 * REGION_ROUNDING * (1.0 + far);
         return region_side(far + margin < 1.0, length(ua + t * d) - margin > 1.0);
     }
     return 0;
@@ -40,7 +40,7 @@ int region_leaf(int leaf, vec3 a, vec3 b, float radius) {
 int region_of_capsule(vec3 a, vec3 b, float radius) {
     radius *= 1.0 + REGION_ROUNDING;
     uint inside = 0u, outside = 0u;  // two stacks of bits, the top in bit 0
-    for (int k = 0; k < region_info.x; ++k) {
+    for (int k = 0; k < region_words; ++k) {
         int word = region_program[k >> 2][k & 3];
         uint i = inside & 1u, o = outside & 1u;
         if (word >= 0) {

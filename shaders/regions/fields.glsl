@@ -8,19 +8,19 @@
 uniform sampler3D region_fields;  // all fields of a region
 
 int region_field_ball(int leaf, vec3 centre, float radius) {
-    vec3 slack, u = region_unit(leaf, centre, slack), pace = region_field_steps[leaf].xyz;
-    vec3 top = vec3(region_field_sizes[leaf].xyz - 1);
-    float margin = radius * region_slopes[leaf].w + length(slack * pace);
+    vec3 slack, u = region_unit(leaf, centre, slack), pace = region_field_steps[leaf];
+    vec3 top = vec3(region_field_shapes[leaf] - 1);
+    float margin = radius * region_whole_slopes[leaf] + length(slack * pace);
     // Outside of the grid there is nothing; the texels at its edge reach half a step further.
     vec3 beyond = max(abs(u - 0.5 * top) - (0.5 * top + 0.5), 0.0);
     if (length(beyond * pace) * (1.0 - REGION_ROUNDING) > margin) return -1;
     vec3 g = clamp(floor(u + 0.5), vec3(0.0), top);
-    ivec3 texel = clamp(ivec3(g), ivec3(0), region_field_sizes[leaf].xyz - 1);  // g may be no number
-    float d = texelFetch(region_fields, region_leaves[leaf].yzw + texel, 0).x;
+    ivec3 texel = clamp(ivec3(g), ivec3(0), region_field_shapes[leaf] - 1);  // g may be no number
+    float d = texelFetch(region_fields, region_field_corners[leaf] + texel, 0).x;
     int side = d > 0.0 ? 1 : -1;
     if (abs(d) * (1.0 - REGION_ROUNDING) - length((u - g) * pace) * (1.0 + REGION_ROUNDING) > margin) return side;
-    vec3 reach = abs(u - g) + slack + radius * region_slopes[leaf].xyz;
-    if (region_leaves[leaf].x == REGION_LABELS && all(lessThan(reach, vec3(0.5)))) return side;
+    vec3 reach = abs(u - g) + slack + radius * region_slopes[leaf];
+    if (region_kinds[leaf] == REGION_LABELS && all(lessThan(reach, vec3(0.5)))) return side;
     return 0;
 }
 

@@ -1,5 +1,5 @@
 // Where the ray of a pixel enters and leaves the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
-// affine map. pvfiblets/engine/regions/ray_intervals.py packs the block, pvfiblets/query/shapes.py says what the shapes are.
+// affine map. pvfiblets/engine/regions/convex_rays.py declares and packs the block, pvfiblets/query/shapes.py says what the shapes are.
 //
 // Symbols
 //   q            window coordinates (x, y, z) of a position: pixels, and depth in 0..1
@@ -14,11 +14,7 @@
 //
 //   rows of a sphere   Qxx, Qyy, 2 Qxy, Q11 | 2 Qx1, 2 Qy1, Qxz, Qyz | Qzz, Qz1
 
-layout(std140, binding = 11) uniform Rays {
-    vec4 rays_rows[6 * {{ leaves }}];        // six a leaf
-    vec4 rays_centres[{{ leaves }}];         // c; of a surface: the rectangle of pixels that it may touch
-    ivec4 rays_surfaces[{{ leaves }}];       // of a surface: first layer, layers; first of its tallies, or -1
-};
+#include "uniforms/Rays.glsl"
 
 const int RAYS_PLANES = 0, RAYS_SPHERE = 1, RAYS_SURFACE = 2;
 
@@ -28,7 +24,7 @@ const float RAYS_FAR = 3.0;  // beyond any depth
 float rays_bounded(float z) { return clamp(z, -RAYS_FAR, RAYS_FAR); }
 
 vec2 rays_planes(int leaf, int planes, vec2 pixel) {
-    vec3 centre = rays_centres[leaf].xyz;
+    vec3 centre = rays_centres[leaf];
     vec2 d = pixel - centre.xy, span = vec2(-RAYS_FAR, RAYS_FAR);
     for (int k = 0; k < planes; ++k) {
         vec4 row = rays_rows[6 * leaf + k];
@@ -45,7 +41,7 @@ vec2 rays_planes(int leaf, int planes, vec2 pixel) {
 }
 
 vec2 rays_sphere(int leaf, vec2 pixel) {
-    vec3 centre = rays_centres[leaf].xyz;
+    vec3 centre = rays_centres[leaf];
     vec2 d = pixel - centre.xy;
     vec4 xy = rays_rows[6 * leaf], slope = rays_rows[6 * leaf + 1], along = rays_rows[6 * leaf + 2];
     float a = along.x, b = along.y + slope.z * d.x + slope.w * d.y;

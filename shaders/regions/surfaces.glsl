@@ -13,18 +13,19 @@ struct SurfaceHere {
 };
 
 SurfaceHere surface_at(int k, ivec2 pixel) {
-    ivec4 surface = rays_surfaces[k], rectangle = ivec4(rays_centres[k]);
+    ivec4 rectangle = rays_rectangles[k];
+    int first_layer = rays_first_layers[k], first_tallies = rays_first_tallies[k];
     SurfaceHere here = SurfaceHere(vec4(LAYERS_NONE), ivec4(0), 0, 0);
     if (any(lessThan(pixel, rectangle.xy)) || any(greaterThanEqual(pixel, rectangle.zw))) return here;
     vec4 ends;
     float end;
-    layers_first(ivec3(pixel, surface.x), ends, end);
+    layers_first(ivec3(pixel, first_layer), ends, end);
     ivec2 fragments = layers_counts(ends.w);
     here.winding = fragments.y - fragments.x;
-    here.layers = min(surface.y, (max(fragments.x, fragments.y) + 1) / 2);
+    here.layers = min(rays_layer_counts[k], (max(fragments.x, fragments.y) + 1) / 2);
     here.depths = layers_ends(ends, end);
     here.tally = layers_there(here.depths);
-    if (surface.z >= 0) here.tally *= ivec4(texelFetch(tallies, ivec3(pixel, surface.z), 0));
+    if (first_tallies >= 0) here.tally *= ivec4(texelFetch(tallies, ivec3(pixel, first_tallies), 0));
     return here;
 }
 
@@ -40,14 +41,14 @@ void surface_pass(vec4 depths, ivec4 tally, float z, inout int winding, inout fl
 bool surface_holds(int k, SurfaceHere here, ivec2 pixel, float z, inout float next) {
     int winding = here.winding;
     surface_pass(here.depths, here.tally, z, winding, next);
-    ivec4 surface = rays_surfaces[k];
+    int first_layer = rays_first_layers[k], first_tallies = rays_first_tallies[k];
     for (int layer = 1; layer < here.layers; ++layer) {
         vec4 ends;
         float end;
-        layers_fetch(ivec3(pixel, surface.x + layer), ends, end);
+        layers_fetch(ivec3(pixel, first_layer + layer), ends, end);
         vec4 depths = layers_ends(ends, end);
         ivec4 tally = layers_there(depths);
-        if (surface.z >= 0) tally *= ivec4(texelFetch(tallies, ivec3(pixel, surface.z + layer), 0));
+        if (first_tallies >= 0) tally *= ivec4(texelFetch(tallies, ivec3(pixel, first_tallies + layer), 0));
         surface_pass(depths, tally, z, winding, next);
     }
     return winding != 0;

@@ -1,4 +1,4 @@
-// Ambient occlusion: the colour times how open a pixel is (effects/occlusion.frag), lit or not.
+// Ambient occlusion: the colour times how open a pixel is (effects/ssao.frag), lit or not.
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform sampler2D fibletOcclusionMap;  // r8: 1 is open

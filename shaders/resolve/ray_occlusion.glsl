@@ -1,4 +1,4 @@
-// Ambient occlusion by rays through a volume: the colour times how open a pixel is (volumes/occlusion.frag), lit or not.
+// Ambient occlusion by rays through a volume: the colour times how open a pixel is (volumes/ray_occlusion.frag), lit or not.
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform sampler2D fibletRayOcclusionMap;  // r16f: how many rays meet nothing

@@ -59,7 +59,7 @@ float deepest(vec4 p0, vec4 p1, vec4 p2, vec3 at) {
 #if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
 // The same two quadratics as of positions and radii, of values n and derivatives m by the segment's parameter.
 vec4 blended(vec4 n_i, vec4 m_i, vec4 n_j, vec4 m_j, bool second, float t) {
-    vec4 a2 = n_i + tube_scale.y * m_i, b2 = n_j - tube_scale.y * m_j, middle = 0.5 * (a2 + b2);
+    vec4 a2 = n_i + tube_control_share * m_i, b2 = n_j - tube_control_share * m_j, middle = 0.5 * (a2 + b2);
     return second ? quadratic(middle, b2, n_j, t) : quadratic(n_i, a2, middle, t);
 }
 #endif
@@ -107,7 +107,7 @@ void main() {
     out_normal = packed_direction(normal);
 #if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
     uvec4 nodes = texelFetch(segment_texels, int(hit.x));
-    float chord = tube_scale.w > 0.0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0;
+    float chord = tube_by_length != 0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0;
 #endif
 #if FEATURE_TUBE_VALUES
     vec2 v_i = texelFetch(value_texels, int(nodes.x)).xy, v_j = texelFetch(value_texels, int(nodes.y)).xy;

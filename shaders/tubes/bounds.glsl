@@ -1,7 +1,7 @@
 // Where in the window a segment of a spline tube can be: a rectangle around the balls around its control points.
 //
 // A tube lies in the hull of those balls: curves do in the hull of their control points, and radii lie between theirs. A ball
-// of radius r around p reaches r |J| / (W - r |grad W|) pixels from the pixel of p at most (fiblets/raster/tube.glsl has J). The
+// of radius r around p reaches r |J| / (W - r |grad W|) pixels from the pixel of p at most (fiblets/segments/line_tube.glsl has J). The
 // rectangle holds all four; its long side runs from the first to the last.
 //
 // Next to the eye, where that says little: the box of all balls in X, Y and W, cut off at W of the near plane.
@@ -25,7 +25,7 @@ vec2 turned(vec2 v) { return vec2(-v.y, v.x); }
 // False where nothing of it shows.
 bool bounds_of(Segment s, out Bounds box) {
     box.balls = vec4[4](s.a1, s.a2, s.b2, s.b3);
-    float slope = tube.y, most = -3e38;
+    float slope = tube_w_reach, most = -3e38;
     box.least = 3e38;
     for (int k = 0; k < 4; ++k) {
         box.balls[k] = vec4(s.centre, 0.0) + s.size * box.balls[k];
@@ -37,8 +37,8 @@ bool bounds_of(Segment s, out Bounds box) {
     box.high = vec2(-3e38);
     box.along = vec2(1.0, 0.0);
     box.start = vec2(0.0);
-    if (most < tube.z || most <= 0.0) return false;
-    if (box.least > max(0.25 * tube.z, 1e-4 * most)) {
+    if (most < tube_near_w || most <= 0.0) return false;
+    if (box.least > max(0.25 * tube_near_w, 1e-4 * most)) {
         box.start = box.seen[0].xy / box.seen[0].w;
         vec2 run = box.seen[3].xy / box.seen[3].w - box.start;
         float size = length(run);
@@ -56,20 +56,20 @@ bool bounds_of(Segment s, out Bounds box) {
             low = min(low, box.seen[k].xy - box.balls[k].w * sides);
             high = max(high, box.seen[k].xy + box.balls[k].w * sides);
         }
-        vec2 near = vec2(max(box.least, tube.z)), far = vec2(most);
+        vec2 near = vec2(max(box.least, tube_near_w)), far = vec2(most);
         if (near.x <= 0.0) {
             low = vec2(0.0);
-            high = viewport.xy;
+            high = viewport;
         } else {
             vec2 first = low / mix(near, far, greaterThanEqual(low, vec2(0.0)));
             high = high / mix(far, near, greaterThanEqual(high, vec2(0.0)));
             low = first;
         }
-        box.low = clamp(low, vec2(-8.0), viewport.xy + 8.0);
-        box.high = clamp(high, vec2(-8.0), viewport.xy + 8.0);
+        box.low = clamp(low, vec2(-8.0), viewport + 8.0);
+        box.high = clamp(high, vec2(-8.0), viewport + 8.0);
     }
     vec2 centre = 0.5 * (box.low + box.high), half_size = 0.5 * (box.high - box.low);
     box.middle = box.start + centre.x * box.along + centre.y * turned(box.along);
     box.reach = abs(half_size.x * box.along) + abs(half_size.y * turned(box.along));
-    return all(lessThan(box.middle - box.reach, viewport.xy)) && all(greaterThan(box.middle + box.reach, vec2(0.0)));
+    return all(lessThan(box.middle - box.reach, viewport)) && all(greaterThan(box.middle + box.reach, vec2(0.0)));
 }

@@ -63,5 +63,5 @@ vec3 box_corner(Box box, vec3 corner) {
 
 vec4 clip_of(vec3 local) {
     vec4 c = to_homogeneous(local);
-    return vec4(2.0 * c.xy / viewport.xy - c.w, 2.0 * c.z - c.w, c.w);
+    return vec4(2.0 * c.xy / viewport - c.w, 2.0 * c.z - c.w, c.w);
 }

@@ -14,7 +14,7 @@ void main() {
     varying_centre = varying_seen = varying_a1 = varying_a2 = varying_b2 = varying_b3 = vec4(0.0);
     varying_depth = vec2(0.0);
     varying_ids = uvec2(0u);
-    if (index >= tube_counts.y) return;
+    if (index >= tube_segments) return;
     Segment s = segment_of(index);
     if (!has_turn(s)) return;
     vec4 middle = junction(s);

@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 #include "tubes/segment.glsl"
 #include "tubes/ray.glsl"
 #include "tubes/bounds.glsl"
-#include "culling/squares.glsl"
+#include "culling/pyramid_lookup.glsl"
 #include "frame/groups.glsl"
 
 layout(std430, binding = {{ items_seen }}) readonly buffer SeenBits { uint seen[]; };
@@ -34,12 +34,12 @@ bool half_hidden(Bounds box, int first_ball) {
     for (int k = 0; k < 3; ++k) {
         seen[k] = to_homogeneous(balls[k].xyz);
         vec2 at = seen[k].xy / seen[k].w;
-        vec2 reach = balls[k].w / (seen[k].w - balls[k].w * tube.y)
+        vec2 reach = balls[k].w / (seen[k].w - balls[k].w * tube_w_reach)
             * vec2(length(window_gradient(0) - at.x * window_gradient(3)), length(window_gradient(1) - at.y * window_gradient(3)));
         low = min(low, at - reach);
         high = max(high, at + reach);
     }
-    ivec2 first = ivec2(clamp(low - 0.6, vec2(0.0), viewport.xy - 1.0)), last = ivec2(clamp(high + 0.6, vec2(0.0), viewport.xy - 1.0));
+    ivec2 first = ivec2(clamp(low - 0.6, vec2(0.0), viewport - 1.0)), last = ivec2(clamp(high + 0.6, vec2(0.0), viewport - 1.0));
     float m = farthest_in(first, last);
     if (m > 1.0) return false;
     float steep = length(window_gradient(2) - m * window_gradient(3)), terms = abs(window_from_local[3].z) + abs(window_from_local[3].w);
@@ -57,7 +57,7 @@ bool is_hidden(Bounds box) {
 
 void main() {
     uint index = group_index() * 64u + gl_LocalInvocationIndex;
-    if (index >= uint(tube_counts.y)) return;
+    if (index >= uint(tube_segments)) return;
     bool early = (seen[index >> 5u] >> (index & 31u) & 1u) != 0u;
     if (early == (second_round != 0)) return;
     Segment s = segment_of(int(index));

@@ -10,7 +10,7 @@
 #else
 #include "tubes/quick.glsl"
 #endif
-#include "tubes/cross_line.glsl"
+#include "tubes/orthonormal_basis.glsl"
 
 uniform samplerBuffer cases;     // control points; o and `first`; d, and 1 where a plane made `first`
 uniform int row;                 // pixels of a row

@@ -65,8 +65,8 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
 #if FEATURE_TUBE_ITP
     float slack = 0.0, kappa = 0.0;
 #endif
-    int left = tube_counts.x;
-    for (int i = 0; i < 7 * tube_counts.x + 32; ++i) {
+    int left = tube_search_steps;
+    for (int i = 0; i < 7 * tube_search_steps + 32; ++i) {
         vec3 q = q_a + t * (q_b + t * q_c), dq = q_b + 2.0 * t * q_c;
         float g = product(q, q), g1 = product(q, dq), s = sqrt(max(g, 0.0)), sloped = s * (h_b + 2.0 * t * h_c), u_t = sloped - g1;
         bool done = false, minimum = false;
@@ -109,7 +109,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
                 narrowing = true;
                 top = hi = t;
                 u_top = u_hi = u_t;
-                left = tube_counts.x;
+                left = tube_search_steps;
 #if FEATURE_TUBE_ITP
                 slack = 0.5 * fine * exp2(ceil(log2(max((hi - lo) / fine, 1.0))));
                 kappa = 0.2 / (hi - lo);

@@ -30,29 +30,29 @@ struct Seen {
 };
 
 Ray ray_through(vec2 pixel, vec3 centre, float size, Seen seen) {
-    precise vec3 way = tube_ray.xyz + tube.w * (pixel.x * tube_ray_x.xyz + pixel.y * tube_ray_y.xyz);
+    precise vec3 way = tube_ray + tube_perspective * (pixel.x * tube_ray_x + pixel.y * tube_ray_y);
     precise vec3 d = way / max(length(way), 1e-30);
     float w = seen.depth.y;
     precise vec3 o;
-    if (tube.w > 0.0 && w < 0.25 * size * tube.y) {
-        o = (tube_eye.xyz - centre) / size;
+    if (tube_perspective > 0.0 && w < 0.25 * size * tube_w_reach) {
+        o = (tube_eye - centre) / size;
     } else {
         precise vec2 off = (pixel - seen.whole) - seen.part;
-        o = w / size * (off.x * tube_ray_x.xyz + off.y * tube_ray_y.xyz);
+        o = w / size * (off.x * tube_ray_x + off.y * tube_ray_y);
     }
     precise vec3 next = o - dot(o, d) * d;
-    vec3 u_row = tube_rows[6].xyz * size, w_row = tube_rows[4].xyz * size;
+    vec3 u_row = tube_window_rows[6].xyz * size, w_row = tube_window_rows[4].xyz * size;
     vec2 shift = vec2(dot(u_row, next), dot(w_row, next));
     return Ray(next, d, seen.depth + shift, shift, vec2(dot(u_row, d), dot(w_row, d)));
 }
 
 #if __VERSION__ >= 400
 double row_at(int row, dvec3 p) {
-    vec4 high = tube_rows[2 * row], low = tube_rows[2 * row + 1];
+    vec4 high = tube_window_rows[2 * row], low = tube_window_rows[2 * row + 1];
     return dot(dvec3(high.xyz) + dvec3(low.xyz), p) + (double(high.w) + double(low.w));
 }
 
-dvec3 exact_centre(Segment s) { return dvec3(s.place) * double(tube_scale.x) + dvec3(s.middle); }
+dvec3 exact_centre(Segment s) { return dvec3(s.place) * double(tube_place_scale) + dvec3(s.middle); }
 
 Seen seen_centre(Segment s) {
     dvec3 p = exact_centre(s);
@@ -62,7 +62,7 @@ Seen seen_centre(Segment s) {
     return Seen(whole, vec2(pixel - dvec2(whole)), vec2(float(row_at(3, p)), float(w)));
 }
 #else
-float row_at(int row, vec3 p) { return dot(tube_rows[2 * row].xyz, p) + tube_rows[2 * row].w; }
+float row_at(int row, vec3 p) { return dot(tube_window_rows[2 * row].xyz, p) + tube_window_rows[2 * row].w; }
 
 Seen seen_centre(Segment s) {
     float w = row_at(2, s.centre);

@@ -16,7 +16,7 @@ void main() {
     varying_centre = varying_seen = varying_a1 = varying_a2 = varying_b2 = varying_b3 = vec4(0.0);
     varying_depth = vec2(0.0);
     varying_ids = uvec2(0u);
-    if (index >= tube_counts.y) return;
+    if (index >= tube_segments) return;
 #if FEATURE_TUBE_LISTED
     index = int(texelFetch(listed_texels, index).x);
 #endif
@@ -26,5 +26,5 @@ void main() {
     vec2 place = mix(box.low, box.high, vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)));
     write_varyings(s, index, 3u);
     vec2 pixel = box.start + place.x * box.along + place.y * turned(box.along);
-    gl_Position = vec4(2.0 * pixel / viewport.xy - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * pixel / viewport - 1.0, 0.0, 1.0);
 }

@@ -2,7 +2,7 @@
 //
 // Symbols
 //   u            the function (tubes/functions.glsl), by its order; it changes its sign between lo and hi
-//   n            steps at most: tube_counts.x
+//   n            steps at most: tube_search_steps
 //   fine         t that is good enough
 //
 // bisection    the paper's: n steps, each halves the bracket
@@ -13,7 +13,7 @@
 #if FEATURE_TUBE_ILLINOIS
 float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
     float a = lo, b = hi, u_a = u_lo, u_b = u_hi;
-    for (int i = 0; i < tube_counts.x; ++i) {
+    for (int i = 0; i < tube_search_steps; ++i) {
         float t = b - u_b * (b - a) / (u_b - u_a);
         if (!(t >= lo && t <= hi)) t = 0.5 * (a + b);
         float u_t = u(order, t), step = abs(t - b);
@@ -35,7 +35,7 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
     float a = lo, b = hi, u_a = u_lo, u_b = u_hi;
     float steps = ceil(log2(max((hi - lo) / fine, 1.0)));     // what bisection would take
     float most = 0.5 * fine * exp2(steps), kappa = 0.2 / (hi - lo);
-    for (int i = 0; i < tube_counts.x && b - a > fine; ++i) {
+    for (int i = 0; i < tube_search_steps && b - a > fine; ++i) {
         float half_way = 0.5 * (a + b), secant = (u_b * a - u_a * b) / (u_b - u_a);
         float side = half_way < secant ? -1.0 : 1.0, cut = kappa * (b - a) * (b - a);
         float t = cut <= abs(half_way - secant) ? secant + side * cut : half_way;
@@ -59,7 +59,7 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
 float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
     float t = lo - u_lo * (hi - lo) / (u_hi - u_lo);
     if (!(t >= lo && t <= hi)) t = 0.5 * (lo + hi);
-    for (int i = 0; i < tube_counts.x; ++i) {
+    for (int i = 0; i < tube_search_steps; ++i) {
         float step;
         float u_t = u_with_step(order, t, step);
         if ((u_t < 0.0) == (u_lo < 0.0)) lo = t;
@@ -77,7 +77,7 @@ float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
 }
 #else
 float root(int order, float lo, float hi, float u_lo, float u_hi, float fine) {
-    for (int i = 0; i < tube_counts.x; ++i) {
+    for (int i = 0; i < tube_search_steps; ++i) {
         float t = 0.5 * (lo + hi);
         if ((u(order, t) < 0.0) == (u_lo < 0.0)) lo = t;
         else hi = t;

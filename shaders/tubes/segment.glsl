@@ -38,7 +38,7 @@ float w_of(vec3 p) {
          + window_from_local[3].w;
 }
 
-float least_radius(vec3 p) { return tube_scale.z * max(w_of(p), 0.0); }
+float least_radius(vec3 p) { return tube_least_over_w * max(w_of(p), 0.0); }
 
 // Length that neither overflows nor vanishes where squares would.
 float safe_length(vec3 v) {
@@ -51,9 +51,9 @@ Segment segment_of(int index) {
     uvec4 i = texelFetch(node_texels, 2 * int(s.x)), j = texelFetch(node_texels, 2 * int(s.y));
     vec4 m_i = uintBitsToFloat(texelFetch(node_texels, 2 * int(s.x) + 1));
     vec4 m_j = uintBitsToFloat(texelFetch(node_texels, 2 * int(s.y) + 1));
-    vec3 start = vec3(ivec3(i.xyz) - ivec3(reference.xyz)) * tube_scale.x;
-    vec3 run = vec3(ivec3(j.xyz) - ivec3(i.xyz)) * tube_scale.x;
-    float c = tube_scale.y * (tube_scale.w > 0.0 ? safe_length(run) : 1.0);
+    vec3 start = vec3(ivec3(i.xyz) - ivec3(reference)) * tube_place_scale;
+    vec3 run = vec3(ivec3(j.xyz) - ivec3(i.xyz)) * tube_place_scale;
+    float c = tube_control_share * (tube_by_length != 0 ? safe_length(run) : 1.0);
     vec4 a1 = vec4(vec3(0.0), uintBitsToFloat(i.w)), b3 = vec4(run, uintBitsToFloat(j.w));
     vec4 a2 = a1 + c * m_i, b2 = b3 - c * m_j;
     vec4 least = vec4(least_radius(start), least_radius(start + a2.xyz), least_radius(start + b2.xyz), least_radius(start + run));
@@ -67,7 +67,7 @@ Segment segment_of(int index) {
     size = max(size, 1e-30);
     vec4 shift = vec4(middle, 0.0);
     return Segment(start + middle, size, (a1 - shift) / size, (a2 - shift) / size, (b2 - shift) / size,
-                   (b3 - shift) / size, s.zw, ivec3(i.xyz) - ivec3(reference.xyz), middle);
+                   (b3 - shift) / size, s.zw, ivec3(i.xyz) - ivec3(reference), middle);
 }
 
 vec4 junction(Segment s) { return 0.5 * (s.a2 + s.b2); }

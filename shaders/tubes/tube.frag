@@ -15,7 +15,7 @@
 #include "tubes/ray.glsl"
 #define VARYING flat in
 #include "tubes/varyings.glsl"
-#include "tubes/cross_line.glsl"
+#include "tubes/orthonormal_basis.glsl"
 #include "tubes/functions.glsl"
 #if FEATURE_TUBE_CHAIN
 #include "tubes/solver.glsl"
@@ -38,7 +38,7 @@ void main() {
     bool cut = false;
     uint by = 0u;
 #if FEATURE_CLIP_PLANES && FEATURE_TUBE_CHAIN
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         vec3 normal = clip_planes[plane].xyz;
         float height = clip_height_of(plane, varying_centre.xyz) / varying_centre.w + dot(normal, ray.o), before = first;
         narrow(height, dot(normal, ray.d), first, last);

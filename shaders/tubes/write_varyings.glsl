@@ -15,7 +15,7 @@ bool has_turn(Segment s) {
 #if FEATURE_CLIP_PLANES
     vec4 balls[4] = vec4[4](s.a1, s.a2, s.b2, s.b3);
     int side = 1;
-    for (int plane = 0; plane < clip_count(); ++plane) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
         float at = clip_height_of(plane, s.centre) / s.size, low = 3e38, high = -3e38;
         for (int k = 0; k < 4; ++k) {
             float height = at + dot(clip_planes[plane].xyz, balls[k].xyz);

@@ -29,7 +29,7 @@ struct Look {
 };
 
 float u_of(float value) {
-    return (value - ray_table.x) * (float(textureSize(media, 0).x - 1) / max(ray_table.y - ray_table.x, 1e-30));
+    return (value - transfer_low) * (float(textureSize(media, 0).x - 1) / max(transfer_high - transfer_low, 1e-30));
 }
 
 float extinction(float alpha) {
@@ -39,7 +39,7 @@ float extinction(float alpha) {
 
 Look look_at(float u) {
     // What lies beyond the thresholds has no extinction: K stays as it is.
-    float kept = clamp(u, u_of(ray_values.z), u_of(ray_values.w)), i = clamp(floor(kept), 0.0, float(textureSize(media, 0).x - 2));
+    float kept = clamp(u, u_of(value_low), u_of(value_high)), i = clamp(floor(kept), 0.0, float(textureSize(media, 0).x - 2));
     vec4 low = texelFetch(media, ivec2(int(i), 0), 0), high = texelFetch(media, ivec2(int(i) + 1, 0), 0);
     vec3 before = texelFetch(media, ivec2(int(i), 1), 0).xyz;
     float f = kept - i, inside = clamp(f, 0.0, 1.0);
@@ -75,7 +75,7 @@ vec4 light_between(Look a, Look b, float mm) {
     if (wide > places_per_entry) {
         // The rest of the entry that it begins in by itself: only from whole entries on is the table of segments exact.
         float last = float(textureSize(media, 0).x - 1), size = float(textureSize(segments, 0).x);
-        float low = clamp(u_of(ray_values.z), 0.0, last), high = clamp(u_of(ray_values.w), 0.0, last);
+        float low = clamp(u_of(value_low), 0.0, last), high = clamp(u_of(value_high), 0.0, last);
         float entry = floor(a.u / places_per_entry) + 1.0;
         if (change < 0.0) entry = ceil(a.u / places_per_entry) - 1.0;
         float next = clamp(entry * places_per_entry, low, high);
@@ -126,7 +126,7 @@ vec4 adaptive_stretch(Ray ray, float t, float mm, float step, float left, inout 
             light += (1.0 - light.a) * halves;
             place += size;
             a = b;
-            if (place >= FINEST || light.a >= ray_high.w) break;
+            if (place >= FINEST || light.a >= opaque_from) break;
             if ((place & (2 * size - 1)) == 0) size *= 2;
             m = look_along(ray, t + part * (float(place) + 0.5 * float(size)));
             b = look_along(ray, t + part * float(place + size));

@@ -30,10 +30,10 @@ layout(location = 3) out vec2 out_position;
 // bool cast_ray(pixel, ray, step, start, out hit, out value): what the mode shows along a ray; false for nothing.
 #if FEATURE_VOLUME_SURFACE
 #include "volumes/cast_surface.glsl"
-#elif FEATURE_VOLUME_LIGHT
-#include "volumes/cast_light.glsl"
+#elif FEATURE_VOLUME_COMPOSITE
+#include "volumes/cast_composite.glsl"
 #else
-#include "volumes/cast_peak.glsl"
+#include "volumes/cast_projection.glsl"
 #endif
 
 // A number in 0..1 for each pixel that looks like noise.
@@ -54,7 +54,7 @@ void main() {
     if (key != 0xFFFFFFFFu) ray.last = min(ray.last, where_far(ray, float(0xFFFFFFFFu - key) / 4294967296.0));
 #endif
     if (!(ray.last > ray.first)) return;
-    float step = ray_low.w, start = ray.first;
+    float step = ray_step, start = ray.first;
 #if FEATURE_VOLUME_JITTER
     start += step * noise(vec2(pixel));
     if (start >= ray.last) return;
@@ -63,7 +63,7 @@ void main() {
     if (!cast_ray(pixel, ray, step, start, hit, value)) return;
     float far = reversed_depth(ray, hit);
     out_depth = 0xFFFFFFFFu - uint(clamp(far * 4294967296.0, 1.0, 4294967040.0));
-    ivec3 voxel = clamp(ivec3(floor(at(ray, hit) + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1);
-    out_owner = uint(voxel.x) + uint(ray_size.x) * (uint(voxel.y) + uint(ray_size.y) * uint(voxel.z));
+    ivec3 voxel = clamp(ivec3(floor(at(ray, hit) + 0.5)), ivec3(0), ivec3(volume_shape) - 1);
+    out_owner = uint(voxel.x) + uint(volume_shape.x) * (uint(voxel.y) + uint(volume_shape.y) * uint(voxel.z));
     out_position = vec2(hit, value);
 }

@@ -27,7 +27,7 @@ bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out 
 #else
     vec3 g = gradient_at(at(ray, hit));
 #endif
-    vec3 way = ray.d.x * ray_to_mm[0].xyz + ray.d.y * ray_to_mm[1].xyz + ray.d.z * ray_to_mm[2].xyz;
+    vec3 way = mm_from_voxels * ray.d;
     float size = max(abs(g.x), max(abs(g.y), abs(g.z)));
     vec3 normal = size > 0.0 ? g / size : -way;
     out_normal = packed_direction(dot(normal, way) > 0.0 ? -normal : normal);

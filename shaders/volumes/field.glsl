@@ -3,11 +3,11 @@
 
 uniform sampler3D voxels;
 
-float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / ray_size.xyz, 0.0).x; }
+float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
 
 #if FEATURE_VOLUME_NEAREST
 float value_at(vec3 p) {
-    return texelFetch(voxels, clamp(ivec3(floor(p + 0.5)), ivec3(0), ivec3(ray_size.xyz) - 1), 0).x * ray_values.x + ray_values.y;
+    return texelFetch(voxels, clamp(ivec3(floor(p + 0.5)), ivec3(0), ivec3(volume_shape) - 1), 0).x * field_scale + field_shift;
 }
 #elif FEATURE_VOLUME_TRICUBIC
 // Along an axis, four weights at three places: the middle two have one sign, and a linear texture weighs them.
@@ -31,17 +31,17 @@ float value_at(vec3 p) {
             sum += wz[k] * wy[j] * dot(row, wx);
         }
     }
-    return sum * ray_values.x + ray_values.y;
+    return sum * field_scale + field_shift;
 }
 #else
-float value_at(vec3 p) { return read_linear(p) * ray_values.x + ray_values.y; }
+float value_at(vec3 p) { return read_linear(p) * field_scale + field_shift; }
 #endif
 
 // By mm, from central differences of one voxel (section III.A), one-sided at the box's faces.
 vec3 gradient_at(vec3 p) {
-    vec3 low = max(p - 1.0, 0.0), high = min(p + 1.0, ray_size.xyz - 1.0);
+    vec3 low = max(p - 1.0, 0.0), high = min(p + 1.0, volume_shape - 1.0);
     vec3 g = vec3(value_at(vec3(high.x, p.yz)) - value_at(vec3(low.x, p.yz)),
                   value_at(vec3(p.x, high.y, p.z)) - value_at(vec3(p.x, low.y, p.z)),
                   value_at(vec3(p.xy, high.z)) - value_at(vec3(p.xy, low.z))) / (high - low);
-    return g.x * ray_to_voxels[0].xyz + g.y * ray_to_voxels[1].xyz + g.z * ray_to_voxels[2].xyz;
+    return gradient_from_voxels * g;
 }

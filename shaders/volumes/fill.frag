@@ -17,7 +17,7 @@ uniform usampler2D coarse_owner;
 uniform sampler2D coarse_position;
 #if FEATURE_VOLUME_SURFACE
 uniform usampler2D coarse_normal;
-#elif FEATURE_VOLUME_LIGHT
+#elif FEATURE_VOLUME_COMPOSITE
 uniform sampler2D coarse_colour;
 #endif
 uniform int ray_stride;
@@ -40,7 +40,7 @@ vec3 unpacked(uint word) {
     return normalize(vec3(x, p));
 }
 #endif
-#if FEATURE_VOLUME_LIGHT
+#if FEATURE_VOLUME_COMPOSITE
 layout(location = 4) out vec4 out_colour;
 #endif
 
@@ -81,7 +81,7 @@ void main() {
     out_normal = alike ? packed_direction(normal) : 0u;
     vec3 along = abs(normal.x) < 0.7 * length(normal) ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     uint tangent = alike ? packed_tangent(cross(normal, along), 0u) : 0u;
-#elif FEATURE_VOLUME_LIGHT
+#elif FEATURE_VOLUME_COMPOSITE
     vec4 colour = vec4(0.0), low_colour = vec4(1.0), high_colour = vec4(0.0);
     for (int k = 0; k < 4; ++k) {
         vec4 c = texelFetch(coarse_colour, at[k], 0);
@@ -94,7 +94,7 @@ void main() {
     alike = alike && max(max(differ.x, differ.y), max(differ.z, differ.w)) <= threshold;
     out_colour = vec4(colour.rgb / max(colour.a, 1e-6), colour.a);
 #else
-    alike = alike && highest.y - lowest.y <= threshold * (ray_table.y - ray_table.x);
+    alike = alike && highest.y - lowest.y <= threshold * (transfer_high - transfer_low);
 #endif
     bool nothing = found == 0u;
     out_depth = alike ? 0xFFFFFFFFu - uint(clamp(mean, 1.0, 4294967040.0)) : 0xFFFFFFFFu;

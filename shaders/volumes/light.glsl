@@ -16,10 +16,10 @@ uniform sampler2D colours;
 #include "volumes/adaptive.glsl"
 #endif
 
-float place_of(float value) { return clamp((value - ray_table.x) / max(ray_table.y - ray_table.x, 1e-30), 0.0, 1.0); }
+float place_of(float value) { return clamp((value - transfer_low) / max(transfer_high - transfer_low, 1e-30), 0.0, 1.0); }
 
 vec4 medium_at(float value) {
-    if (!(value >= ray_values.z && value <= ray_values.w)) return vec4(0.0);
+    if (!(value >= value_low && value <= value_high)) return vec4(0.0);
     float size = float(textureSize(colours, 0).x);
     return textureLod(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5), 0.0);
 }
@@ -91,7 +91,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
     Before before = before_at(ray, t);
     light = vec4(0.0);
     hit = -1.0;
-    while (t < ray.last && light.a < ray_high.w) {
+    while (t < ray.last && light.a < opaque_from) {
         float number, end = t + to_end_of_node(ray, t, 0.5, number);
         if (number <= 0.5 && end - t >= step) {
             t += WHOLE(end - t);
@@ -106,7 +106,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             if (a > 0.0 && hit < 0.0) hit = t;
             light += (1.0 - light.a) * vec4(m.rgb * a, a);
             t += mm;
-            if (t >= ray.last || light.a >= ray_high.w) break;
+            if (t >= ray.last || light.a >= opaque_from) break;
             before = before_at(ray, t);
         }
 #endif
@@ -121,9 +121,9 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             if (part.a > 0.0 && hit < 0.0) hit = t;
             light += (1.0 - light.a) * part;
             t += whole;
-        } while (t < end && t < ray.last && light.a < ray_high.w);
+        } while (t < end && t < ray.last && light.a < opaque_from);
     }
-    if (light.a >= ray_high.w) light /= light.a;      // what is behind would not be seen
+    if (light.a >= opaque_from) light /= light.a;      // what is behind would not be seen
     return light.a > 0.0;
 }
 #endif

@@ -5,7 +5,7 @@
 #if FEATURE_VOLUME_WHOLE
 // Without an octree there is something to see everywhere; rays are taken in the same pieces.
 float to_end_of_node(Ray ray, float t, float threshold, out float number) {
-    vec3 p = at(ray, t), low = vec3(clamp(ivec3(floor(p)), ivec3(0), ivec3(ray_size.xyz) - 2) >> 3 << 3), high = low + 8.0;
+    vec3 p = at(ray, t), low = vec3(clamp(ivec3(floor(p)), ivec3(0), ivec3(volume_shape) - 2) >> 3 << 3), high = low + 8.0;
     vec3 out_of = (vec3(ray.d.x < 0.0 ? low.x : high.x, ray.d.y < 0.0 ? low.y : high.y, ray.d.z < 0.0 ? low.z : high.z) - p) * ray.inverse;
     number = 3e38;
     return max(min(out_of.x, min(out_of.y, out_of.z)), 0.0);
@@ -20,13 +20,13 @@ float mean_of_node;
 // Mm from t to where that node ends, at least 0; number is the node's.
 float to_end_of_node(Ray ray, float t, float threshold, out float number) {
     vec3 p = at(ray, t);
-    ivec3 leaf = clamp(ivec3(floor(p)), ivec3(0), ivec3(ray_size.xyz) - 2) >> 3;
-    int level = ray_counts.w;
+    ivec3 leaf = clamp(ivec3(floor(p)), ivec3(0), ivec3(volume_shape) - 2) >> 3;
+    int level = top_level;
     ivec3 node;
     for (;;) {
         node = leaf >> level;
-        ivec4 row = ray_levels[level];
-        int place = row.w + node.x + row.x * (node.y + row.y * node.z);
+        ivec3 shape = octree_shapes[level];
+        int place = octree_starts[level] + node.x + shape.x * (node.y + shape.y * node.z);
         number = texelFetch(nodes, place).x;
 #if FEATURE_VOLUME_HOMOGENEOUS
         mean_of_node = texelFetch(means, place).x;

@@ -34,7 +34,7 @@ vec4 light_of_step(float front, float back, float row) {
 #if FEATURE_VOLUME_FINER
     place.y = 0.5 * (place.y + row);
 #endif
-    return middle >= ray_values.z && middle <= ray_values.w ? textureLod(segments, place, 0.0) : vec4(0.0);
+    return middle >= value_low && middle <= value_high ? textureLod(segments, place, 0.0) : vec4(0.0);
 }
 
 // Colour (premultiplied) and opacity, and where the first of it is.
@@ -45,7 +45,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
 #endif
     light = vec4(0.0);
     hit = -1.0;
-    while (t + SHORTEST <= ray.last && light.a < ray_high.w) {
+    while (t + SHORTEST <= ray.last && light.a < opaque_from) {
         float number, end = t + to_end_of_node(ray, t, 0.5, number);
         if (number <= 0.5 && end - t >= step) {
             t += floor((end - t) / step) * step;
@@ -61,7 +61,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             if (a > 0.0 && hit < 0.0) hit = t;
             light += (1.0 - light.a) * vec4(m.rgb * a, a);
             t += mm;
-            if (t + SHORTEST > ray.last || light.a >= ray_high.w) break;
+            if (t + SHORTEST > ray.last || light.a >= opaque_from) break;
             front = value_at(at(ray, t));
             slope = UNKNOWN;
         }
@@ -83,7 +83,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
                 slope = change / share;
                 parts = parts == 1.0 && PARTS * seen > allowed_bend ? PARTS : max(parts - 1.0, 0.0);
             }
-        } while ((parts > 0.0 || t < end) && t + SHORTEST <= ray.last && light.a < ray_high.w);
+        } while ((parts > 0.0 || t < end) && t + SHORTEST <= ray.last && light.a < opaque_from);
 #else
             float back = value_at(at(ray, t + step)), change = back - front;
             float bend = slope == UNKNOWN ? 0.0 : change - slope;
@@ -93,10 +93,10 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             t += step;
             front = back;
             slope = change;
-        } while (t < end && t + SHORTEST <= ray.last && light.a < ray_high.w);
+        } while (t < end && t + SHORTEST <= ray.last && light.a < opaque_from);
 #endif
     }
-    if (t < ray.last && light.a < ray_high.w) {
+    if (t < ray.last && light.a < opaque_from) {
         // What is left is shorter. A power is dear, and software OpenGL works out what branches leave out: not in the loop.
         vec4 part = light_of_step(value_at(at(ray, t)), value_at(at(ray, ray.last)), 0.0);
         if (part.a > 0.0) {
@@ -104,6 +104,6 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             light += (1.0 - light.a) * part * ((1.0 - pow(1.0 - min(part.a, 0.9999999), (ray.last - t) / step)) / part.a);
         }
     }
-    if (light.a >= ray_high.w) light /= light.a;      // what is behind would not be seen
+    if (light.a >= opaque_from) light /= light.a;      // what is behind would not be seen
     return light.a > 0.0;
 }

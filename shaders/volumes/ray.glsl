@@ -19,31 +19,31 @@ void narrow(float start, float rise, inout float first, inout float last) {
 
 // U / W along the ray is far at the mm that comes back.
 float where_far(Ray ray, float far) {
-    float u = dot(ray_depth[0], vec4(ray.o, 1.0)), w = dot(ray_depth[1], vec4(ray.o, 1.0));
-    float du = dot(ray_depth[0].xyz, ray.d), dw = dot(ray_depth[1].xyz, ray.d);
+    float u = dot(u_from_voxels, vec4(ray.o, 1.0)), w = dot(w_from_voxels, vec4(ray.o, 1.0));
+    float du = dot(u_from_voxels.xyz, ray.d), dw = dot(w_from_voxels.xyz, ray.d);
     float rise = du - far * dw;
     return rise < 0.0 ? (far * w - u) / rise : 3e38;
 }
 
 float reversed_depth(Ray ray, float t) {
     vec4 p = vec4(at(ray, t), 1.0);
-    return dot(ray_depth[0], p) / max(dot(ray_depth[1], p), 1e-30);
+    return dot(u_from_voxels, p) / max(dot(w_from_voxels, p), 1e-30);
 }
 
 Ray ray_of(vec2 fragment) {
-    vec2 pixel = fragment - vec2(ray_size.w, ray_table.z);
-    vec3 way = ray_way[0].xyz + pixel.x * ray_way[1].xyz + pixel.y * ray_way[2].xyz;
-    vec3 mm = way.x * ray_to_mm[0].xyz + way.y * ray_to_mm[1].xyz + way.z * ray_to_mm[2].xyz;
+    vec2 pixel = fragment - half_picture;
+    vec3 way = ray_direction[0] + pixel.x * ray_direction[1] + pixel.y * ray_direction[2];
+    vec3 mm = mm_from_voxels * way;
     Ray ray;
-    ray.o = ray_start[0].xyz + pixel.x * ray_start[1].xyz + pixel.y * ray_start[2].xyz;
+    ray.o = ray_origin[0] + pixel.x * ray_origin[1] + pixel.y * ray_origin[2];
     ray.d = way / max(length(mm), 1e-30);
     vec3 least = max(abs(ray.d), 1e-20);
     ray.inverse = vec3(ray.d.x < 0.0 ? -1.0 : 1.0, ray.d.y < 0.0 ? -1.0 : 1.0, ray.d.z < 0.0 ? -1.0 : 1.0) / least;
-    vec3 to_low = (ray_low.xyz - ray.o) * ray.inverse, to_high = (ray_high.xyz - ray.o) * ray.inverse;
+    vec3 to_low = (box_low - ray.o) * ray.inverse, to_high = (box_high - ray.o) * ray.inverse;
     vec3 enter = min(to_low, to_high), leave = max(to_low, to_high);
     ray.first = max(enter.x, max(enter.y, enter.z));
     ray.last = min(leave.x, min(leave.y, leave.z));
-    for (int plane = 0; plane < ray_counts.x; ++plane) {
+    for (int plane = 0; plane < ray_plane_count; ++plane) {
         narrow(dot(ray_planes[plane], vec4(ray.o, 1.0)), dot(ray_planes[plane].xyz, ray.d), ray.first, ray.last);
     }
     return ray;

@@ -12,7 +12,7 @@ float refined(Ray ray, float value, float a, float psi_a, float b, float psi_b) 
     return b;
 #elif FEATURE_VOLUME_NEAREST
     // The field jumps, and what is behind the jump is the voxel that the ray enters: nothing is faster than halving.
-    for (int k = 0; k < ray_counts.z; ++k) {
+    for (int k = 0; k < refinement_steps; ++k) {
         float t = 0.5 * (a + b);
         if ((value_at(at(ray, t)) < value) == (psi_a < 0.0)) a = t;
         else b = t;
@@ -20,7 +20,7 @@ float refined(Ray ray, float value, float a, float psi_a, float b, float psi_b) 
     return b;
 #elif FEATURE_VOLUME_NEWTON
     float t = a + (b - a) * psi_a / (psi_a - psi_b);
-    for (int k = 0; k < ray_counts.z; ++k) {
+    for (int k = 0; k < refinement_steps; ++k) {
         vec3 p = at(ray, t);
         float psi = value_at(p) - value;
         if ((psi > 0.0) == (psi_a > 0.0)) a = t;
@@ -35,7 +35,7 @@ float refined(Ray ray, float value, float a, float psi_a, float b, float psi_b) 
 #else
     float t = b;
     int kept = 0;
-    for (int k = 0; k < ray_counts.z; ++k) {
+    for (int k = 0; k < refinement_steps; ++k) {
         t = b - psi_b * (b - a) / (psi_b - psi_a);
         float psi = value_at(at(ray, t)) - value;
         if (psi == 0.0) break;
@@ -69,8 +69,8 @@ bool find_surface(Ray ray, float step, float start, out float hit, out float val
         }
         do {
             float next = min(t + step, ray.last), after = value_at(at(ray, next)), best = 2.0;
-            for (int k = 0; k < ray_counts.y; ++k) {
-                float mu = ray_surfaces[k >> 2][k & 3], a = before - mu, b = after - mu;
+            for (int k = 0; k < isovalue_count; ++k) {
+                float mu = isovalues[k], a = before - mu, b = after - mu;
                 float share = (a < 0.0) != (b < 0.0) ? a / (a - b) : 2.0;
                 if (share < best) {
                     best = share;

@@ -211,7 +211,7 @@ def test_a_few_streamlines_are_found_as_many_are(monkeypatch: pytest.MonkeyPatch
     borders = fiblets.fiblet_streamlines()[:: layout.PAGE]
     chosen = np.concatenate([rng.integers(0, 9000, 150), borders, borders[1:] - 1, [0, 8999]])
     few = fiblets.decompress(chosen)
-    monkeypatch.setattr("pvfiblets.codec.places.FEW", 0)
+    monkeypatch.setattr("pvfiblets.codec.streamline_ranges.FEW", 0)
     many = fiblets.decompress(chosen)
     np.testing.assert_array_equal(few.offsets, many.offsets)
     np.testing.assert_array_equal(few.points, many.points)

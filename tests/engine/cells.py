@@ -1,4 +1,4 @@
-"""The pixels of thin lines (``fiblets/raster/cells.glsl``), in integers and float64, without a line of the engine's."""
+"""The pixels of thin lines (``fiblets/segments/thin_line_rule.glsl``), in integers and float64, without the engine."""
 
 from __future__ import annotations
 

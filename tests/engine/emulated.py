@@ -50,7 +50,7 @@ layout(std430, binding = 9) writeonly buffer Meshes { uint meshes[]; };
 LAYOUT
 #define VARYING
 #define TO(name) name
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 uint mesh;
 void put_vertex(uint vertex, vec4 at) {
     for (uint a = 0u; a < 4u; ++a) meshes[mesh + 4u * vertex + a] = floatBitsToUint(at[a]);
@@ -62,9 +62,11 @@ void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 
     uint at = mesh + HANDED_AT + 24u * primitive;
     for (uint a = 0u; a < 4u; ++a) meshes[at + a] = varying_ids[a];
     meshes[at + 4u] = floatBitsToUint(varying_first);
+    meshes[at + 22u] = varying_tangent;
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
     for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(varying_start[a]);
     for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(varying_end[a]);
+    meshes[at + 23u] = varying_onward;
 #elif !FEATURE_TUBES
     for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = varying_cells[a];
     for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(varying_depths[a]);
@@ -98,9 +100,9 @@ void main() {
 
 VERTEX = """
 #version 430
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 #define VARYING flat out
-#include "fiblets/raster/varyings.glsl"
+#include "fiblets/hardware_raster/varyings.glsl"
 layout(std430, binding = 9) readonly buffer Meshes { uint meshes[]; };
 LAYOUT
 float value(uint at) { return uintBitsToFloat(meshes[at]); }
@@ -118,9 +120,11 @@ void main() {
     gl_Position = vec4(value(vertex), value(vertex + 1u), value(vertex + 2u), value(vertex + 3u));
     varying_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
     varying_first = value(at + 4u);
+    varying_tangent = meshes[at + 22u];
 #if FEATURE_WIDE_LINES && !FEATURE_TUBES
     varying_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
     varying_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
+    varying_onward = meshes[at + 23u];
 #elif !FEATURE_TUBES
     varying_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
     varying_depths = vec2(value(at + 7u), value(at + 8u));
@@ -171,7 +175,7 @@ class EmulatedMesh(MeshPipeline):
         if key not in self.kept:
             stage, threads = ("serial", "1") if serial else ("together", "{{ mesh_threads }}")
             mesh = MESH.replace("LAYOUT", LAYOUT).replace("STAGE", stage).replace("THREADS_OF", threads)
-            fragment = "fiblets/raster/capsule.frag" if job.wide else "fiblets/raster/line.frag"
+            fragment = "fiblets/hardware_raster/capsule.frag" if job.wide else "fiblets/hardware_raster/line.frag"
             program = self._ctx.program(
                 vertex_shader=assemble("vertex", every, CONSTANTS, source=VERTEX.replace("LAYOUT", LAYOUT)),
                 fragment_shader=assemble(fragment, every, CONSTANTS),

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .tangents import tangents_at
+
 
 class Entry(NamedTuple):
     """What every pixel must show, row 0 at the bottom."""
@@ -16,6 +18,7 @@ class Entry(NamedTuple):
     line: np.ndarray  # (h, w)
     place: np.ndarray  # (h, w) index of the point before, plus the part of the segment
     margin: np.ndarray  # (h, w) sine of the angle between surface and ray: 0 on a silhouette
+    side: np.ndarray  # (h, w) bool, where the line goes on: no cut, and no round end
 
 
 def rays(matrix, size):
@@ -73,7 +76,7 @@ def entries(lines, radius, matrix, size, planes=()):
     o, d = rays(matrix, size)
     found = Entry(
         np.full(o.shape[:2], np.inf), np.zeros(o.shape), np.full(o.shape[:2], -1), np.zeros(o.shape[:2]),
-        np.zeros(o.shape[:2]),
+        np.zeros(o.shape[:2]), np.zeros(o.shape[:2], bool),
     )  # fmt: skip
     for number, line in enumerate(lines):
         for k, (a, b) in enumerate(pairwise(line) if len(line) > 1 else [(line[0], line[0])]):
@@ -98,7 +101,9 @@ def entries(lines, radius, matrix, size, planes=()):
             hit &= (clip[..., 3] > 0) & (depth >= 0) & (depth <= 1) & (depth < found.depth)
             if k > 0:  # the ball at a is the end of the segment before
                 hit &= (p - a) @ run >= 0
-            t = np.clip((p - a) @ run / max(run @ run, 1e-300), 0, 1)
+            t = (p - a) @ run / max(run @ run, 1e-300)
+            side = (len(line) > 1) & ~face.any(-1) & ((t >= 0) | (k > 0)) & ((t <= 1) | (k < len(line) - 2))
+            t = np.clip(t, 0, 1)
             normal = p - a - t[..., None] * run
             normal = np.where(face.any(-1, keepdims=True), face, normal / radius)
             found.depth[hit] = depth[hit]
@@ -106,4 +111,17 @@ def entries(lines, radius, matrix, size, planes=()):
             found.line[hit] = number
             found.place[hit] = (k + t)[hit]
             found.margin[hit] = -dot(normal, d)[hit]
+            found.side[hit] = side[hit]
     return found
+
+
+def smoothed(found, lines, per_fiblet=60):
+    """Return the same with the normals of sides perpendicular to the lines' tangents, but at the sharpest bends."""
+    there = found.side & np.isfinite(found.depth)
+    normal = found.normal.copy()
+    tangents = tangents_at(lines, found.line[there], found.place[there], per_fiblet)
+    flat = normal[there]
+    along = (tangents * flat).sum(1)[:, None]
+    turned = flat - tangents * along * np.clip((0.9 - along**2) / 0.3, 0.0, 1.0)
+    normal[there] = turned / np.linalg.norm(turned, axis=1)[:, None]
+    return found._replace(normal=normal)

@@ -1,7 +1,7 @@
 """Polylines in the window, in float64: what a picture must show, sampled densely or asked of each pixel.
 
-A thin segment is drawn from pixel centre to pixel centre (``shaders/fiblets/raster/cells.glsl``). How far that may
-lead away, in pixels:
+A thin segment is drawn from pixel centre to pixel centre (``shaders/fiblets/segments/thin_line_rule.glsl``). How far
+that may lead away, in pixels:
 
 * from the true line: each end moves by at most 1/2 along each axis, and a pixel lies at most 1/2 beside the moved line
   along its minor axis. For a line of direction (c, s), c >= s, that is (c + s) / 2 + c / 2, at most sqrt(5) / 2, and
@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from .pictures import near, unpacked_tangent
+from .tangents import tangents_at
 
 SHIFT = 2.0**0.5 * 23.0 / 256.0
 OFF_LINE = 5.0**0.5 / 2.0 + SHIFT
@@ -95,7 +96,7 @@ def some_pixels(picture, most=2000):
     return rows[pick], columns[pick]
 
 
-def assert_pixels_name_places(picture, lines, matrix, size, *, cut=False):
+def assert_pixels_name_places(picture, lines, matrix, size, *, cut=False, per_fiblet=60):
     """The place that a pixel names is at the pixel, at its depth, and has its tangent; planes may have cut segments."""
     rows, columns = some_pixels(picture)
     streamline, place = picture.ids[rows, columns, 0], picture.position[rows, columns, 0].astype(float)
@@ -117,10 +118,9 @@ def assert_pixels_name_places(picture, lines, matrix, size, *, cut=False):
     drawn = np.ones(len(run)) if cut else np.maximum(run - 2.0**0.5, 1.0)
     allowed = DEPTH_ROUNDING + slope * (SHIFT / drawn + rounding)
     assert (error <= allowed).all(), (error - allowed).max()
-    tangents = b - a
-    lengths = np.linalg.norm(tangents, axis=1)
-    along = (unpacked_tangent(picture.ids[rows, columns, 1]) * tangents).sum(1)[lengths > 0] / lengths[lengths > 0]
-    assert np.mean(along > 1 - 1e-5) > 0.99  # at a joint either neighbour's tangent is right
+    shown = unpacked_tangent(picture.ids[rows, columns, 1])
+    expected = tangents_at(lines, streamline, place, per_fiblet)
+    assert np.mean((shown * expected).sum(1) > 1 - 1e-5) > 0.99
 
 
 def assert_like_samples(picture, lines, matrix, size, *, share=0.999):

@@ -31,7 +31,7 @@ def test_numbers_out_of_range_are_an_error(number):
 
 def test_sources_take_their_numbers_from_here():
     source = assemble("fiblets/compute/resolve_owner.comp", ["DIRECTION"], OF_FIBLETS)
-    assert f"layout(std430, binding = {CONSTANTS['storage_visibility_bits']}) buffer Marks" in source
+    assert f"layout(std430, binding = {CONSTANTS['storage_visibility_bits']}) buffer VisibilityBits" in source
     assert re.search(rf"layout\(r32ui, binding = {CONSTANTS['image_owner']}\)[^;]*owner_image", source)
 
 

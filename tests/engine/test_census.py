@@ -11,8 +11,8 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.synthetic import brain_streamlines
 
-from .marks import planned
 from .pictures import SIZE, read
+from .visibility_bits import planned
 
 PLANES = [(0.3, -0.9, 0.1, 12.0), (0.0, 0.0, 1.0, -10.0)]
 

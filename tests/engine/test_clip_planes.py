@@ -278,7 +278,7 @@ def compiled(source, features):
 
 @pytest.mark.parametrize("stage", ["clear", "cull", "depth", "resolve_owner", "resolve_ties", "occlude", "refine"])
 def test_without_planes_no_word_of_them_is_compiled(stage):
-    words = re.compile(r"clip_planes|ClipPlanes|clip_height|clip_tilts|clip_info")
+    words = re.compile(r"clip_planes|ClipPlanes|clip_height|clip_tilts|clip_rounding")
     for features in (["DIRECTION"], ["WIDE_LINES"], ["CLIPPING", "CLIPPING_DEPTH"]):
         body = compiled(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features)
         assert "void main()" in body

@@ -156,7 +156,7 @@ def test_moving_a_region_uploads_nothing(gl, camera):
             sizes.append((fields.nbytes, id(fields._texture), [id(b) for b in renderer._chunks[0].buffers.values()]))
         assert sizes[0] == sizes[1] == sizes[2]
         assert (pictures[0] != pictures[1]).any()
-        assert renderer.render(view, EVERY_POINT).generation == renderer._target.generation == 3
+        assert renderer.render(view, EVERY_POINT).generation == renderer._buffer.generation == 3
     finally:
         renderer.release()
 

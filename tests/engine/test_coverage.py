@@ -18,7 +18,7 @@ from pvfiblets.engine.culling.coverage import CoverageBuffer, dilation_radius
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,7 +35,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 5) buffer Out { uint bits[]; };
 void main() {
     uint f = group_index() * 64u + gl_LocalInvocationIndex;
-    if (f < chunk.x && hidden(capsule_of(f))) atomicOr(bits[f >> 5u], 1u << (f & 31u));
+    if (f < chunk_fiblets && hidden(capsule_of(f))) atomicOr(bits[f >> 5u], 1u << (f & 31u));
 }
 """
 
@@ -317,12 +317,12 @@ from types import SimpleNamespace
 from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.culling.coverage import CoverageBuffer
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs
 ctx = moderngl.create_context(standalone=True, backend="egl")
 programs = Programs(ctx, {})
 fiblets = SimpleNamespace(origin=[0, 0, 0], anchor_scale=[1e-3] * 3, anchors_low=None, n_fiblets=0, pages=[0])
-buffer = CoverageBuffer(ctx, OpenGL(ctx), programs, fiblets)
+buffer = CoverageBuffer(ctx, GLExtras(ctx), programs, fiblets)
 buffer.radius = 2.0
 target = GBuffer(ctx, (256, 192))
 target.depth.write(np.full(256 * 192, 1 << 30, np.uint32).tobytes())
@@ -352,7 +352,7 @@ def test_memory_runs_out_plainly(gl, brain, monkeypatch):
     from pvfiblets.engine import EngineError
 
     programs = Programs(gl, CONSTANTS)
-    buffer = CoverageBuffer(gl, OpenGL(gl), programs, brain)
+    buffer = CoverageBuffer(gl, GLExtras(gl), programs, brain)
     target = GBuffer(gl, (64, 64))
 
     class Full:

@@ -7,8 +7,8 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 
-from .marks import planned
 from .pictures import SIZE, assert_same, read
+from .visibility_bits import planned
 
 TEST = "outside = outside || max(a, b) < -c.r;"
 

@@ -11,6 +11,7 @@ import pytest
 from pvfiblets.codec import layout, reference
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.chunks import storage_buffer
+from pvfiblets.engine.frame import FRAME_BLOCK
 from pvfiblets.engine.shaders import assemble
 
 SEQUENTIAL = """
@@ -22,7 +23,7 @@ layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void put(uint f, uint i) { for (int a = 0; a < 3; ++a) points[(f * 64u + i) * 3u + a] = walk_point[a]; }
 void main() {
     uint f = group_index() * 64u + gl_LocalInvocationIndex;
-    if (f >= chunk.x) return;
+    if (f >= chunk_fiblets) return;
     walk_begin(f);
     put(f, 0u);
     for (uint i = 1u; i <= walk.last; ++i) { walk_next(i); put(f, i); }
@@ -36,7 +37,7 @@ layout(local_size_x = 32) in;
 layout(std430, binding = 5) writeonly buffer Out { float points[]; };
 void main() {
     uint f = group_index();
-    if (f >= chunk.x) return;
+    if (f >= chunk_fiblets) return;
     decode_together(f);
     for (uint i = gl_LocalInvocationIndex; i < 60u; i += 32u)
         for (int a = 0; a < 3; ++a) points[(f * 64u + i) * 3u + a] = prefix_point[i][a];
@@ -51,9 +52,7 @@ def decoded_by_shader(gl, fiblets, source, threads):
     renderer.render(View((8, 8), np.diag([1e-9, 1e-9, 1e-9, 1.0])), FibletStyle(tolerance=0.0))
     program = gl.compute_shader(assemble("test", renderer._decoding_features(), source=source))
     out = storage_buffer(gl, np.zeros((fiblets.n_fiblets, 64, 3), np.float32), "points")
-    block = np.frombuffer(renderer._shared.buffers["frame"].read(), "<u4").copy()
-    block[40:43] = 0
-    renderer._shared.buffers["frame"].write(block.tobytes())
+    FRAME_BLOCK.write(renderer._shared.buffers["frame"], reference=(0, 0, 0))
     (chunk,) = renderer._chunks
     chunk.bind_storage()
     renderer._shared.bind()

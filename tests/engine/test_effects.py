@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, Lens, OutlinePass
+from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
 from pvfiblets.engine.effects.ambient_occlusion import BIAS, GAIN
 from pvfiblets.engine.effects.halos import WIDEST
 
@@ -33,9 +33,9 @@ def projection(size, *, parallel=False, height=60.0, angle=30.0, shift=0.0):
 
 
 LENSES = {
-    "perspective": lambda size: Lens(size, projection(size)),
-    "parallel": lambda size: Lens(size, projection(size, parallel=True)),
-    "off axis": lambda size: Lens(size, projection(size, shift=0.2)),
+    "perspective": lambda size: Projection(size, projection(size)),
+    "parallel": lambda size: Projection(size, projection(size, parallel=True)),
+    "off axis": lambda size: Projection(size, projection(size, shift=0.2)),
 }
 
 
@@ -155,9 +155,9 @@ def test_pixels_per_mm_is_what_the_projection_makes_of_a_mm(make_lens):
 
 def test_a_projection_that_cannot_be_undone_is_refused():
     with pytest.raises(ValueError, match="inverse"):
-        Lens((10, 10), np.zeros((4, 4)))
+        Projection((10, 10), np.zeros((4, 4)))
     with pytest.raises(ValueError, match="finite"):
-        Lens((10, 10), np.full((4, 4), np.nan))
+        Projection((10, 10), np.full((4, 4), np.nan))
 
 
 # Halos
@@ -205,7 +205,7 @@ def crossing(size, gap):
 def test_the_gap_widens_with_the_distance_in_depth_as_in_the_papers_appendix(effect, make_buffer, gap):
     """Appendix A: a halo w wide and d deep cuts w min(1, gap / d) on either side."""
     size = (61, 81)
-    lens = Lens(size, projection(size, parallel=True, height=40.5))  # 2 pixels per mm
+    lens = Projection(size, projection(size, parallel=True, height=40.5))  # 2 pixels per mm
     buffer = make_buffer(keys_of(lens, crossing(size, gap)))
     halo = read(effect(HaloPass).draw(buffer, lens, width=5.25, depth=8.0)) != EMPTY
     column = halo[:, 30]
@@ -242,7 +242,7 @@ def test_a_halo_thinner_than_a_pixel_is_none(effect, make_buffer, make_lens):
 
 
 def openness(lens, keys, tangent, radius, samples, strength):
-    """The formulas of occlusion.frag and smooth.frag in float64, (h, w)."""
+    """The formulas of ssao.frag and ssao_blur.frag in float64, (h, w)."""
     h, w = keys.shape
     places, drawn = places_of(lens, keys), keys != EMPTY
     parallel = lens.projection[3, 3] == 1
@@ -353,7 +353,7 @@ def test_the_background_never_darkens(effect, make_buffer, make_lens):
 def test_the_radius_is_in_mm_at_any_zoom(effect, make_buffer):
     dark = []
     for height, size in ((60.0, (160, 120)), (30.0, (160, 120)), (60.0, (320, 240))):
-        lens = Lens(size, projection(size, parallel=True, height=height))
+        lens = Projection(size, projection(size, parallel=True, height=height))
         distance, x = bar_before_a_wall(lens, 4.0)
         found = occlusion(effect, make_buffer, lens, distance)
         middle = np.abs(np.arange(size[1]) - size[1] / 2)[:, None] < 20
@@ -424,5 +424,6 @@ def test_textures_follow_the_pictures_size_and_are_reported(effect, make_buffer)
         report = halos.explain()
         tiles = -(-size[0] // 8) * -(-size[1] // 8)
         assert sum(buffer["bytes"] for buffer in report["buffers"]) == 8 * size[0] * size[1] + 4 * tiles
-        assert [item["name"] for item in report["passes"]] == ["distance (effect)", "nearest (effect)", "halo (effect)"]
+        names = [item["name"] for item in report["passes"]]
+        assert names == ["linear_depth (effect)", "tile_min_distance (effect)", "halo (effect)"]
         assert all(item["ms"] >= 0 for item in report["passes"])

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.reference import LINE
 
@@ -221,13 +221,13 @@ def test_nothing_is_left_after_release(gl, drawn, view, monkeypatch):
 
         monkeypatch.setattr(gl, name, recorded, raising=False)
     read = []
-    make_readable = OpenGL.texture_buffer
+    make_readable = GLExtras.texture_buffer
 
     def readable(*args):
         read.append(make_readable(*args))
         return read[-1]
 
-    monkeypatch.setattr(OpenGL, "texture_buffer", readable)
+    monkeypatch.setattr(GLExtras, "texture_buffer", readable)
     renderer = HaloRenderer(gl, drawn)
     renderer.render(view, styled("colour", filter_by="number"))
     renderer.render(View((50, 40), view.model_view_projection, [[0, 1.0, 0, 0]]), styled("number"))

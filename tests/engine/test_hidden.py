@@ -16,8 +16,8 @@ import pytest
 from pvfiblets.engine import FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.frame import frame_block
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.frame import FRAME_BLOCK, frame_block
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs, assemble
 
 from .cells import line_cells
@@ -47,7 +47,7 @@ MUTATIONS = {
     "four loads that do not suffice": ("wanted > level ?", "false ?"),
     "half the radius": ("float away = r *", "float away = 0.5 * r *"),
     "no room for rounding": ("> away + slack", "> away - 10.0 * slack"),
-    "no room around lines": ("+ viewport.z + MARGIN", ""),
+    "no room around lines": ("+ half_line_width + MARGIN", ""),
     "no room for what leads a pixel back": ("m += overshoot;", ""),
 }
 
@@ -57,9 +57,9 @@ class Projection:
 
     def __init__(self, view, style):
         self.block, _ = frame_block(view, style, ORIGIN, SCALE, TOP)
-        words = np.frombuffer(self.block, "<u4")
-        self.reference = ORIGIN + SCALE * words[40:43]
-        self.matrix = words[:16].view("<f4").reshape(4, 4)  # columns first
+        frame = np.frombuffer(self.block, FRAME_BLOCK.dtype)[0]
+        self.reference = ORIGIN + SCALE * frame["reference"]
+        self.matrix = frame["window_from_local"]  # columns first
 
     def local(self, points):
         """(n, 3) float32 of data mm."""
@@ -81,7 +81,7 @@ def answers(gl, size, projection, depth, capsules):
     texture = gl.texture(size, 1, depth.astype("<u4").tobytes(), dtype="u4")
     texture.filter = moderngl.NEAREST, moderngl.NEAREST
     program = gl.compute_shader(assemble("test", (), CONSTANTS, source=PROGRAM))
-    pyramid = DepthPyramid(gl, OpenGL(gl), programs)
+    pyramid = DepthPyramid(gl, GLExtras(gl), programs)
     pyramid.build(SimpleNamespace(size=size, depth=texture))
     pyramid.bind(program)
     frame.bind_to_uniform_block(0)
@@ -205,7 +205,7 @@ def test_nothing_that_would_show_is_hidden(gl, camera, name, width):
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(gl, camera, monkeypatch, mutation):
     honest, (right, wrong) = shaders.read_shader, MUTATIONS[mutation]
-    assert right in honest("culling/hidden.glsl") + honest("culling/squares.glsl")
+    assert right in honest("culling/hidden.glsl") + honest("culling/pyramid_lookup.glsl")
     monkeypatch.setattr(shaders, "read_shader", lambda name: honest(name).replace(right, wrong))
     noticed = 0
     for name in ("perspective", "parallel slab"):

@@ -90,7 +90,7 @@ def plain(name):
 
 
 def again(self, program, number, *rest):
-    for _ in range(8 if number in (compute.SEEN, compute.GUESSED, compute.REST) else 1):
+    for _ in range(8 if number in (compute.SEEN, compute.PREDICTED, compute.REST) else 1):
         once(self, program, number, *rest)
         self._barrier()
 

@@ -10,9 +10,10 @@ import pytest
 
 from pvfiblets.codec import layout
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, passes, shaders
+from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.engine.fiblets import upload
-from pvfiblets.engine.fiblets.chunks import plan_chunks, storage_buffer
+from pvfiblets.engine.fiblets.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
 from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
 from pvfiblets.engine.shaders import assemble
@@ -70,9 +71,9 @@ def test_chunks_of_sets_beyond_32_bits(buffer_bytes, codes_and_points):
 
 def test_no_buffer_is_so_large_that_shaders_could_miscount(gl, monkeypatch):
     """Whatever a driver allows: beyond 2^31 bytes of codes a chunk might have more than 2^32 points."""
-    monkeypatch.setattr(limits.OpenGL, "get_integer", lambda self, name: 2**32 - 1)
+    monkeypatch.setattr(limits.GLExtras, "get_integer", lambda self, name: 2**32 - 1)
     for pipeline in ("compute", "mesh", "tessellation", "geometry"):
-        asked = limits.Limits.of(gl, limits.OpenGL(gl), pipeline, None, None)
+        asked = limits.Limits.of(gl, limits.GLExtras(gl), pipeline, None, None)
         assert asked.buffer_bytes == limits.LARGEST < 2**31
     # Of N points a fiblet has N - 2 bytes of codes or more, and 12 of its record: two points without codes are worst.
     for points in range(1, 61):
@@ -103,7 +104,7 @@ def test_codes_of_values_are_found_beyond_as_many_bits_as_a_number_has(gl, monke
     #version 430
     layout(local_size_x = 1) in;
     #include "fiblets/decode/sequential.glsl"
-    #include "fiblets/attributes/place.glsl"
+    #include "fiblets/attributes/streamline_index.glsl"
     #include "fiblets/attributes/values.glsl"
     layout(std430, binding = 5) buffer Out { uint found[]; };
     uniform uint first;
@@ -115,10 +116,9 @@ def test_codes_of_values_are_found_beyond_as_many_bits_as_a_number_has(gl, monke
     }
     """.replace("\n    ", "\n")
     program = gl.compute_shader(assemble("values", ["DIRECTION", "VALUES_STORED"], CONSTANTS, source=source))
-    block = np.zeros(12, np.uint32)
-    block[5] = bits
-    chunk, out = gl.buffer(block.tobytes()), storage_buffer(gl, np.zeros(16, np.uint32), "out")
-    chunk.bind_to_uniform_block(2)
+    chunk, out = gl.buffer(bytes(CHUNK_BLOCK.nbytes)), storage_buffer(gl, np.zeros(16, np.uint32), "out")
+    CHUNK_BLOCK.write(chunk, value_bits=bits)
+    chunk.bind_to_uniform_block(BLOCKS["Chunk"])
     out.bind_to_storage_buffer(5)
     digits = 0x76543210
     for first in (0, 2**27 - 3, 2**28 - 5, 2**29 - 5, 2**31 - 8):

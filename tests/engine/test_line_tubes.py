@@ -13,7 +13,7 @@ from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 from .emulated import emulated_renderer
-from .line_tubes import entries
+from .line_tubes import entries, smoothed
 from .pictures import SIZE, assert_same, draw, near, read, unpacked_tangent
 from .polylines import to_clip, to_window
 from .test_mesh import link
@@ -64,7 +64,7 @@ def known():
 
     def find(key, *arguments):
         if key not in kept:
-            kept[key] = entries(*arguments)
+            kept[key] = smoothed(entries(*arguments), arguments[0])
         return kept[key]
 
     return find
@@ -279,8 +279,8 @@ def test_a_picture_pays_only_for_what_it_shows(gl, knots, camera):
         "fiblets/compute/cull.comp",
         "fiblets/compute/depth.comp",
         "fiblets/compute/resolve_owner.comp",
-        "fiblets/raster/capsule.frag",
-        "fiblets/raster/survivors.vert",
+        "fiblets/hardware_raster/capsule.frag",
+        "fiblets/hardware_raster/survivors.vert",
     ):
         for features in (set(), {"WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH"}):
             left = "\n".join(settled(assemble(name, features, CONSTANTS)))
@@ -333,7 +333,7 @@ def test_mesh_stages_link(tmp_path, kind, asked):
     files = {
         "task": "fiblets/mesh/fiblets.task",
         "mesh": f"fiblets/mesh/{kind}.mesh",
-        "frag": "fiblets/raster/capsule.frag",
+        "frag": "fiblets/hardware_raster/capsule.frag",
     }
     features = {*ASKED[asked], *RECORDS, "PER_PRIMITIVE"}
     done = link(tmp_path, {s: assemble(name, features, CONSTANTS, version=EXTENDED) for s, name in files.items()})
@@ -373,7 +373,7 @@ def test_tubes_hand_over_no_more_than_wide_lines():
 
     def components(features):
         sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
-        lines = switched(read_shader("fiblets/raster/varyings.glsl"), features)
+        lines = switched(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
         return sum(sizes[line.split()[1]] for line in lines if line.startswith("VARYING "))
 
     for more in ([], ["CLIPPING"], ["CLIPPING", "CLIP_PLANES"]):

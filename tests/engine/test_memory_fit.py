@@ -16,7 +16,7 @@ from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import memory_fit, renderer, upload
 from pvfiblets.engine.fiblets.pipelines import Limits
-from pvfiblets.engine.opengl import INTEGERS, OpenGL
+from pvfiblets.engine.moderngl_extras import INTEGERS, GLExtras
 from pvfiblets.synthetic import brain_streamlines
 
 from .pictures import SIZE, assert_same, draw, read
@@ -227,7 +227,7 @@ def test_cards_are_asked_by_the_extensions_that_they_have():
 
 
 def test_what_this_opengl_lacks_is_not_asked(gl):
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     for name in ("GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX", "GL_VBO_FREE_MEMORY_ATI"):
         if INTEGERS[name][1] in gl.extensions:
             assert functions.get_integer(name) > 0

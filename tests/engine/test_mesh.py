@@ -21,9 +21,9 @@ from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
 
 from .cells import SHIFT_256
 from .emulated import emulated_renderer
-from .marks import planned
 from .pictures import EVERY_POINT, SIZE, assert_same, differences, read
 from .polylines import to_clip, to_window
+from .visibility_bits import planned
 
 RECORDS = {
     "directions": ["DIRECTION"],
@@ -58,7 +58,7 @@ def stages(kind, features):
     files = {
         "task": "fiblets/mesh/fiblets.task",
         "mesh": f"fiblets/mesh/{kind}.mesh",
-        "frag": "fiblets/raster/capsule.frag" if wide else "fiblets/raster/line.frag",
+        "frag": "fiblets/hardware_raster/capsule.frag" if wide else "fiblets/hardware_raster/line.frag",
     }
     every = {*features, "PER_PRIMITIVE"}
     return {stage: assemble(name, every, CONSTANTS, version=EXTENDED) for stage, name in files.items()}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine.effects.depth_of_field import STEPS, Focus, disc_areas, distance_of
-from pvfiblets.engine.effects.lens import Lens
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
+from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import OPERATORS, Tone
 
 from . import lenses
@@ -148,7 +148,7 @@ def focus(distance=100.0, aperture=8.0, max_blur=6.0, darkening=0.0):
 @pytest.mark.parametrize("kind", [lenses.perspective, lenses.parallel])
 def test_discs_are_those_of_a_thin_lens(kind):
     """What the shader evaluates, a line in depth, is the cone of light cut by the plane in focus."""
-    lens = Lens(SIZE, kind(SIZE))
+    lens = Projection(SIZE, kind(SIZE))
     distances = np.array([11.0, 40.0, 99.0, 100.0, 101.0, 250.0, 999.0])
     depths = lenses.depths_of(lens.projection, distances)
     at = focus(aperture=0.7, max_blur=64.0)
@@ -162,11 +162,11 @@ def test_discs_are_those_of_a_thin_lens(kind):
 
 
 def test_what_is_infinitely_far_away_has_the_disc_of_the_limit():
-    lens = Lens(SIZE, lenses.perspective(SIZE))
+    lens = Projection(SIZE, lenses.perspective(SIZE))
     limit = lenses.radii_of(lens.projection, np.inf, rows=SIZE[1], focus=100.0, aperture=4.0, widest=64.0)
     assert focus(aperture=4.0, max_blur=64.0).uniforms(lens)["backdrop"] == pytest.approx(limit)
-    assert focus().uniforms(Lens(SIZE, lenses.parallel(SIZE)))["backdrop"] == 6.0
-    assert focus(aperture=0.0).uniforms(Lens(SIZE, lenses.parallel(SIZE)))["backdrop"] == 0.0
+    assert focus().uniforms(Projection(SIZE, lenses.parallel(SIZE)))["backdrop"] == 6.0
+    assert focus(aperture=0.0).uniforms(Projection(SIZE, lenses.parallel(SIZE)))["backdrop"] == 0.0
 
 
 def test_areas_of_discs_are_counted():
@@ -183,7 +183,7 @@ def test_the_picture_is_numpys(film, kind, darkening):
     rng = np.random.default_rng(3)
     distances = rng.choice([60.0, 95.0, 100.0, 120.0, 300.0, np.inf], (SHAPE[0] // 4, SHAPE[1] // 4))
     distances = np.kron(distances, np.ones((4, 4))) * rng.choice([1.0, 1.02], SHAPE)
-    lens = Lens(SIZE, kind(SIZE))
+    lens = Projection(SIZE, kind(SIZE))
     depths = np.float32(lenses.depths_of(lens.projection, distances))
     aperture = 12.0
     radii = lenses.radii_of(lens.projection, distances, rows=SIZE[1], focus=100.0, aperture=aperture, widest=6.0)
@@ -197,7 +197,7 @@ def test_the_picture_is_numpys(film, kind, darkening):
 
 
 def scene(film, distances, colours, *, floats=False, **how):
-    lens = Lens(SIZE, lenses.perspective(SIZE))
+    lens = Projection(SIZE, lenses.perspective(SIZE))
     depths = lenses.depths_of(lens.projection, distances)
     one = film(colours, depths, floats=floats)
     return one.shown(focus=focus(**how), lens=lens)
@@ -222,7 +222,7 @@ def test_a_points_disc_has_the_radius_of_the_closed_form_and_all_its_light(film,
     distances = np.full(SHAPE, np.inf)
     distances[18, 22] = distance
     after = scene(film, distances, colours, floats=True, aperture=30.0, max_blur=16.0)[..., 0]
-    lens = Lens(SIZE, lenses.perspective(SIZE))
+    lens = Projection(SIZE, lenses.perspective(SIZE))
     radius = lenses.radii_of(lens.projection, distance, rows=SIZE[1], focus=100.0, aperture=30.0, widest=16.0)
     assert radius > 3.0
     assert after.sum() == pytest.approx(100.0, rel=1e-3)
@@ -240,7 +240,7 @@ def test_a_background_of_one_colour_is_passed_over_only_where_nothing_else_is_ne
     before = np.full((*SHAPE, 4), (90, 120, 150, 255), np.uint8)
     before[np.isfinite(distances)] = (250, 10, 30, 255)
     before[20, 12] = (250, 250, 250, 255)
-    lens = Lens(SIZE, lenses.perspective(SIZE))
+    lens = Projection(SIZE, lenses.perspective(SIZE))
     depths = np.float32(lenses.depths_of(lens.projection, distances))
     after = film(before, depths).shown(focus=focus(aperture=18.0), lens=lens)
     radii = lenses.radii_of(lens.projection, distances, rows=SIZE[1], focus=100.0, aperture=18.0, widest=6.0)
@@ -286,7 +286,7 @@ def test_the_background_is_not_darkened(film):
 def test_memory_for_depths_is_given_back_with_the_focus(film):
     before = noise()
     one = film(before, np.full(SHAPE, 0.5))
-    one.shown(focus=focus(), lens=Lens(SIZE, lenses.perspective(SIZE)))
+    one.shown(focus=focus(), lens=Projection(SIZE, lenses.perspective(SIZE)))
     much = one.effects.nbytes
     one.textures.pop().release()
     one.shown(tone=Tone(gamma=2.0))

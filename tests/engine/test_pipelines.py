@@ -11,9 +11,9 @@ import pytest
 from pvfiblets import compress
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets import measures
+from pvfiblets.engine.fiblets.pipelines.hardware_raster import RasterTarget, SeenTexture
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
-from pvfiblets.engine.fiblets.pipelines.raster import RasterTarget, SeenTexture
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.synthetic import brain_streamlines
 
 from .likeness import assert_like
@@ -259,7 +259,7 @@ def test_the_number_of_draws_does_not_follow_the_data(gl, fabricate, random_line
 
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_bindings_are_left_as_they_were(gl, fabricate, random_lines, camera, pipeline):
-    functions, mine = OpenGL(gl), gl.simple_framebuffer((4, 4))
+    functions, mine = GLExtras(gl), gl.simple_framebuffer((4, 4))
     renderer = FibletRenderer(gl, fabricate(random_lines(10), kind=2), pipeline=pipeline)
     with functions.framebuffers_kept():
         mine.use()
@@ -295,7 +295,7 @@ def test_what_vtk_leaves_on_does_not_matter(gl, fabricate, random_lines, camera)
 
 def test_marks_fit_textures_of_any_limit(gl):
     """A texel for each fiblet, in rows of a power of two, as few as the driver allows."""
-    programs, functions = SimpleNamespace(), OpenGL(gl)
+    programs, functions = SimpleNamespace(), GLExtras(gl)
     limited = SimpleNamespace(info={"GL_MAX_TEXTURE_SIZE": 2048}, texture=gl.texture, framebuffer=gl.framebuffer)
     for n, size in ((0, (1024, 1)), (1024, (1024, 1)), (1025, (1024, 2)), (2048 * 1024 + 1, (2048, 1025))):
         seen = SeenTexture(limited, functions, programs, n)
@@ -309,12 +309,12 @@ def test_marks_fit_textures_of_any_limit(gl):
 
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_limits_are_those_of_textures(gl, fabricate, random_lines, pipeline, monkeypatch):
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     limits = Limits.of(gl, functions, pipeline, None, None)
     assert limits.buffer_bytes <= 4 * functions.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE")
     assert Limits.of(gl, functions, pipeline, 1000, None).buffer_bytes == 1000
     fiblets = fabricate(random_lines(20), kind=2)
-    monkeypatch.setattr(OpenGL, "get_integer", lambda self, name: 4 if name == "GL_MAX_TEXTURE_SIZE" else 65536)
+    monkeypatch.setattr(GLExtras, "get_integer", lambda self, name: 4 if name == "GL_MAX_TEXTURE_SIZE" else 65536)
     with pytest.raises(EngineError, match=r"\d+ fiblets are more than the 16 .* largest texture"):
         FibletRenderer(gl, fiblets, pipeline=pipeline)
 
@@ -327,7 +327,7 @@ def test_no_memory_for_a_picture_is_told(gl):
 
     short = SimpleNamespace(depth_texture=refuse)
     with pytest.raises(EngineError, match="no memory for a picture of 320 x 240 pixels: out of memory"):
-        RasterTarget(short, OpenGL(gl), target, True)
+        RasterTarget(short, GLExtras(gl), target, True)
 
 
 def test_empty_pixels_are_empty(gl, fabricate, random_lines, camera):

@@ -14,18 +14,27 @@ from pvfiblets.engine.fiblets import pipelines
 from pvfiblets.engine.shaders import Programs, assemble, read_shader
 
 STAGES = {
-    "geometry": ("fiblets/raster/survivors.vert", None, None, "fiblets/geometry/lines.geom",
-    "fiblets/raster/line.frag"), "geometry, wide": ("fiblets/raster/survivors.vert", None, None,
-    "fiblets/geometry/capsules.geom", "fiblets/raster/capsule.frag"), "tessellation": (
-        "fiblets/raster/survivors.vert", "fiblets/tessellation/decode.tesc", "fiblets/tessellation/lines.tese", None,
-        "fiblets/raster/line.frag",
+    "geometry": (
+        "fiblets/hardware_raster/survivors.vert", None, None, "fiblets/geometry/lines.geom",
+        "fiblets/hardware_raster/line.frag",
+    ),
+    "geometry, wide": (
+        "fiblets/hardware_raster/survivors.vert", None, None, "fiblets/geometry/capsules.geom",
+        "fiblets/hardware_raster/capsule.frag",
+    ),
+    "tessellation": (
+        "fiblets/hardware_raster/survivors.vert", "fiblets/tessellation/decode.tesc",
+        "fiblets/tessellation/lines.tese", None, "fiblets/hardware_raster/line.frag",
     ),
     "tessellation, wide": (
-        "fiblets/raster/survivors.vert", "fiblets/tessellation/decode.tesc", "fiblets/tessellation/capsules.tese",
-        "fiblets/tessellation/capsules.geom", "fiblets/raster/capsule.frag",
+        "fiblets/hardware_raster/survivors.vert", "fiblets/tessellation/decode.tesc",
+        "fiblets/tessellation/capsules.tese", "fiblets/tessellation/capsules.geom",
+        "fiblets/hardware_raster/capsule.frag",
     ),
-    "visibility_bits": ("fiblets/raster/visible.vert", None, None, None, "fiblets/raster/visible.frag"),
-    "between": ("screen/triangle.vert", None, None, None, "fiblets/raster/between.frag"),
+    "visibility_bits": (
+        "fiblets/hardware_raster/visible.vert", None, None, None, "fiblets/hardware_raster/visible.frag",
+    ),
+    "between": ("screen/triangle.vert", None, None, None, "fiblets/hardware_raster/between.frag"),
 }  # fmt: skip
 
 
@@ -97,7 +106,7 @@ def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, w
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
     declared = [
         re.match(r"VARYING (\w+) varying", line)
-        for line in switched(read_shader("fiblets/raster/varyings.glsl"), features)
+        for line in switched(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
     ]
     components = 4 + sum(sizes[match[1]] for match in declared if match)
     geometry = "\n".join(switched(read_shader(f"fiblets/geometry/{'capsules' if wide else 'lines'}.geom"), features))

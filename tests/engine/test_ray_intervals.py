@@ -16,8 +16,8 @@ import pyvista as pv
 from pvfiblets import regions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.opengl import OpenGL
-from pvfiblets.engine.regions.ray_intervals import Cutter
+from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.regions.ray_intervals import RegionIntervals
 from pvfiblets.engine.shaders import Programs, assemble
 from pvfiblets.engine.view import View
 
@@ -51,8 +51,8 @@ void main() {
 
 @pytest.fixture
 def cutter(gl):
-    functions, programs = OpenGL(gl), Programs(gl, CONSTANTS)
-    made = Cutter(gl, functions, programs)
+    functions, programs = GLExtras(gl), Programs(gl, CONSTANTS)
+    made = RegionIntervals(gl, functions, programs)
     yield made
     made.release()
     made.release()
@@ -82,7 +82,7 @@ def asked(gl, cutter, depths, *, compute=False):
         gl.memory_barrier()
     else:
         array = gl.vertex_array(program, [])
-        with OpenGL(gl).framebuffers_kept():
+        with GLExtras(gl).framebuffers_kept():
             target.use()
             gl.enable_only(moderngl.NOTHING)
             array.render(moderngl.TRIANGLES, vertices=3)
@@ -335,8 +335,8 @@ def test_labels_cannot_cut(gl, cutter, camera):
 
 def test_nothing_is_done_twice_and_nothing_is_left(gl, cutter, camera, torus, monkeypatch):
     drawn = []
-    combine = Cutter._combine
-    monkeypatch.setattr(Cutter, "_combine", lambda self, *a: (drawn.append(1), combine(self, *a)))
+    combine = RegionIntervals._combine
+    monkeypatch.setattr(RegionIntervals, "_combine", lambda self, *a: (drawn.append(1), combine(self, *a)))
     view = View(SIZE, camera(SIZE), region=torus - BOX)
     for _ in range(3):
         assert cutter.prepare(view, ORIGIN, SCALE, TOP)
@@ -381,7 +381,7 @@ def test_state_is_left_as_it_is(gl, cutter, camera, torus):
     texture = gl.texture((8, 8), 4)
     target = gl.framebuffer([texture])
     target.use()
-    functions = OpenGL(gl)
+    functions = GLExtras(gl)
     cutter.prepare(View(SIZE, camera(SIZE), region=torus - BOX), ORIGIN, SCALE, TOP)
     assert functions.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == target.glo
     # Blending, clipping, scissor and clamps would show in this picture.
@@ -423,7 +423,7 @@ assert ctx.error == "GL_NO_ERROR"
 def draw_all(ctx, wrapped):
     """Check some regions without fixtures."""
     programs = Programs(ctx, CONSTANTS)
-    cutter = Cutter(ctx, OpenGL(ctx), programs)
+    cutter = RegionIntervals(ctx, GLExtras(ctx), programs)
     ring = surface(pv.ParametricTorus(ringradius=40, crosssectionradius=15, u_res=31, v_res=31, w_res=31))
     a, b = block((-20, -20, -20), (0, 20, 20)), block((-20, -20, -20), (30, 20, 20))
     for region in (BOX - BALL, ring - BOX, joined(a, b) | BALL):

@@ -11,9 +11,9 @@ from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.passes import nowhere
-from pvfiblets.engine.regions.uniform_block import BLOCK_BYTES, FieldTextures, RegionBlock, region_block
+from pvfiblets.engine.regions.uniform_block import REGIONS_BLOCK, FieldTextures, RegionBlock, region_block
 from pvfiblets.engine.shaders import assemble
 
 from .region_shapes import NAMES, made, torus
@@ -42,7 +42,7 @@ void main() { side = region_of_capsule(a.xyz, b.xyz, a.w); }
 
 def classified(gl, region, a, b, radii, *, origin=(0.0, 0.0, 0.0), version=430):
     """What a shader says of capsules given in data mm, where local 0 is at ``origin``."""
-    block = RegionBlock(gl, OpenGL(gl))
+    block = RegionBlock(gl, GLExtras(gl))
     to_data = np.eye(4)
     to_data[:3, 3] = origin
     block.write(region, to_data)
@@ -64,7 +64,7 @@ def classified(gl, region, a, b, radii, *, origin=(0.0, 0.0, 0.0), version=430):
         program["Regions"].binding = BLOCKS["Regions"]
         block.bind(program)
         array = gl.vertex_array(program, [(data, "4f 4f", "a", "b")])
-        with nowhere(gl, OpenGL(gl)):
+        with nowhere(gl, GLExtras(gl)):
             array.transform(out, moderngl.POINTS, vertices=len(a))
     found = np.frombuffer(out.read(), "<i4").copy()
     for thing in (array, program, data, out, block):
@@ -178,26 +178,26 @@ def test_what_is_not_a_number_is_undecided(gl):
 def test_block_is_what_the_shader_declares(gl):
     source = assemble("test", (), CONSTANTS, source=COMPUTE)
     program = gl.compute_shader(source)
-    assert program["Regions"].size == BLOCK_BYTES
-    assert len(region_block(regions.Sphere((0, 0, 0), 1), np.eye(4))) == BLOCK_BYTES
+    assert program["Regions"].size == REGIONS_BLOCK.nbytes
+    assert len(region_block(regions.Sphere((0, 0, 0), 1), np.eye(4))) == REGIONS_BLOCK.nbytes
     program.release()
 
 
 def test_fields_are_copied_once_and_go_with_the_region(gl):
     points, triangles = torus(3.0, 1.0)
     mesh = regions.Surface(points, triangles)
-    block = RegionBlock(gl, OpenGL(gl))
+    block = RegionBlock(gl, GLExtras(gl))
     block.write(mesh | regions.Sphere((0, 0, 0), 1), np.eye(4))
     assert block.features == ("CLIP_REGION", "REGION_FIELDS")
     texture, nbytes = block._textures._texture, block.nbytes
-    assert nbytes == BLOCK_BYTES + mesh.field.values.nbytes
+    assert nbytes == REGIONS_BLOCK.nbytes + mesh.field.values.nbytes
     move = np.eye(4)
     move[0, 3] = 2.0
     block.write(mesh.moved(move) & mesh, np.eye(4))
     assert block._textures._texture is texture
     block.write(regions.Sphere((0, 0, 0), 1), np.eye(4))
     assert block.features == ("CLIP_REGION",)
-    assert block.nbytes == BLOCK_BYTES
+    assert block.nbytes == REGIONS_BLOCK.nbytes
     block.release()
     block.release()
     assert block.nbytes == 0

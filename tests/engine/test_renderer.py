@@ -10,7 +10,7 @@ from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, gbu
 from .pictures import SIZE, assert_same, draw, read
 
 PASSES = ["clear", "cull", "visible", "pyramid", "occlusion", "refine", "depth", "resolve_owner", "resolve_ties"]
-LATER_PASSES = ["last picture", *PASSES[:3], "guessed", *PASSES[3:]]
+LATER_PASSES = ["last picture", *PASSES[:3], "predicted", *PASSES[3:]]
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])

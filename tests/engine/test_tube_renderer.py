@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError, View, passes
-from pvfiblets.engine.culling.listing import LEAST_SEGMENTS
+from pvfiblets.engine.culling.two_phase_items import LEAST_SEGMENTS
 from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS, TubeRenderer, TubeStyle
 from pvfiblets.engine.tubes.options import check_choices
 from pvfiblets.tubes import NodeValues, SplineTubes

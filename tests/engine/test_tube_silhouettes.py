@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from pvfiblets.engine import View
 from pvfiblets.engine.bindings import TUBES
 from pvfiblets.engine.lattice import TOP
-from pvfiblets.engine.opengl import OpenGL
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import Programs
 from pvfiblets.engine.tubes.nodes import Nodes
-from pvfiblets.engine.tubes.uniform_blocks import CONSTANTS, TubeBlocks
+from pvfiblets.engine.tubes.uniform_blocks import TubeBlocks
 from pvfiblets.tubes import SplineTubes
 from pvfiblets.tubes.curves import MIDDLE, boxes, controls, sample_spheres
 from pvfiblets.tubes.reference import nearest_hits
@@ -27,7 +27,7 @@ SIZE = (96, 72)
 @pytest.fixture
 def vertices(gl):
     """Return a function: clip coordinates of the vertices that a stage makes of a set."""
-    programs, library = Programs(gl, CONSTANTS), OpenGL(gl)
+    programs, library = Programs(gl, {}), GLExtras(gl)
     target = gl.simple_framebuffer((1, 1))  # none is drawn into, and yet one must be bound
 
     def run(stage, corners, tubes, view, *, min_width=0.0, planes=False):

@@ -10,8 +10,8 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.synthetic import brain_streamlines
 
-from .marks import owning, planned
 from .pictures import Picture, differences, read
+from .visibility_bits import owning, planned
 
 SMALL = (160, 120)
 
@@ -88,7 +88,7 @@ def changed(monkeypatch, name, right, wrong):
 
 
 @pytest.fixture
-def unguessed(monkeypatch):
+def unpredicted(monkeypatch):
     """Let nothing be drawn early that was not seen in the last picture: all of it is tested, the harder case."""
     monkeypatch.setattr(DepthPyramid, "before", lambda *_: None)
 
@@ -125,14 +125,14 @@ def test_turns(both, brain, camera, style, parallel):
 def test_much_is_hidden(both, onion, camera, request, style, guess):
     """Of an onion of wide lines most of what is not seen is left out, of thin ones a part; still no bit is another."""
     if not guess:
-        request.getfixturevalue("unguessed")
+        request.getfixturevalue("unpredicted")
     pair, size = both(onion), (400, 300)
     for angle in (0.0, 1.14, 2.28, 7.0, 67.0, 68.14):
         pair.draw(View(size, camera(size, **orbit(angle, 110.0, 30.0))), STYLES[style])
     assert pair.hidden > (0.6 if style == "three pixels" else 0.15) * pair.tested
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 def test_dollies_through_the_data(both, brain, camera, tolerance):
     pair = both(brain)
@@ -143,7 +143,7 @@ def test_dollies_through_the_data(both, brain, camera, tolerance):
     assert pair.hidden > 0
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("near_plane", [0.01, 1.0])
 def test_teleports(both, brain, onion, camera, near_plane):
     """From anywhere to anywhere, mostly inside the data, looking anywhere."""
@@ -157,7 +157,7 @@ def test_teleports(both, brain, onion, camera, near_plane):
         assert pair.hidden > 0
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 def test_clipping_ranges(both, onion, camera):
     """Near and far planes that cut the data, down to slices of a millimetre, where depth is coarse in float32."""
     pair = both(onion)
@@ -169,7 +169,7 @@ def test_clipping_ranges(both, onion, camera):
     assert pair.hidden > 0.2 * pair.tested
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 def test_sizes(both, onion, camera):
     """Windows of any shape, of one pixel, and of powers of two and one more."""
     pair = both(onion)
@@ -179,7 +179,7 @@ def test_sizes(both, onion, camera):
     assert pair.hidden > 0.2 * pair.tested
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 def test_line_widths(both, onion, camera):
     pair = both(onion)
     for i, width in enumerate((1.0, 9.0, 1.0, 1.5, 2.0, 30.0, 3.0, 1.0)):
@@ -187,7 +187,7 @@ def test_line_widths(both, onion, camera):
     assert pair.hidden > 0.3 * pair.tested
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("width", [1.0, 4.0])
 def test_clip_planes(both, onion, camera, width):
     """A plane dragged through what was hidden, and taken away again."""
@@ -211,7 +211,7 @@ def test_data_swapped(both, brain, onion, camera):
 
 
 @pytest.mark.every("value")
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
 @pytest.mark.parametrize("kind", [1, 2, 3])
 def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, low):
@@ -224,7 +224,7 @@ def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, lo
         assert (picture.ids[picture.drawn][:, 0] < len(lines)).all()
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 def test_several_chunks(both, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(700, seed=12, longest=230), kind=2, per_fiblet=2)
     pair = both(fiblets, max_buffer_bytes=12 * (16384 + 1), max_groups=16)
@@ -254,7 +254,7 @@ def random_views(rng, count, camera):
             far += rng.choice([0.0, 10.0])
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.exhaustive)])
 def test_random_cameras(both, brain, onion, camera, seed):
     rng = np.random.default_rng(seed)
@@ -268,14 +268,14 @@ def test_random_cameras(both, brain, onion, camera, seed):
 
 MUTATIONS = {
     "the nearest depth instead of the farthest": (
-        "culling/squares.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
+        "culling/pyramid_lookup.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
     ),
-    "rectangles too small": ("culling/hidden.glsl", "+ viewport.z + MARGIN", "- 3.0"),
+    "rectangles too small": ("culling/hidden.glsl", "+ half_line_width + MARGIN", "- 3.0"),
 }
 
 
 @pytest.mark.exhaustive
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_a_wrong_test_would_be_noticed(both, onion, camera, monkeypatch, mutation):
     """The pictures above tell a broken hidden() from a right one."""
@@ -288,7 +288,7 @@ def test_a_wrong_test_would_be_noticed(both, onion, camera, monkeypatch, mutatio
     assert different > 0
 
 
-@pytest.mark.usefixtures("unguessed")
+@pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("honest", [True, False])
 def test_a_line_seen_from_its_end(both, fabricate, camera, monkeypatch, honest):
     """Its first pixel shows a place a little before its start, which may be nearer than a wall in front of it."""

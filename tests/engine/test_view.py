@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletStyle, View
-from pvfiblets.engine.frame import frame_block, reference_anchor
+from pvfiblets.engine.frame import FRAME_BLOCK, frame_block, reference_anchor
 
 
 def test_views_compare_by_content():
@@ -64,8 +64,9 @@ def test_planes_are_signed_distances(camera):
     size = (200, 100)
     matrix = camera(size, eye=(0, 0, 0), target=(0, 1, 0), near=1.0, far=100.0, angle=60.0)
     origin, scale = np.array([-50.0, -50.0, -50.0]), np.full(3, 100 / 65535)
-    block = np.frombuffer(frame_block(View(size, matrix), FibletStyle(), origin, scale, 65535)[0], "<f4")
-    planes, reference = block[16:40].reshape(6, 4), block[40:43].view("<u4")
+    packed, _ = frame_block(View(size, matrix), FibletStyle(), origin, scale, 65535)
+    block = np.frombuffer(packed, FRAME_BLOCK.dtype)[0]
+    planes, reference = block["view_planes"], block["reference"]
     point = np.array([3.0, 40.0, -7.0])
     local = point - origin - scale * reference
     found = planes[:, :3] @ local + planes[:, 3]

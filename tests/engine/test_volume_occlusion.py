@@ -8,7 +8,7 @@ import pytest
 from pvfiblets import regions
 from pvfiblets.engine import EngineError, View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.engine.volumes.occlusion import LIFT, RayOcclusionPass, turns_of_ray
+from pvfiblets.engine.volumes.ray_occlusion import LIFT, RayOcclusionPass, turns_of_ray
 from pvfiblets.volumes import reference
 from pvfiblets.volumes.options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
@@ -324,7 +324,7 @@ def test_portions_are_the_whole(occluded, camera, monkeypatch):
     volume = caves()
     matrix, casting = around(camera, volume), RaycastOptions(values=(0.35,))
     one = occluded(volume, casting, matrix, radius=9.0, samples=40).open
-    monkeypatch.setattr("pvfiblets.engine.volumes.occlusion.MOST_TURNS", 600)
+    monkeypatch.setattr("pvfiblets.engine.volumes.ray_occlusion.MOST_TURNS", 600)
     assert 2 < 600 // turns_of_ray(volume, casting, np.eye(3), 9.0) < 20
     assert (occluded(volume, casting, matrix, radius=9.0, samples=40).open == one).all()
 

@@ -9,35 +9,35 @@ CHANGED = {
         resolve="-colour_orientation, colour_solid",
     ),
     "colours: per streamline": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "colours: stored": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
         packages="numba",
         modules="codec.decode_kernels",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
-        resolve="-colour_orientation, colour_point_value",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, volume",
     ),
     "colours: logarithm": What(
-        resolve="-colour_orientation, colour_streamline",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
         buffers="fibletStreamlineColours",
     ),
     "wide lines": What(
@@ -45,7 +45,7 @@ CHANGED = {
     ),
     "wide lines, shaded": What(
         features="CROSS_LINE, WIDE_LINES",
-        resolve="tube_shading",
+        resolve="-line_light, tube_shading",
     ),
     "tubes": What(
         ran="""
@@ -53,13 +53,14 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
-            fiblets/raster/capsule.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/capsule.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        resolve="-line_light, tube_normal",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -69,13 +70,14 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/raster/between.frag,
-            fiblets/raster/capsule.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/capsule.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="tube_normal, tube_shading",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        resolve="-line_light, tube_normal, tube_shading",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -87,12 +89,12 @@ CHANGED = {
         buffers="across (no layer), layers, normal (no layer)",
     ),
     "illuminated": What(
-        resolve="illuminated",
+        resolve="-line_light, illuminated",
     ),
     "ambient occlusion": What(
-        ran="effects/occlusion.frag, effects/smooth.frag",
+        ran="effects/ssao.frag, effects/ssao_blur.frag",
         resolve="ambient_occlusion",
-        passes="occlusion (effect), smooth (effect)",
+        passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
         modules="engine.effects.ambient_occlusion",
     ),
@@ -100,16 +102,16 @@ CHANGED = {
         resolve="depth_cue",
     ),
     "halos": What(
-        ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
+        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo",
-        passes="distance (effect), halo (effect), nearest (effect)",
+        passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",
     ),
     "ink": What(
-        ran="effects/distance.frag, effects/halo.frag, effects/nearest.frag",
-        resolve="halo, ink",
-        passes="distance (effect), halo (effect), nearest (effect)",
+        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
+        resolve="-line_light, halo, ink",
+        passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules="engine.effects.halos",
     ),
@@ -191,9 +193,12 @@ CHANGED = {
     ),
     "picking": What(),
     "culling: none": What(
-        ran="-fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/reduce.frag, -screen/triangle.vert",
+        ran="""
+            -fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/pyramid_reduce.frag,
+            -screen/triangle.vert
+        """,
         features="-CULL_PYRAMID",
-        passes="-guessed, -last picture, -occlusion, -pyramid, -refine",
+        passes="-predicted, -last picture, -occlusion, -pyramid, -refine",
         buffers="-occlusion",
         modules="-engine.culling.pyramid",
     ),
@@ -203,7 +208,7 @@ CHANGED = {
             culling/coverage_grid.vert
         """,
         features="-CULL_PYRAMID, CULL_COVERAGE",
-        passes="-guessed, -pyramid, -refine",
+        passes="-predicted, -pyramid, -refine",
         modules="engine.culling.coverage",
     ),
     "pipeline: geometry": What(
@@ -212,12 +217,12 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/raster/between.frag,
-            fiblets/raster/line.frag, fiblets/raster/visible.frag,
-            fiblets/raster/visible.vert, fiblets/raster/survivors.vert
+            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/hardware_raster/between.frag,
+            fiblets/hardware_raster/line.frag, fiblets/hardware_raster/visible.frag,
+            fiblets/hardware_raster/visible.vert, fiblets/hardware_raster/survivors.vert
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="engine.fiblets.pipelines.geometry",
     ),
@@ -227,12 +232,12 @@ CHANGED = {
             -fiblets/compute/depth.comp,
             -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
             -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/raster/between.frag, fiblets/raster/line.frag,
-            fiblets/raster/visible.frag, fiblets/raster/visible.vert,
-            fiblets/raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
+            -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/between.frag, fiblets/hardware_raster/line.frag,
+            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+            fiblets/hardware_raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -guessed, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth",
         modules="engine.fiblets.pipelines.tessellation",
     ),
@@ -262,12 +267,12 @@ CHANGED = {
     ),
     "spline tubes: values": What(
         features="TUBE_VALUES",
-        resolve="-colour_solid, colour_point_value",
+        resolve="-colour_solid, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "spline tubes: colours": What(
         features="TUBE_COLOURS",
-        resolve="-colour_solid, colour_point",
+        resolve="-colour_solid, colour_point_rgba",
         buffers="colours",
     ),
     "spline tubes: solver": What(
@@ -292,12 +297,12 @@ CHANGED = {
     ),
     "halo lines: values": What(
         features="HALO_VALUES",
-        resolve="-colour_solid, colour_point_value",
+        resolve="-colour_solid, colour_point_scalar",
         buffers="fibletTable, values",
     ),
     "halo lines: colours": What(
         features="HALO_COLOURS",
-        resolve="-colour_solid, colour_point",
+        resolve="-colour_solid, colour_point_rgba",
         buffers="colours",
     ),
     "halo points": What(
@@ -314,15 +319,15 @@ CHANGED = {
         resolve="tube_normal",
     ),
     "volume: gentle light": What(
-        features="VOLUME_LIGHT, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_value, colour_point",
+        features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
+        resolve="-colour_point_scalar, colour_point_rgba",
         buffers="-fibletTable, colours, segments",
         packages="numba",
         modules="volumes.preintegration",
     ),
     "volume: light": What(
-        features="VOLUME_FINER, VOLUME_LIGHT, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_value, colour_point",
+        features="VOLUME_FINER, VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
+        resolve="-colour_point_scalar, colour_point_rgba",
         buffers="-fibletTable, colours, segments",
         packages="numba",
         modules="volumes.preintegration",
@@ -355,11 +360,11 @@ CHANGED = {
         modules="engine.regions.ray_intervals, regions",
     ),
     "volume: ray occlusion": What(
-        ran="volumes/occlusion.frag, volumes/occlusion_mean.frag",
+        ran="volumes/ray_occlusion.frag, volumes/ray_occlusion_mean.frag",
         features="VOLUME_SURFACE",
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.volumes.occlusion, mappers.ray_occlusion",
+        modules="engine.volumes.ray_occlusion, mappers.ray_occlusion",
     ),
 }

@@ -11,12 +11,13 @@ PLAIN = {
             fiblets/compute/depth.comp,
             fiblets/compute/occlude.comp, fiblets/compute/resolve_owner.comp, fiblets/compute/plan.comp,
             fiblets/compute/refine.comp, fiblets/compute/resolve_ties.comp,
-            culling/reduce.frag, screen/triangle.vert
+            culling/pyramid_reduce.frag, screen/triangle.vert
         """,
         features="CLIPPING, CLIPPING_DEPTH, CULL_PYRAMID, DIRECTION, LEVEL_OF_DETAIL, ONE_SEGMENT",
-        resolve="colour_orientation, gbuffer, normal",
+        resolve="colour_orientation, gbuffer, line_light, normal",
         passes="""
-            clear, cull, depth, guessed, last picture, occlusion, resolve_owner, pyramid, refine, visible, resolve_ties
+            clear, cull, depth, last picture, occlusion, predicted, pyramid, refine, resolve_owner, resolve_ties,
+            visible
         """,
         buffers="""
             anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, occlusion, pages,
@@ -41,7 +42,7 @@ PLAIN = {
     ),
     "volume: mip": What(
         ran="volumes/cast.frag, screen/triangle.vert",
-        resolve="colour_point_value, gbuffer, normal",
+        resolve="colour_point_scalar, gbuffer, normal",
         passes="rays",
         buffers="fibletTable, gbuffer, nodes, rays, voxels",
         modules="engine.volumes.renderer, plotting.volumes.actor, volumes.sources",

@@ -8,7 +8,7 @@ import re
 import moderngl
 import numpy as np
 
-from pvfiblets.engine import opengl, shaders
+from pvfiblets.engine import moderngl_extras, shaders
 
 SWITCHED_ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
 STAGES = ("vertex", "fragment", "geometry", "tess_control", "tess_evaluation", "task", "mesh")
@@ -70,7 +70,7 @@ class Watch:
             moderngl.Renderbuffer,
         ):
             _after(kind, "release", lambda _, thing: self._alive.pop(_key(thing), None))
-        _after(opengl.OpenGL, "add_levels", lambda _, gl, texture, levels: self._grown(texture, levels))
+        _after(moderngl_extras.GLExtras, "add_levels", lambda _, gl, texture, levels: self._grown(texture, levels))
 
     def _born(self, thing, *_, **__) -> None:
         self._alive[_key(thing)] = _size(thing)

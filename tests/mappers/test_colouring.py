@@ -59,7 +59,7 @@ ends = st.floats(-1e3, 1e3, width=32)
 def test_linear_tables_map_as_vtk_does(low, span, value, count, special):
     lut = np.random.default_rng(count).integers(0, 256, (count, 4), dtype=np.uint8)
     outside = {"below_color": (1, 0, 1), "above_color": (0, 1, 0, 0.5)} if special else {}
-    colouring = Colouring("point_value", source="fa", lut=lut, clim=(low, low + span), **outside)
+    colouring = Colouring("point_scalar", source="fa", lut=lut, clim=(low, low + span), **outside)
     edge = (value - low) * count / span if span and math.isfinite(value) else 0.5
     if abs(edge - round(edge)) < 1e-9 * max(1.0, abs(edge)):
         return  # on the border of two entries both are right
@@ -73,7 +73,7 @@ def test_linear_tables_map_as_vtk_does(low, span, value, count, special):
 )
 def test_logarithmic_tables_map_as_vtk_does(low, factor, value):
     colouring = Colouring(
-        "point_value",
+        "point_scalar",
         source="fa",
         lut=RAINBOW,
         clim=(low, low * factor),
@@ -91,17 +91,17 @@ def test_logarithmic_tables_map_as_vtk_does(low, factor, value):
 BAD = {
     "mode": ({"mode": "rainbow"}, "rainbow"),
     "colour": ({"mode": "solid", "color": (255, 0, 0)}, "between 0 and 1"),
-    "rgb shape": ({"mode": "streamline_rgb", "values": np.zeros((4, 2), np.uint8)}, "shape"),
-    "rgb type": ({"mode": "streamline_rgb", "values": np.zeros((4, 3))}, "uint8"),
-    "rgb missing": ({"mode": "streamline_rgb"}, "nothing"),
+    "rgb shape": ({"mode": "streamline_rgba", "values": np.zeros((4, 2), np.uint8)}, "shape"),
+    "rgb type": ({"mode": "streamline_rgba", "values": np.zeros((4, 3))}, "uint8"),
+    "rgb missing": ({"mode": "streamline_rgba"}, "nothing"),
     "scalars": ({"mode": "streamline_scalar", "values": np.zeros((4, 3))}, "streamline_scalar"),
-    "source": ({"mode": "point_value", "clim": (0, 1)}, "source"),
-    "clim": ({"mode": "point_value", "source": "fa"}, "clim"),
-    "order": ({"mode": "point_value", "source": "fa", "clim": (1, 0)}, "rising"),
-    "nan clim": ({"mode": "point_value", "source": "fa", "clim": (0, math.nan)}, "finite"),
-    "log": ({"mode": "point_value", "source": "fa", "clim": (0, 1), "log_scale": True}, "positive"),
+    "source": ({"mode": "point_scalar", "clim": (0, 1)}, "source"),
+    "clim": ({"mode": "point_scalar", "source": "fa"}, "clim"),
+    "order": ({"mode": "point_scalar", "source": "fa", "clim": (1, 0)}, "rising"),
+    "nan clim": ({"mode": "point_scalar", "source": "fa", "clim": (0, math.nan)}, "finite"),
+    "log": ({"mode": "point_scalar", "source": "fa", "clim": (0, 1), "log_scale": True}, "positive"),
     "lut": (
-        {"mode": "point_value", "source": "fa", "clim": (0, 1), "lut": np.zeros((0, 4), "u1")},
+        {"mode": "point_scalar", "source": "fa", "clim": (0, 1), "lut": np.zeros((0, 4), "u1")},
         "lut",
     ),
 }
@@ -180,7 +180,7 @@ def test_solid_and_streamline_colours(rod_scene):
     mapper.colouring = Colouring("solid", color=(0.2, 0.4, 0.6))
     assert colours() == [(51, 102, 153)] * 5
     rgb = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 8, 7], [255, 255, 255]], dtype=np.uint8)
-    mapper.colouring = Colouring("streamline_rgb", values=rgb)
+    mapper.colouring = Colouring("streamline_rgba", values=rgb)
     assert colours() == [tuple(map(int, row)) for row in rgb]
 
 
@@ -205,7 +205,7 @@ def test_zero_alpha_is_not_drawn_and_changes_pass(rod_scene):
     mapper, actor, colours = rod_scene
     rgba = np.full((5, 4), 255, dtype=np.uint8)
     rgba[1, 3] = 0
-    mapper.colouring = Colouring("streamline_rgb", values=rgba)
+    mapper.colouring = Colouring("streamline_rgba", values=rgba)
     assert actor.HasTranslucentPolygonalGeometry()
     assert colours() == [(255, 255, 255), None] + [(255, 255, 255)] * 3
     mapper.colouring = Colouring("solid")
@@ -234,7 +234,7 @@ def test_point_values_through_the_table(make_plotter, tools, log_scale):
     plotter.reset_camera()
     plotter.camera.parallel_scale = 10
     mapper.colouring = colouring = Colouring(
-        "point_value",
+        "point_scalar",
         source="curvature",
         lut=RAINBOW,
         clim=(1.0, 100.0),
@@ -264,7 +264,8 @@ def test_point_values_of_the_engine(make_plotter, tools):
     fibres = tools.fibres("engine", type(tools.helices(1, 2)).from_list([line]))
     ramp = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1)
     ramp[:, 3] = 255
-    mapper, actor = fibres.actor(colouring=Colouring("point_value", source="arc_length", lut=ramp, clim=(-10.0, 100.0)))
+    colouring = Colouring("point_scalar", source="arc_length", lut=ramp, clim=(-10.0, 100.0))
+    mapper, actor = fibres.actor(colouring=colouring)
     plotter = make_plotter(window_size=(400, 60))
     plotter.add_actor(actor)
     plotter.camera_position = "xz"
@@ -312,7 +313,7 @@ def test_more_streamlines_than_a_texture_is_wide(make_plotter, tools):
     rgb = np.zeros((count, 3), dtype=np.uint8)
     rgb[:, 0] = 1 + np.arange(count) % 251
     rgb[:, 1] = np.arange(count) // 251
-    mapper, actor = fibres.actor(colouring=Colouring("streamline_rgb", values=rgb))
+    mapper, actor = fibres.actor(colouring=Colouring("streamline_rgba", values=rgb))
     plotter = make_plotter(window_size=(500, 500))
     plotter.add_actor(actor)
     plotter.camera_position = "xz"

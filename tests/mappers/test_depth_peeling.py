@@ -36,11 +36,11 @@ def scene(make_plotter, tools):
     def make(streamlines, *, opacity=0.4, layers=4, colours=COLOURS, lighting=False, **options):
         fibres = tools.fibres("engine", streamlines)
         if colours is not None:
-            options["colouring"] = Colouring("streamline_rgb", values=np.resize(colours, (len(streamlines), 3)))
+            options["colouring"] = Colouring("streamline_rgba", values=np.resize(colours, (len(streamlines), 3)))
         mapper, actor = fibres.actor(lighting=lighting, **options)
         actor.GetProperty().SetOpacity(opacity)
         if layers:
-            mapper.set_extra("layers", Layers(layers))
+            mapper.set_effect("layers", Layers(layers))
         plotter = make_plotter()
         plotter.add_actor(actor, reset_camera=False)
         plotter.enable_parallel_projection()
@@ -151,7 +151,7 @@ def test_values_along_a_line_are_those_of_its_layer(scene, tools):
     """The line behind runs the other way: at a pixel its arc length is the rest of the front one's."""
     x = np.linspace(-40, 40, 161)
     lines = Streamlines.from_list([np.c_[x, 0 * x, 0 * x], np.c_[-x, 0 * x + 10, 0 * x]])
-    colouring = Colouring("point_value", source="arc_length", clim=(0.0, 80.0))
+    colouring = Colouring("point_scalar", source="arc_length", clim=(0.0, 80.0))
     plotter, mapper, _ = scene(lines, colours=None, colouring=colouring, line_width=6.0, opacity=0.5)
     image = tools.picture(plotter, mapper)[100, 60:180, 0].astype(float)
     front = ((np.arange(60, 180) + 0.5) / 200 * 100 - 20) / 80 * 255  # 200 pixels are 100 mm
@@ -176,10 +176,10 @@ def test_without_layers_nothing_is_left_of_them(scene, tools):
     plotter, mapper, actor = scene(rows(), layers=None, line_width=6.0)
     before, installed = tools.picture(plotter, mapper), mapper._installed
     assert mapper.GetInput().GetNumberOfPoints() == 6
-    mapper.set_extra("layers", Layers(5))
+    mapper.set_effect("layers", Layers(5))
     assert mapper.GetInput().GetNumberOfPoints() == 30
     assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS, 0.4)).max() <= 3
-    mapper.set_extra("layers", None)
+    mapper.set_effect("layers", None)
     assert (tools.picture(plotter, mapper) == before).all()
     assert mapper._installed == installed
     assert mapper.GetInput().GetNumberOfPoints() == 6
@@ -213,9 +213,9 @@ def test_the_nearest_is_picked(scene, tools):
 def test_pieces_go_together():
     assert layers_of([Layers(7)]) == 7
     assert layers_of([]) == 1
-    for colour in ("colour_solid", "colour_point_value", "colour_streamline"):
+    for colour in ("colour_solid", "colour_point_scalar", "colour_streamline"):
         features = with_layers(Layers().features | {"gbuffer", "normal", colour})
-        assert ("layers_value" in features) == (colour == "colour_point_value")
+        assert ("layers_value" in features) == (colour == "colour_point_scalar")
         text = "".join(replacement.text for replacement in resolve.assemble(features))
         assert "pvfiblets::" not in text
     everything = frozenset(resolve.FEATURES) - {"colour_solid", "colour_streamline", "colour_orientation"}
@@ -242,7 +242,7 @@ def test_every_layer_has_its_own_surface(scene, tools, kind):
     """Crossing lines with bodies, each lit on its own: the crossing is made of both pictures."""
     from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 
-    extra = Tubes(4.0) if kind == "tubes" else TubeShading()
+    effect = Tubes(4.0) if kind == "tubes" else TubeShading()
     t = np.linspace(-40, 40, 161)
     front, back = np.c_[t, 0 * t - 20, 0.3 * t], np.c_[0.2 * t, 0.2 * t + 20, t]
     white = np.full((1, 3), 255, np.uint8)
@@ -251,11 +251,11 @@ def test_every_layer_has_its_own_surface(scene, tools, kind):
         plotter, mapper, _ = scene(
             Streamlines.from_list([line]), lighting=True, opacity=1.0, layers=None, colours=white, line_width=14.0
         )
-        mapper.set_extra("tubes", extra)
+        mapper.set_effect("tubes", effect)
         alone.append(tools.picture(plotter, mapper).astype(float))
     two = Streamlines.from_list([front, back])
     both, mapper, _ = scene(two, lighting=True, opacity=0.5, colours=white, line_width=14.0)
-    mapper.set_extra("tubes", extra)
+    mapper.set_effect("tubes", effect)
     image = tools.picture(both, mapper)
     crossing = tools.covered(alone[0]) & tools.covered(alone[1])
     assert crossing.sum() > 150
@@ -267,8 +267,8 @@ def test_both_kinds_of_bodies_at_once(scene, tools):
     from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 
     plotter, mapper, _ = scene(rows(), line_width=6.0)
-    mapper.set_extra("tubes", Tubes(3.0))
-    mapper.set_extra("tube shading", TubeShading())
+    mapper.set_effect("tubes", Tubes(3.0))
+    mapper.set_effect("tube shading", TubeShading())
     image = tools.picture(plotter, mapper)
     assert np.abs(image[100, 70:170] - blended(COLOURS[:4], 0.4)).max() <= 3
 
@@ -278,7 +278,7 @@ def test_a_halo_is_there_once(scene, tools):
     from pvfiblets.mappers.shading import Halos
 
     plotter, mapper, _ = scene(rows((0, 10)), line_width=3.0)
-    mapper.set_extra("halo", Halos())
+    mapper.set_effect("halo", Halos())
     column = tools.picture(plotter, mapper)[90:112, 120].astype(float)
     line = np.abs(column - blended(COLOURS[:2], 0.4)).max(axis=1) <= 3
     halo = np.abs(column - 0.4 * 255).max(axis=1) <= 3

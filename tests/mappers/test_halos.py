@@ -245,11 +245,11 @@ def test_every_way_to_colour_leaves_halos_alone(make_plotter, tools):
     table = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
     assert colours(Colouring("orientation")) == (255, 0, 0)
     assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == (0, 255, 255)
-    assert colours(Colouring("streamline_rgb", values=np.array([[7, 8, 9]], np.uint8))) == (7, 8, 9)
+    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == (7, 8, 9)
     assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=table, clim=(0, 1))) == (0, 0, 255)
-    numbers = Colouring("point_value", source="v", lut=table, clim=(0, 1), nan_color=(0.2, 0.4, 0.6))
+    numbers = Colouring("point_scalar", source="v", lut=table, clim=(0, 1), nan_color=(0.2, 0.4, 0.6))
     assert [colours(numbers, x) for x in (-10.0, -5.0, 7.0)] == [(255, 0, 0), (0, 0, 255), (51, 102, 153)]
-    mixed = np.array(colours(Colouring("point_rgb", source="c")), int)
+    mixed = np.array(colours(Colouring("point_rgba", source="c")), int)
     assert np.abs(mixed - [0, 255 * (1 - 7.1 / 15), 255 * 7.1 / 15]).max() <= 3
     with pytest.raises(ValueError, match="2 values for 1"):
         mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
@@ -320,7 +320,7 @@ def test_translucent_actors_blend_lines_and_halos_alike(make_plotter, tools):
 
 def test_colours_that_let_through_keep_opaque_halos(make_plotter, tools):
     values = np.array([[0, 255, 0, 128]], np.uint8)
-    mapper, actor = made(bar(), colouring=Colouring("streamline_rgb", values=values))
+    mapper, actor = made(bar(), colouring=Colouring("streamline_rgba", values=values))
     image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
     assert actor.GetForceTranslucent()
     assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 160, 32]).max() <= 2

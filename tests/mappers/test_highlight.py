@@ -50,27 +50,27 @@ def test_others_fade_towards_the_background_and_the_chosen_keep_their_colour(rod
     before = colours()
     assert (before == (255, 0, 0)).all()
     chosen = mask(0, 7, 31, 32, 39)
-    mapper.set_extra("selection", Highlight(chosen, dim=0.75))
+    mapper.set_effect("selection", Highlight(chosen, dim=0.75))
     after = colours()
     assert (after[chosen] == (255, 0, 0)).all()
     assert (np.abs(after[~chosen].astype(int) - (64, 0, 191)) <= 1).all()
-    mapper.set_extra("selection", None)
+    mapper.set_effect("selection", None)
     assert (colours() == before).all()
 
 
 def test_colours_can_be_given_and_another_selection_changes_bits_alone(rods):
     _, mapper, colours = rods
-    mapper.set_extra("selection", Highlight(mask(3), color=(0.0, 1.0, 0.0), dim=0.5, faded=(1.0, 1.0, 1.0)))
+    mapper.set_effect("selection", Highlight(mask(3), color=(0.0, 1.0, 0.0), dim=0.5, faded=(1.0, 1.0, 1.0)))
     first = colours()
     assert (first[3] == (0, 255, 0)).all()
     assert (np.abs(first[4].astype(int) - (255, 128, 128)) <= 1).all()
-    kept = [slot.extras["selection"][1] for slot in slots(mapper)]
+    kept = [slot.effects["selection"][1] for slot in slots(mapper)]
     textures = [bits.texture for bits in kept]
-    mapper.set_extra("selection", Highlight(mask(35), color=(0.0, 1.0, 0.0), dim=0.0))
+    mapper.set_effect("selection", Highlight(mask(35), color=(0.0, 1.0, 0.0), dim=0.0))
     second = colours()
     assert (second[35] == (0, 255, 0)).all()
     assert (second[3] == (255, 0, 0)).all()
-    assert [slot.extras["selection"][1].texture for slot in slots(mapper)] == textures
+    assert [slot.effects["selection"][1].texture for slot in slots(mapper)] == textures
 
 
 def slots(mapper):

@@ -20,7 +20,7 @@ RODS = [[(-18, 0, 0), (18, 4, 6)], [(5, -12, -10), (0, 10, 12)]]
 def rods(tools):
     """Return a function: actor and mapper of two straight rods that pass through each other, white."""
 
-    def make(extra, line_width=1.0, curves=RODS):
+    def make(effect, line_width=1.0, curves=RODS):
         lines = [np.linspace(a, b, 31) for a, b in curves]
         fibres = tools.fibres("engine", type(tools.helices(1, 2)).from_list(lines))
         mapper, actor = fibres.actor(
@@ -28,7 +28,7 @@ def rods(tools):
         )
         actor.GetProperty().SetAmbient(0.1)
         actor.GetProperty().SetDiffuse(0.9)
-        mapper.set_extra("tubes", extra)
+        mapper.set_effect("tubes", effect)
         return fibres, mapper, actor
 
     return make
@@ -100,8 +100,8 @@ def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place
 def test_tubes_cut_into_meshes(rods, make_plotter, tools):
     """A plane through the axis hides the far half of the tube: less shows than without it, and more than of a line."""
 
-    def shown(extra, line_width=1.0):
-        _, mapper, actor = rods(extra, line_width, [[(-15, 0, 0), (15, 0, 0)]])
+    def shown(effect, line_width=1.0):
+        _, mapper, actor = rods(effect, line_width, [[(-15, 0, 0), (15, 0, 0)]])
         plotter = scene(make_plotter, actor)
         plotter.add_mesh(
             pv.Plane(center=(0, 0, 0), direction=(0, 0, 1), i_size=60, j_size=60), color="red", lighting=False
@@ -157,10 +157,10 @@ def test_round_shading_faces_the_light_whatever_the_direction(rods, make_plotter
 
 def test_thin_lines_are_left_as_they_are(rods, make_plotter, tools):
     pictures = []
-    for extra in (None, TubeShading()):
-        _, mapper, actor = rods(extra)
+    for effect in (None, TubeShading()):
+        _, mapper, actor = rods(effect)
         pictures.append(tools.picture(scene(make_plotter, actor), mapper))
-        assert ("tube_shading" in mapper.features) == (extra is not None)
+        assert ("tube_shading" in mapper.features) == (effect is not None)
     assert (pictures[0] == pictures[1]).all()
 
 
@@ -173,16 +173,16 @@ def test_live_and_back_without_a_trace(rods, make_plotter, tools):
     names = {buffer["name"] for buffer in mapper.explain()["windows"][0]["buffers"]}
     size = {b["name"]: b["bytes"] for b in mapper.explain()["windows"][0]["buffers"]}["gbuffer"]
     areas = []
-    for extra in (Tubes(1.0), Tubes(RADIUS), TubeShading()):
-        mapper.set_extra("tubes", extra)
+    for effect in (Tubes(1.0), Tubes(RADIUS), TubeShading()):
+        mapper.set_effect("tubes", effect)
         areas.append(tools.covered(tools.picture(plotter, mapper)).sum())
-        reach = getattr(extra, "radius", 0.0)
+        reach = getattr(effect, "radius", 0.0)
         np.testing.assert_allclose(np.array(actor.GetBounds()) - bounds, reach * np.array([-1, 1] * 3), atol=1e-6)
     assert areas[1] > 2 * areas[0] > 2 * areas[2]
-    mapper.set_extra("both", Tubes(1.0))  # its normals, not the lines' shading
+    mapper.set_effect("both", Tubes(1.0))  # its normals, not the lines' shading
     assert tools.covered(tools.picture(plotter, mapper)).sum() == areas[0]
-    mapper.set_extra("both", None)
-    mapper.set_extra("tubes", None)
+    mapper.set_effect("both", None)
+    mapper.set_effect("tubes", None)
     assert (tools.picture(plotter, mapper) == before).all()
     assert {buffer["name"] for buffer in mapper.explain()["windows"][0]["buffers"]} == names
     assert {b["name"]: b["bytes"] for b in mapper.explain()["windows"][0]["buffers"]}["gbuffer"] == size
@@ -209,7 +209,7 @@ def test_tubes_are_picked_where_they_show(rods, make_plotter, tools):
 
 
 def test_what_the_engine_was_asked(rods):
-    """The values that the extras stand for."""
+    """The values that the effects stand for."""
     assert FibletStyle(**Tubes(0.5).style) == FibletStyle(radius=0.5, across=True)
     assert FibletStyle(line_width=4.0, **TubeShading().style).relief == "across"
     assert FibletStyle(**TubeShading().style).relief is None

@@ -34,19 +34,19 @@ def fiblets(width=WIDTH):
 
 def fiblets_as_tubes():
     mapper = fiblets(1.0)
-    mapper.set_extra("tubes", Tubes(THIN))
+    mapper.set_effect("tubes", Tubes(THIN))
     return mapper
 
 
 def outline(width):
     mapper = fiblets(1.0)
-    mapper.set_extra("silhouette", Silhouette(np.ones(1, bool), width=width))
+    mapper.set_effect("silhouette", Silhouette(np.ones(1, bool), width=width))
     return mapper
 
 
 def halo_effect(width):
     mapper = fiblets(2.0)
-    mapper.set_extra("halos", Halos(width=width))
+    mapper.set_effect("halos", Halos(width=width))
     return mapper
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from pvfiblets.mappers import resolve
 
-COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point", "colour_point_value")
+COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point_rgba", "colour_point_scalar")
 
 
 def text(*features):
@@ -17,7 +17,7 @@ def test_a_feature_that_is_not_asked_for_leaves_nothing():
     plain = text("gbuffer", "normal", "colour_orientation")
     for word in ("Table", "StreamlineColours", "PositionMap", "log(", "pvfiblets::"):
         assert word not in plain
-    assert "log(" in text("gbuffer", "normal", "colour_point_value", "scale_logarithm")
+    assert "log(" in text("gbuffer", "normal", "colour_point_scalar", "scale_logarithm")
 
 
 @pytest.mark.parametrize("colour", COLOURS)

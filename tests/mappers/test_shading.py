@@ -65,11 +65,11 @@ def headlight(intensity=1.0):
 def rod(make_plotter, make_fibres, tools):
     """Return a function: colour of a short straight rod in the middle of the view from -y."""
 
-    def run(direction, *lights, extra=None, lighting=True):
+    def run(direction, *lights, effect=None, lighting=True):
         along = np.linspace(-10, 10, 41)[:, None] * unit(*direction)
         fibres = make_fibres(type(tools.helices(1, 2)).from_list([along]))
         mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=tuple(COLOUR / 255)))
-        mapper.set_extra("illuminated", Illuminated() if extra is None else extra)
+        mapper.set_effect("illuminated", Illuminated() if effect is None else effect)
         prop = actor.GetProperty()
         prop.SetAmbient(AMBIENT)
         prop.SetDiffuse(DIFFUSE)
@@ -155,13 +155,13 @@ def rods(tools, *ends):
 
 @pytest.fixture
 def scene(make_plotter, make_fibres, tools):
-    """Return a function that draws rods from -y with extras and returns the plotter, picture and mapper."""
+    """Return a function that draws rods from -y with effects and returns the plotter, picture and mapper."""
 
-    def run(ends, extras, *, color=(1.0, 1.0, 0.0), parallel=True, prepare=None, lighting=False, **options):
+    def run(ends, effects, *, color=(1.0, 1.0, 0.0), parallel=True, prepare=None, lighting=False, **options):
         fibres = make_fibres(rods(tools, *ends))
         mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=color))
-        for name, extra in extras.items():
-            mapper.set_extra(name, extra)
+        for name, effect in effects.items():
+            mapper.set_effect(name, effect)
         plotter = make_plotter(**{"window_size": (120, 100)} | options)
         plotter.add_actor(actor, reset_camera=False)
         plotter.camera_position = [(0, -DISTANCE, 0), (0, 0, 0), (0, 0, 1)]
@@ -319,8 +319,8 @@ def test_a_silhouette_for_other_streamlines_is_refused(scene):
 @pytest.mark.parametrize("kind", ["fxaa", "ssaa"])
 def test_anti_aliasing_keeps_the_picture(scene, kind):
     """Widths in mm and in pixels of the window stay: the same coverage, but for smooth edges."""
-    extras = {"halos": Halos(width=3.0, depth=4.0), "outline": Silhouette([True, False], (1, 0, 0), 4.0)}
-    plain = scene(CROSS, extras)[1].astype(float)
+    effects = {"halos": Halos(width=3.0, depth=4.0), "outline": Silhouette([True, False], (1, 0, 0), 4.0)}
+    plain = scene(CROSS, effects)[1].astype(float)
 
     def anti_alias(plotter, _):
         if kind == "ssaa":
@@ -328,7 +328,7 @@ def test_anti_aliasing_keeps_the_picture(scene, kind):
         else:
             plotter.renderer.UseFXAAOn()  # PyVista will not have it without a screen
 
-    smooth = scene(CROSS, extras, prepare=anti_alias)[1].astype(float)
+    smooth = scene(CROSS, effects, prepare=anti_alias)[1].astype(float)
     assert np.abs(plain.mean(axis=(0, 1)) - smooth.mean(axis=(0, 1))).max() < 6
     assert np.abs(plain - smooth).mean() < 12
 
@@ -340,22 +340,22 @@ def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     plotter.add_actor(actor)
     before, shaders = tools.picture(plotter, mapper), mapper.features
     bare = actor.GetShaderProperty().GetNumberOfShaderReplacements()
-    mapper.set_extra(name, ALL[name])
+    mapper.set_effect(name, ALL[name])
     with_it = tools.picture(plotter, mapper)
     assert not np.array_equal(before, with_it)
     slot = next(iter(windows._contexts.values())).slot(mapper)
-    assert name in slot.extras
-    mapper.set_extra(name, None)
+    assert name in slot.effects
+    mapper.set_effect(name, None)
     assert np.array_equal(tools.picture(plotter, mapper), before)
     assert mapper.features == shaders
     assert actor.GetShaderProperty().GetNumberOfShaderReplacements() == bare
-    assert not slot.extras
+    assert not slot.effects
 
 
 def test_all_at_once_and_in_a_window_of_another_size(make_plotter, lines, tools):
     mapper, actor = lines.actor(lighting=True)
-    for name, extra in (ALL | {"outline": Silhouette(np.arange(24) < 4)}).items():
-        mapper.set_extra(name, extra)
+    for name, effect in (ALL | {"outline": Silhouette(np.arange(24) < 4)}).items():
+        mapper.set_effect(name, effect)
     plotter = make_plotter(lighting="light kit")
     plotter.add_actor(actor)
     plotter.enable_depth_peeling()
@@ -368,7 +368,7 @@ def test_all_at_once_and_in_a_window_of_another_size(make_plotter, lines, tools)
 
 def test_two_renderers_have_pictures_of_their_own(make_plotter, lines, tools):
     mapper, actor = lines.actor()
-    mapper.set_extra("halos", Halos(width=3.0, depth=5.0, color=(1, 0, 0)))
+    mapper.set_effect("halos", Halos(width=3.0, depth=5.0, color=(1, 0, 0)))
     plotter = make_plotter(shape=(1, 2), window_size=(301, 150))
     for column in (0, 1):
         plotter.subplot(0, column)
@@ -389,7 +389,7 @@ plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
 line = np.c_[np.linspace(-10, 10, 61), np.zeros(61), np.zeros(61)]
 actor = plotter.add_fiblets([line], color="red", lighting=True, pipeline="geometry")
 actor.illuminated = actor.ambient_occlusion = actor.depth_cue = actor.halos = True
-actor.mapper.set_extra("outline", Silhouette([True], (0, 1, 0)))
+actor.mapper.set_effect("outline", Silhouette([True], (0, 1, 0)))
 plotter.set_background("black")
 plotter.view_xy()
 plotter.show(auto_close=False)

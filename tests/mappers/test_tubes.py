@@ -194,13 +194,13 @@ def test_every_way_to_colour(make_plotter, tools):
 
     assert colours(Colouring("orientation")) == [255, 0, 0]
     assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == [0, 255, 255]
-    assert colours(Colouring("streamline_rgb", values=np.array([[7, 8, 9]], np.uint8))) == [7, 8, 9]
+    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == [7, 8, 9]
     red = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
     assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=red, clim=(0, 1))) == [0, 0, 255]
-    through = Colouring("point_value", source="v", lut=red, clim=(0, 1))
+    through = Colouring("point_scalar", source="v", lut=red, clim=(0, 1))
     assert colours(through) == [255, 0, 0]
     assert colour_at(tools.picture(plotter, mapper), 120) == [0, 0, 255]
-    assert colours(Colouring("point_value", source="v", clim=(1, 2), below_color=(0, 1, 0))) == [0, 255, 0]
+    assert colours(Colouring("point_scalar", source="v", clim=(1, 2), below_color=(0, 1, 0))) == [0, 255, 0]
     with pytest.raises(ValueError, match="2 values for 1"):
         mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
 
@@ -209,7 +209,7 @@ def test_every_way_to_colour(make_plotter, tools):
 def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, opaque):
     rgba = np.array([[1, 0, 0, 1], [0, 1, 0, 1 if opaque else 0.5], [0, 0, 1, 1]])
     mapper, actor = made(straight(NodeValues(rgba, np.zeros((3, 4)))))
-    mapper.colouring = Colouring("point_rgb", source="v", see_through=not opaque)
+    mapper.colouring = Colouring("point_rgba", source="v", has_alpha=not opaque)
     plotter = shown(make_plotter, actor, view=flat)
     image = tools.picture(plotter, mapper).astype(int)
     assert actor.GetForceTranslucent() is not opaque
@@ -222,8 +222,8 @@ def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, o
 
 
 def test_point_colours_need_a_name():
-    with pytest.raises(ValueError, match="'point_rgb' needs source"):
-        Colouring("point_rgb")
+    with pytest.raises(ValueError, match="'point_rgba' needs source"):
+        Colouring("point_rgba")
 
 
 def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools):

@@ -122,7 +122,7 @@ def test_modes_change_with_what_they_need(make_plotter, tools):
     plotter = look(make_plotter())
     plotter.add_actor(actor, reset_camera=False)
     assert actor.GetForceTranslucent()
-    assert mapper.colouring.mode == "point_rgb"
+    assert mapper.colouring.mode == "point_rgba"
     first = tools.picture(plotter, mapper)
     mapper.casting = RaycastOptions("mip")
     assert mapper.colouring.mode == "solid"
@@ -130,14 +130,14 @@ def test_modes_change_with_what_they_need(make_plotter, tools):
     mapper.colouring = through_table((0.0, 2.0))
     assert middle(tools.picture(plotter, mapper)).tolist() == [128, 128, 128]
     mapper.casting = RaycastOptions("isosurface", (0.5,))
-    assert mapper.colouring.mode == "point_value"  # kept
+    assert mapper.colouring.mode == "point_scalar"  # kept
     assert not actor.GetForceTranslucent()
     assert not tools.covered(tools.picture(plotter, mapper)).any()
     mapper.casting = light()
     assert (tools.picture(plotter, mapper) == first).all()
     assert "tube_normal" not in mapper.explain()["features"]
     twice = mapper.explain()["windows"][0]
-    assert (twice["voxels_total"], twice["features"]) == (125, ["VOLUME_LIGHT", "VOLUME_PREINTEGRATED"])
+    assert (twice["voxels_total"], twice["features"]) == (125, ["VOLUME_COMPOSITE", "VOLUME_PREINTEGRATED"])
 
 
 def test_colours_that_a_mode_does_not_have_are_refused():
@@ -147,8 +147,8 @@ def test_colours_that_a_mode_does_not_have_are_refused():
     with pytest.raises(ValueError, match="of mode 'mip' is 'orientation'; choose of"):
         mapper.show(RaycastOptions("mip"), Colouring())
     assert mapper.casting.mode == "composite"
-    with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgb'"):
-        VolumeMapper(fog(), RaycastOptions("mip"), colouring=Colouring("point_rgb", source="light"))
+    with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgba'"):
+        VolumeMapper(fog(), RaycastOptions("mip"), colouring=Colouring("point_rgba", source="light"))
 
 
 def test_another_volume_takes_its_place(make_plotter, tools):

@@ -50,7 +50,7 @@ def made(drawn, casting, *, lighting=False, **options):
 
 
 def through_table(ends):
-    return Colouring("point_value", source="values", lut=GREYS, clim=ends)
+    return Colouring("point_scalar", source="values", lut=GREYS, clim=ends)
 
 
 def look(plotter, eye=(0.0, -100.0, 0.0), parallel=True):

@@ -81,10 +81,10 @@ def reds():
 
 plotter.show(auto_close=False)
 assert reds() == [[255, 0, 0]]
-assert "emission" in actor.mapper.extras
+assert "emission" in actor.mapper.effects
 actor.emission = 0.0
 assert len(reds()) > 3
-assert "emission" not in actor.mapper.extras
+assert "emission" not in actor.mapper.effects
 plotter.close()
 
 # The stub for type checkers.

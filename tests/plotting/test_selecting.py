@@ -108,7 +108,7 @@ def test_an_empty_selection_costs_nothing(rods):
     actor.deselect()
     assert np.array_equal(tools.picture(), before)
     assert actor.explain()["features"] == features
-    assert not actor.mapper.extras
+    assert not actor.mapper.effects
     assert len(actor.picking_layers) == 1
 
 

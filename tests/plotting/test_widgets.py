@@ -35,7 +35,7 @@ def test_a_plane_follows_its_widget(shown):
     plotter.render()
     buffers = {row["name"]: row["bytes"] for row in actor.explain()["buffers"]}
     renderer = actor.mapper._renderers()[0]
-    generation = renderer._target.generation
+    generation = renderer._buffer.generation
     for shift in (10.0, 12.0):
         widget.SetOrigin(shift, 1.0, 2.0)
         widget.SetNormal(0.6, 0.8, 0.0)
@@ -44,7 +44,7 @@ def test_a_plane_follows_its_widget(shown):
         same(actor.clips[name], regions.Plane((0.6, 0.8, 0.0), (shift, 1.0, 2.0)))
     assert list(actor.clips) == [name]
     assert actor.mapper._renderers()[0] is renderer, "the engine's renderer was made anew"
-    assert renderer._target.generation == generation + 2
+    assert renderer._buffer.generation == generation + 2
     assert {row["name"]: row["bytes"] for row in actor.explain()["buffers"]} == buffers
     plotter.fiblets.clear_widgets()
     assert not actor.clips

@@ -11,7 +11,7 @@ from pvfiblets import formats
 from pvfiblets.codec.reference import first_frame
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.report import culling, data
+from pvfiblets.report import culling, data_sets
 from pvfiblets.report.culling_pictures import Visible, averaged, colours, difference, directions, errors, views
 from pvfiblets.report.flights import Flight
 from pvfiblets.report.record import LeftOut
@@ -29,7 +29,7 @@ def small(monkeypatch):
 
 
 def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
-    formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 2000, 0))
+    formats.write(tmp_path / "some.tck", data_sets.synthetic_tracking(0.5, False, 2000, 0))
     left = []
     records = list(culling.STUDY.run(little(files=(tmp_path,)), left))
     assert not left
@@ -74,7 +74,7 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monk
     monkeypatch.setattr(culling, "QUICK_FLIGHTS", ())
     monkeypatch.setattr(culling, "variants", lambda quick: [])
     for name in ("a", "b"):
-        formats.write(tmp_path / f"{name}.tck", data.synthetic_tracking(0.5, False, 800, 0))
+        formats.write(tmp_path / f"{name}.tck", data_sets.synthetic_tracking(0.5, False, 800, 0))
     left = []
     assert list(culling.STUDY.run(little(files=(tmp_path,)), left)) == []
     assert left == [LeftOut("smaller files", "the largest are enough to see what culling does")]

@@ -15,7 +15,7 @@ from pvfiblets.report import features, features_window
 from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
 from pvfiblets.report.features_scenes import PLAIN, Drawn
 from pvfiblets.report.features_subjects import brain_subject, torus
-from pvfiblets.report.front import mark_fronts
+from pvfiblets.report.pareto import mark_fronts
 from pvfiblets.report.study import Budget, Unavailable
 from pvfiblets.synthetic import brain_streamlines
 

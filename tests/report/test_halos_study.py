@@ -13,7 +13,7 @@ from pvfiblets.codec.compress import compress
 from pvfiblets.engine import standalone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos.reference import picture as reference
-from pvfiblets.report import data, halos
+from pvfiblets.report import data_sets, halos
 from pvfiblets.report.halos_drawing import FibletHalos, Strips
 from pvfiblets.report.halos_exact import crossings, gaps, pixel_errors
 from pvfiblets.report.halos_pictures import helices, look_of, orbit
@@ -32,7 +32,7 @@ def small(monkeypatch):
 
 
 def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
-    formats.write(tmp_path / "some.tck", data.synthetic_tracking(0.5, False, 1500, 3))
+    formats.write(tmp_path / "some.tck", data_sets.synthetic_tracking(0.5, False, 1500, 3))
     left = []
     records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
     assert not left
@@ -82,7 +82,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
 
 def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     for name in ("a", "b"):
-        formats.write(tmp_path / f"{name}.tck", data.synthetic_tracking(0.5, False, 300, 0))
+        formats.write(tmp_path / f"{name}.tck", data_sets.synthetic_tracking(0.5, False, 300, 0))
     left = []
     assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]

@@ -12,8 +12,8 @@ from PIL import Image
 from pvfiblets.cli import main
 from pvfiblets.report import plots, studies
 from pvfiblets.report.dot_plot import in_rows
-from pvfiblets.report.front import mark_fronts
 from pvfiblets.report.page import page
+from pvfiblets.report.pareto import mark_fronts
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
 from pvfiblets.report.report_file import Report
 
@@ -236,7 +236,7 @@ def test_numbers_of_one_are_singular():
 def test_measuring_needs_no_vtk_and_no_matplotlib():
     code = (
         "import sys, pvfiblets.report.run, pvfiblets.report.codec, pvfiblets.report.decode, pvfiblets.cli_report\n"
-        "from pvfiblets.report.data import synthetic_tracking\n"
+        "from pvfiblets.report.data_sets import synthetic_tracking\n"
         "synthetic_tracking(1.0, True, 500, 0)\n"
         "print(sorted({'vtkmodules', 'vtk', 'pyvista', 'matplotlib', 'dipy'} & set(sys.modules)))"
     )

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pvfiblets.errors import FormatError
-from pvfiblets.report.front import mark_fronts, pareto
-from pvfiblets.report.measure import Turns, distances, error_figures, median_step
+from pvfiblets.report.errors_and_times import Turns, distances, error_figures, median_step
+from pvfiblets.report.pareto import mark_fronts, pareto
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
 from pvfiblets.report.report_file import Report
 

@@ -11,7 +11,7 @@ import pytest
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.reference import encode_direction
-from pvfiblets.report import codec, data, decode, decoders, run, studies
+from pvfiblets.report import codec, data_sets, decode, decoders, run, studies
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
 from pvfiblets.report.study import Budget, Options, Unavailable
 from pvfiblets.streamlines import Streamlines
@@ -37,7 +37,7 @@ def ragged(counts, seed=0):
 def test_thinned_sets_are_whole_streamlines_from_all_over(limit):
     whole = ragged(np.random.default_rng(1).integers(1, 40, 400))
     chunks = [whole[a:b] for a, b in pairwise([0, 7, 100, 101, 400])]
-    kept, note = data.thinned(chunks, limit)
+    kept, note = data_sets.thinned(chunks, limit)
     assert kept.n_points <= limit
     if whole.n_points <= limit:
         assert note == ""
@@ -55,9 +55,9 @@ def test_thinned_sets_are_whole_streamlines_from_all_over(limit):
 
 
 def test_one_long_streamline_is_cut_and_said_so():
-    kept, note = data.thinned([ragged([500])], 100)
+    kept, note = data_sets.thinned([ragged([500])], 100)
     assert (len(kept), kept.n_points, note) == (1, 100, "its first 100 points")
-    assert data.thinned([], 100)[0].n_points == 0
+    assert data_sets.thinned([], 100)[0].n_points == 0
 
 
 def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path, monkeypatch):
@@ -66,23 +66,23 @@ def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path,
     (tmp_path / "notes.txt").write_text("no tractogram")
     formats.write(tmp_path / "empty.tck", ragged([]))
     left = []
-    sets = list(data.data_sets(little(files=(tmp_path,)), left))
+    sets = list(data_sets.data_sets(little(files=(tmp_path,)), left))
     assert [s.name for s in sets if s.group not in ("smooth", "noisy")] == ["good.tck"]
     assert {item.what for item in left} == {"bad.tck", "empty.tck"}
     assert str(tmp_path) not in " ".join(item.reason for item in left)
     monkeypatch.setenv("PVFIBLETS_DATA", str(tmp_path))
-    assert len(data.files_of(())[0]) == 3
+    assert len(data_sets.files_of(())[0]) == 3
     monkeypatch.delenv("PVFIBLETS_DATA")
-    assert data.files_of(()) == ([], "no file was given with --data, and PVFIBLETS_DATA names no folder")
+    assert data_sets.files_of(()) == ([], "no file was given with --data, and PVFIBLETS_DATA names no folder")
     with pytest.raises(FileNotFoundError, match="absent.trk"):
-        data.files_of([tmp_path / "absent.trk"])
+        data_sets.files_of([tmp_path / "absent.trk"])
 
 
 def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
     from pvfiblets.report.baselines.directions import widest_turn
-    from pvfiblets.report.measure import median_step
+    from pvfiblets.report.errors_and_times import median_step
 
-    smooth, noisy = (data.synthetic_tracking(0.5, noise, 3000, 0) for noise in (False, True))
+    smooth, noisy = (data_sets.synthetic_tracking(0.5, noise, 3000, 0) for noise in (False, True))
     for made in (smooth, noisy):
         assert median_step(made.points, made.offsets) == pytest.approx(0.5, rel=1e-4)
         assert 1000 < made.n_points <= 3000
@@ -122,7 +122,7 @@ def test_records_of_fewer_points():
     offsets = np.array([0, 0, 31, 60, 61])
     np.testing.assert_array_equal(codec.recut(offsets, 30), [0, 0, 30, 31, 60, 61])
     np.testing.assert_array_equal(codec.recut(offsets, 60), offsets)
-    streamlines = data.synthetic_tracking(0.2, False, 1500, 0)
+    streamlines = data_sets.synthetic_tracking(0.2, False, 1500, 0)
     points, lines = streamlines.points, np.asarray(streamlines.offsets)
     packed = codec._fiblets(0.1, "fast", 15)(0.2)(points, lines)
     from pvfiblets.codec.layout import unpack

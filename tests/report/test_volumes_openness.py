@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine.volumes.occlusion import LIFT
+from pvfiblets.engine.volumes.ray_occlusion import LIFT
 from pvfiblets.report.volumes_openness import exact_openness, seen_from
 from pvfiblets.volumes import RaycastVolume, reference
 

@@ -6,10 +6,10 @@ import asyncio
 import contextlib
 from types import SimpleNamespace
 
+from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
-from pvfiblets.web.cuts import CutActions
 from pvfiblets.web.describe import Charts
-from pvfiblets.web.filtering import FilterActions
+from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options

@@ -46,6 +46,7 @@ def test_a_file_that_is_opened_while_another_one_is_waits_and_is_named(visit):
     for name in ("large.tck", "ball.ply"):
         here.press("o")
         here.page.click(f"[data-entry='{name}']")
+        here.page.wait_for_selector("#dialog-open", state="hidden")  # the key would toggle it
     here.wait(lambda: "then ball.ply" in here.page.locator("#busy").inner_text(), "what waits")
     here.page.click("[data-action=cancel]")
     here.wait(lambda: here.layers() == 2, "its turn")

@@ -154,7 +154,7 @@ def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to
         await desk.done()
 
     asyncio.run(test())
-    assert jobs == [{"text": f"lines_shown{suffix}: stopping", "share": -1.0, "cancellable": False}]
+    assert jobs == [{"text": f"lines_shown{suffix}: stopping", "share": -1.0, "cancellable": False, "then": ""}]
     assert desk.said == [("info", f"lines_shown{suffix} was not written: cancelled.")]
     assert (desk.page.download, desk.page.job) == ({}, {})
     assert sorted(folder.iterdir()) == before

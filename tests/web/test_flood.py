@@ -12,7 +12,7 @@ import time
 import pytest
 
 from pvfiblets.web.connections import Connections, room
-from pvfiblets.web.journal import Quiet, printable
+from pvfiblets.web.log_limiter import LogLimiter, printable
 from tests.web.visitors import TOKEN, Browser, gate, message, raw, run
 
 
@@ -247,7 +247,7 @@ def test_the_limit_fits_into_the_file_descriptors():
 @pytest.fixture
 def journal(caplog):
     now = [0.0]
-    quiet = Quiet(3, 60.0, lambda: now[0])
+    quiet = LogLimiter(3, 60.0, lambda: now[0])
     logger = logging.getLogger("pvfiblets.test_flood")
     logger.addFilter(quiet)
     yield logger, quiet, now

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.web.controls import axis_of, controls, moved
 from pvfiblets.web.describe import typed
-from pvfiblets.web.filtering import _condition, _flat
+from pvfiblets.web.filter_tab import _condition, _flat
 
 BOUNDS = (-10.0, 30.0, 0.0, 20.0, -5.0, 5.0)
 SPHERE = {"kind": "sphere", "center": [1.0, 2.0, 3.0], "radius": 4.0}

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
     from ..shaders import Programs
     from .coverage import CoverageBuffer
     from .pyramid import DepthPyramid
@@ -25,7 +25,7 @@ __getattr__, __dir__ = names_from(__name__, _HOME)
 
 
 def make_occlusion(
-    culling: str | None, ctx: moderngl.Context, gl: OpenGL, programs: Programs, fiblets: FibletSet
+    culling: str | None, ctx: moderngl.Context, gl: GLExtras, programs: Programs, fiblets: FibletSet
 ) -> Occlusion | None:
     """Return what a kind of culling tests against; None for none.
 

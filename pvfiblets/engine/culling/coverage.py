@@ -36,7 +36,7 @@ from ..bindings import CULLING
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..gbuffer import GBuffer
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from ..view import Style, View
 from .pyramid import DepthPyramid
@@ -118,7 +118,7 @@ class CoverageBuffer:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     fiblets : FibletSet
         Asked for its coordinates and sizes, not kept.
@@ -126,10 +126,10 @@ class CoverageBuffer:
 
     feature = "CULL_COVERAGE"
     halfway = False
-    guesses = False
+    predicts = False
     outside: moderngl.Texture | None = None
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, fiblets: FibletSet) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, fiblets: FibletSet) -> None:
         self._ctx = ctx
         self._programs = programs
         self._pyramid = DepthPyramid(ctx, gl, programs)

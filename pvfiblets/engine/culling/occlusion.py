@@ -26,8 +26,8 @@ class Occlusion(Protocol):
     outside: moderngl.Texture | None
     """Depth of other things in the scene, as keys, that hides fiblets too; for one picture."""
 
-    guesses: bool
-    """Whether it can tell, by the last picture, what will probably show: ``shaders/compute/guess.comp``."""
+    predicts: bool
+    """Whether the last picture predicts what will show: ``shaders/culling/visibility_prediction.glsl``."""
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:
         """Be told that a picture will be drawn; the target still holds what it held.

@@ -13,7 +13,7 @@ import moderngl
 
 from ..bindings import CULLING
 from ..gbuffer import GBuffer
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from ..view import Style, View
 
@@ -23,15 +23,15 @@ SMALLEST = 8
 """Pixels of the smallest level's longer side: larger squares hide nothing that smaller ones do not."""
 
 
-GUESS_LEVEL = 4
-"""Level by which it is guessed what will show, squares of 32 pixels: on made-up brains of 60 and of 600 million
+PREDICTION_LEVEL = 4
+"""Level by which it is predicted what will show, squares of 32 pixels: on made-up brains of 60 and of 600 million
 segments the finer ones draw less early, and more in all."""
 
 
 class _Levels:
     """A texture of all levels, and a framebuffer for each."""
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, size: tuple[int, int]) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
         sides = tuple(max(1 << (n - 1).bit_length() >> 1, 1) for n in size)
         self.count = max(1, (max(sides) // SMALLEST).bit_length())
         self.texture = ctx.texture((sides[0], sides[1]), 1, dtype="u4")
@@ -61,12 +61,12 @@ class DepthPyramid:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
 
     Attributes
     ----------
-    guesses : bool
+    predicts : bool
         Whether there is a last picture, by which a pipeline may choose what to draw first.
     outside : moderngl.Texture or None
         Depth of other things in the scene, which hides too.
@@ -75,14 +75,14 @@ class DepthPyramid:
     feature = "CULL_PYRAMID"
     halfway = True
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
         self._size = (0, 0)
         self._now: _Levels | None = None
         self._last: _Levels | None = None
-        self.guesses = False
+        self.predicts = False
         self.outside: moderngl.Texture | None = None
 
     def _resize(self, size: tuple[int, int]) -> None:
@@ -94,8 +94,8 @@ class DepthPyramid:
     def before(self, target: GBuffer, view: View, style: Style) -> None:  # noqa: ARG002 - as of all kinds
         """Make the last picture's pyramid, if there is one of this size: what it does not hide is drawn early."""
         self._resize(target.size)
-        self.guesses = target.generation > 0
-        if self.guesses:
+        self.predicts = target.generation > 0
+        if self.predicts:
             if self._last is None:
                 self._last = _Levels(self._ctx, self._gl, target.size)
             self._build(self._last, target)
@@ -118,7 +118,8 @@ class DepthPyramid:
             width, height = target.size
             for level, framebuffer in enumerate(levels.framebuffers):
                 outside = self.outside if level == 0 else None
-                program, array = self._programs.screen("culling/reduce.frag", ["SCENE_DEPTH"] if outside else [])
+                features = ["SCENE_DEPTH"] if outside else []
+                program, array = self._programs.screen("culling/pyramid_reduce.frag", features)
                 if outside is not None:
                     outside.use(CULLING["outside"])
                     program["outside"] = CULLING["outside"]
@@ -137,14 +138,14 @@ class DepthPyramid:
     def bind(self, program: Any) -> None:
         """Bind what a program looks at, and tell it where it is."""
         assert self._now is not None
-        last = self._last if self.guesses else None
+        last = self._last if self.predicts else None
         self._now.texture.use(CULLING["occlusion"])
         (last or self._now).texture.use(CULLING["last"])
         values = {
             "pyramid": CULLING["occlusion"],
             "pyramid_levels": self._now.count,
             "last_pyramid": CULLING["last"],
-            "guess_level": -1 if last is None else min(GUESS_LEVEL, last.count - 1),
+            "prediction_level": -1 if last is None else min(PREDICTION_LEVEL, last.count - 1),
         }
         for name, value in values.items():
             if name in program:

@@ -13,17 +13,17 @@ from ...lazy_imports import names_from
 if TYPE_CHECKING:
     from .ambient_occlusion import AmbientOcclusionPass
     from .halos import HaloPass
-    from .lens import Lens
     from .outline import OutlinePass
+    from .projection import Projection
     from .screen import ScreenEffect
 
 
-__all__ = ["AmbientOcclusionPass", "HaloPass", "Lens", "OutlinePass", "ScreenEffect"]
+__all__ = ["AmbientOcclusionPass", "HaloPass", "OutlinePass", "Projection", "ScreenEffect"]
 
 _HOME = {
     "AmbientOcclusionPass": "ambient_occlusion",
     "HaloPass": "halos",
-    "Lens": "lens",
+    "Projection": "projection",
     "OutlinePass": "outline",
     "ScreenEffect": "screen",
 }

@@ -1,4 +1,4 @@
-"""Ambient occlusion in screen space: ``shaders/effects/occlusion.frag`` and its mean over 4 x 4 pixels."""
+"""Ambient occlusion in screen space: ``shaders/effects/ssao.frag`` and its mean over 4 x 4 pixels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .lens import Lens
+from .projection import Projection
 from .screen import ScreenEffect
 
 __all__ = ["MAX_SAMPLES", "AmbientOcclusionPass"]
@@ -35,7 +35,7 @@ class AmbientOcclusionPass(ScreenEffect):
     def draw(
         self,
         buffer: Any,
-        lens: Lens,
+        lens: Projection,
         directions_to_view: npt.NDArray[np.float64],
         *,
         radius: float,
@@ -49,7 +49,7 @@ class AmbientOcclusionPass(ScreenEffect):
         ----------
         buffer : GBuffer
             Its ``depth`` is read, and its ``ids``, or of surfaces ``across``.
-        lens : Lens
+        lens : Projection
             Of the same picture.
         directions_to_view : numpy.ndarray
             ``(3, 3)``: tangents in data coordinates to view coordinates, of any scale.
@@ -86,8 +86,8 @@ class AmbientOcclusionPass(ScreenEffect):
         rough = self._targets["rough occlusion"][0]
 
         def passes() -> None:
-            self._pass("occlusion", "rough occlusion", textures, uniforms, features)
-            self._pass("smooth", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
+            self._pass("ssao", "rough occlusion", textures, uniforms, features)
+            self._pass("ssao_blur", "occlusion", {"keys": buffer.depth, "rough": rough}, uniforms)
 
         made_of = buffer, buffer.generation, lens.key, *features, turn, radius, samples, strength
         self._once(made_of, passes)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .lens import Lens
+from .projection import Projection
 
 __all__ = ["STEPS", "TILE", "WIDEST", "Focus", "disc_areas", "distance_of"]
 
@@ -48,12 +48,12 @@ class Focus:
     max_blur: float
     darkening: float = 0.0
 
-    def uniforms(self, lens: Lens) -> dict[str, object]:
+    def uniforms(self, lens: Projection) -> dict[str, object]:
         """Return what ``shaders/effects/picture/blur.frag`` asks for.
 
         Parameters
         ----------
-        lens : Lens
+        lens : Projection
             Of the picture.
         """
         k, w0, w1 = lens.scale
@@ -76,7 +76,7 @@ class Focus:
         }
 
 
-def distance_of(lens: Lens, depth: float) -> float:
+def distance_of(lens: Projection, depth: float) -> float:
     """Return how far from the viewer's plane (mm) a window depth in 0..1 lies."""
     _, w0, w1 = lens.scale
     scale, shift = float(lens.projection[2, 2]), float(lens.projection[2, 3])

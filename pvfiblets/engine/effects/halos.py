@@ -7,7 +7,7 @@ from typing import Any
 
 import moderngl
 
-from .lens import Lens
+from .projection import Projection
 from .screen import ScreenEffect
 
 __all__ = ["WIDEST", "HaloPass"]
@@ -33,7 +33,7 @@ class HaloPass(ScreenEffect):
     def draw(
         self,
         buffer: Any,
-        lens: Lens,
+        lens: Projection,
         *,
         width: float,
         depth: float,
@@ -46,7 +46,7 @@ class HaloPass(ScreenEffect):
         ----------
         buffer : GBuffer
             Its ``depth`` is read.
-        lens : Lens
+        lens : Projection
             Of the same picture.
         width : float
             mm from a line's edge to its halo's; at most `WIDEST` pixels of the finished picture.
@@ -73,8 +73,8 @@ class HaloPass(ScreenEffect):
         keys = {"keys": buffer.depth}
 
         def passes() -> None:
-            self._pass("distance", "distances", keys, uniforms)
-            self._pass("nearest", "tiles", {"distances": distances}, uniforms)
+            self._pass("linear_depth", "distances", keys, uniforms)
+            self._pass("tile_min_distance", "tiles", {"distances": distances}, uniforms)
             self._pass("halo", "halos", keys | {"distances": distances, "tiles": tiles}, uniforms)
 
         self._once((buffer, buffer.generation, lens.key, width, depth, reach, widest), passes)

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
-from .lens import Lens
 from .picture_passes import Attachment, PicturePasses, bytes_of
+from .projection import Projection
 from .tone import Tone
 
 __all__ = ["Attachment", "PictureEffects"]
@@ -102,7 +102,7 @@ class PictureEffects(PicturePasses):
         *,
         tone: Tone,
         focus: Focus | None = None,
-        lens: Lens | None = None,
+        lens: Projection | None = None,
     ) -> None:
         """Draw the copy, changed.
 
@@ -116,7 +116,7 @@ class PictureEffects(PicturePasses):
             Comes after the focus.
         focus : Focus, optional
             Of a picture that was copied with its depths.
-        lens : Lens, optional
+        lens : Projection, optional
             With the focus: of the viewport.
         """
         x, y, width, height = viewport
@@ -136,7 +136,7 @@ class PictureEffects(PicturePasses):
             finally:
                 framebuffer.release()
 
-    def _blurred(self, focus: Focus, lens: Lens) -> dict[str, moderngl.Texture]:
+    def _blurred(self, focus: Focus, lens: Projection) -> dict[str, moderngl.Texture]:
         """Say of each pixel of the copy how far its light spreads; returns what the last pass reads."""
         size = self._textures["colours"].size
         blurs = self._texture("blurs", size, 4, "f4")

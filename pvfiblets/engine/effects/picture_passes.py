@@ -10,7 +10,7 @@ import moderngl
 
 from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 
 __all__ = ["Attachment", "PicturePasses", "bytes_of"]
@@ -50,7 +50,7 @@ class PicturePasses:
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._programs = Programs(ctx, constants)
         self._textures: dict[str, moderngl.Texture] = {}
         self._framebuffers: dict[tuple[str, ...], moderngl.Framebuffer] = {}

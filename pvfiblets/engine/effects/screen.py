@@ -9,7 +9,7 @@ import moderngl
 
 from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 
 __all__ = ["ScreenEffect"]
@@ -28,7 +28,7 @@ class ScreenEffect:
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
         self._ctx = ctx
-        self._gl = OpenGL(ctx)
+        self._gl = GLExtras(ctx)
         self._programs = Programs(ctx, constants)
         self._queries: dict[str, moderngl.Query] = {}
         self._targets: dict[str, tuple[moderngl.Texture, moderngl.Framebuffer]] = {}

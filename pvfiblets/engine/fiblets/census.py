@@ -20,7 +20,7 @@ import numpy as np
 
 from ..bindings import BLOCKS, COUNT_STORAGE, STORAGE
 from ..gbuffer import EMPTY, GBuffer
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
 from .chunks import Chunk, storage_buffer
@@ -41,13 +41,13 @@ class Census:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     max_groups : int
         Work groups per axis of a dispatch; 0 where there are no compute shaders.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, max_groups: int) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, max_groups: int) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
@@ -92,7 +92,7 @@ class Census:
 
     def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str], kept: Visibility) -> int:
         program = self._programs.render(
-            {"vertex": "fiblets/raster/count.vert", "fragment": "fiblets/raster/count.frag"},
+            {"vertex": "fiblets/hardware_raster/count.vert", "fragment": "fiblets/hardware_raster/count.frag"},
             [*features, "TEXTURE_DATA"],
         )
         set_data_samplers(self._gl, program)

@@ -25,14 +25,25 @@ import numpy.typing as npt
 from ...codec import layout
 from ..bindings import BLOCKS, STORAGE
 from ..errors import EngineError, GPUMemoryError
+from ..uniform_struct import Field, UniformStruct
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["CHUNK_BLOCK_BYTES", "Chunk", "ChunkPlan", "padded", "plan_chunks", "reserve_buffer", "storage_buffer"]
+__all__ = ["CHUNK_BLOCK", "Chunk", "ChunkPlan", "padded", "plan_chunks", "reserve_buffer", "storage_buffer"]
 
-CHUNK_BLOCK_BYTES = 48
-"""Of the uniform block ``Chunk``."""
+CHUNK_BLOCK = UniformStruct(
+    "Chunk",
+    Field("chunk_fiblets", "uint", "fiblets here"),
+    Field("chunk_first", "uint", "number of the first among all"),
+    Field("chunk_points_before", "uint", "points of its streamline in earlier chunks"),
+    Field("chunk_first_rank", "uint", "rank of the first streamline here"),
+    Field("chunk_pages", "uint", "pages here"),
+    Field("chunk_end_words", "uint", "word of `bounds` where end vectors begin"),
+    Field("value_bits", "uint", "of a stored per-point value"),
+    Field("value_of_code_0", "float", "in the array's own unit"),
+    Field("value_per_code", "float", "likewise"),
+)
 
 
 @dataclass(frozen=True)
@@ -61,7 +72,7 @@ class ChunkPlan:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory that :func:`pvfiblets.engine.fiblets.upload.upload_chunk` takes."""
-        return sum(self.sizes.values()) + CHUNK_BLOCK_BYTES
+        return sum(self.sizes.values()) + CHUNK_BLOCK.nbytes
 
 
 _STORED = ("anchors", "decoding", "codes", "bounds", "pages", "anchors_low", "values")
@@ -145,9 +156,9 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
     n, ranks = last - first, last_rank - rank + 1  # the last streamline may go on in the next page
     ids = 0 if fiblets.rank_to_id is None else -(-ranks // 4)
     sizes = {
-        "anchors": 8 * (n + 1),
+        "anchors": 4 * layout.WORDS["anchors"] * (n + 1),
         "bounds": 4 * -(-n // 2) + 4 * ranks,
-        "decoding": 12 * n,
+        "decoding": 4 * layout.WORDS["decoding"] * n,
         "codes": last_code - code + 4,  # four bytes are read at once
         "pages": 16 * (end - begin + ids),
     }

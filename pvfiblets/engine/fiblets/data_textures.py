@@ -1,6 +1,7 @@
 """A chunk's buffers as buffer textures, for OpenGL that has no storage buffers (``FEATURE_TEXTURE_DATA``).
 
-Buffer textures hold no copies: both ways read the same buffers. The names of the samplers stand in ``shaders/data``.
+Buffer textures hold no copies: both ways read the same buffers. The names of the samplers stand in
+``shaders/fiblets/data``.
 
 """
 
@@ -9,7 +10,7 @@ from __future__ import annotations
 import moderngl
 
 from ..bindings import FIBLET_DATA, PEELING, SAMPLED
-from ..opengl import BufferTexture, OpenGL
+from ..moderngl_extras import BufferTexture, GLExtras
 from .chunks import Chunk
 
 __all__ = ["SAMPLERS", "DataTextures", "set_data_samplers"]
@@ -32,12 +33,12 @@ class DataTextures:
 
     Parameters
     ----------
-    gl : OpenGL
+    gl : GLExtras
     chunk : Chunk
         Its buffers may come and go, as those of per-point values do.
     """
 
-    def __init__(self, gl: OpenGL, chunk: Chunk) -> None:
+    def __init__(self, gl: GLExtras, chunk: Chunk) -> None:
         self._gl = gl
         self._chunk = chunk
         self._textures: dict[str, tuple[moderngl.Buffer, BufferTexture]] = {}
@@ -69,7 +70,7 @@ class DataTextures:
         self._textures.clear()
 
 
-def set_data_samplers(gl: OpenGL, program: moderngl.Program) -> None:
+def set_data_samplers(gl: GLExtras, program: moderngl.Program) -> None:
     """Tell a program where :meth:`DataTextures.bind` puts what it reads."""
     for name, (sampler, _) in SAMPLERS.items():
         gl.set_sampler(program, sampler, FIBLET_DATA[name])

@@ -1,7 +1,7 @@
 """What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
 
 Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only what lies behind layer k - 1
-(``shaders/fiblets/raster/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
+(``shaders/fiblets/segments/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
 into, and what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they
 reach; what lies behind the last one is not there.
 
@@ -24,7 +24,7 @@ from ..gbuffer import RELIEF, GBuffer
 
 if TYPE_CHECKING:
     from ..culling import Occlusion
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
     from ..shaders import Programs
     from ..view import View
     from .pipelines import DrawRequest, Pipeline
@@ -43,7 +43,7 @@ class LayeredBuffer:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     target : GBuffer
         Of the same size and kind as what is to be kept.
     count : int
@@ -64,7 +64,7 @@ class LayeredBuffer:
         If the G-buffer has it.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, target: GBuffer, count: int) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, count: int) -> None:
         self.size, self.count = target.size, count
         self.relief = target.relief
         self.nbytes = 0
@@ -95,7 +95,7 @@ class LayeredBuffer:
         across = {} if self.across is None else {"across": self.across}
         return {"depth": self.depth, "ids": self.ids, "position": self.position, **across}
 
-    def _framebuffer(self, ctx: moderngl.Context, gl: OpenGL, target: GBuffer, layer: int) -> moderngl.Framebuffer:
+    def _framebuffer(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, layer: int) -> moderngl.Framebuffer:
         # moderngl attaches whole textures: those of the picture hold the places.
         framebuffer = ctx.framebuffer([getattr(target, name) for name in self.arrays])
         self._things.append(framebuffer)
@@ -103,7 +103,7 @@ class LayeredBuffer:
             gl.attach_layer(framebuffer, array, layer, attachment)
         return framebuffer
 
-    def keep(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, drawn: GBuffer, layer: int) -> None:
+    def keep(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, drawn: GBuffer, layer: int) -> None:
         """Copy a picture into a layer."""
         features = {None: [], "across": ["CROSS_LINE"], "normal": ["CROSS_LINE", "TUBES"]}[self.relief]
         program, array = programs.screen("fiblets/layers/copy.frag", features)
@@ -195,7 +195,7 @@ class Layers:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     make : callable
         Makes a pipeline, and what it culls by, if anything.
@@ -204,7 +204,7 @@ class Layers:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         make: Callable[[], tuple[Pipeline, Occlusion | None]],
     ) -> None:

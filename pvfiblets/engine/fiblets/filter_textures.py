@@ -1,7 +1,7 @@
 """What is there to be drawn: streamlines, and points, that the caller kept. The rest is culled, not only hidden.
 
 A streamline takes a bit, by rank; a point takes a bit, in the order in which points are coded. Both are looked at by
-the culling stage of every pipeline (``shaders/culling/frustum.glsl``), so that what is left out costs no decoding. A
+the culling stage of every pipeline (``shaders/culling/criteria.glsl``), so that what is left out costs no decoding. A
 segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only
 some segments are kept is drawn by the programs that can cut.
 """
@@ -16,7 +16,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...codec.places import Places
+from ...codec.streamline_ranges import StreamlineRanges
 from ...query.bits import rank_words
 from ..bindings import MASKS
 from ..errors import EngineError, GPUMemoryError
@@ -228,7 +228,7 @@ def _of_part(words: Words, whole: FibletSet, part: FibletSet) -> Words:
     """Bits of the points of some streamlines, in the order in which a part of the set holds them."""
     ids = np.arange(part.n_streamlines) if part.rank_to_id is None else np.asarray(part.rank_to_id)
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
-    places = Places.of(whole).at(ids)
+    places = StreamlineRanges.of(whole).at(ids)
     ends = np.cumsum(places.points)
     rows = np.repeat(places.point - (ends - places.points), places.points) + np.arange(ends[-1] if len(ends) else 0)
     return _packed(bits[rows].astype(np.bool_))

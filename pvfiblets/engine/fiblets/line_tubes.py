@@ -1,23 +1,34 @@
-"""Tubes of a radius in millimetres: the uniform block of ``shaders/frame/tubes.glsl``, computed in float64.
+"""Tubes of a radius in millimetres: the uniform block ``Tubes``, computed in float64.
 
-A pixel of a tube is where the ray through the pixel's centre enters the body (``shaders/fiblets/raster/tube.glsl``).
-Rays are described in local millimetres, by what a step of one pixel moves them: a shader then begins each ray beside
-the segment that it is tested against, and float32 rounds relative to the tube, not to its distance from the camera.
+``shaders/frame/tubes.glsl`` says what the symbols are.
+
+A pixel of a tube is where the ray through the pixel's centre enters the body
+(``shaders/fiblets/segments/line_tube.glsl``). Rays are described in local millimetres, by what a step of one pixel
+moves them: a shader then begins each ray beside the segment that it is tested against, and float32 rounds relative to
+the tube, not to its distance from the camera.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from ..frame import Array, local_frame
+from ..uniform_struct import Field, UniformStruct
 from ..view import View
 
-__all__ = ["TUBES_BYTES", "tubes_block"]
+__all__ = ["TUBES_BLOCK", "tubes_block"]
 
-TUBES_BYTES = 80
+TUBES_BLOCK = UniformStruct(
+    "Tubes",
+    Field("tube_radius", "float", "r"),
+    Field("tube_w_reach", "float", "change of W over r, at most"),
+    Field("tube_near_w", "float", "W of the near plane or less; 0 if unknown"),
+    Field("tube_perspective", "float", "1 in perspective, 0 in a parallel view"),
+    Field("tube_ray", "vec3", "D_0"),
+    Field("tube_ray_x", "vec3", "D_x"),
+    Field("tube_ray_y", "vec3", "D_y"),
+    Field("tube_eye", "vec3", "E"),
+)
 
 
 def tubes_block(view: View, radius: float, origin: Array, scale: Array, top: int) -> bytes:
@@ -34,7 +45,7 @@ def tubes_block(view: View, radius: float, origin: Array, scale: Array, top: int
     Returns
     -------
     bytes
-        :data:`TUBES_BYTES` of them. A matrix that shows no depth gets rays of no length, which hit nothing.
+        As many as :data:`TUBES_BLOCK` has. A matrix that shows no depth gets rays of no length, which hit nothing.
     """
     _, _, local = local_frame(view, origin, scale, top)
     width, height = view.size
@@ -52,11 +63,16 @@ def tubes_block(view: View, radius: float, origin: Array, scale: Array, top: int
         rays = inverse.T[[2, 0, 1]]
         if perspective:
             eye = -inverse @ window[[0, 1, 3], 3]
-    block: npt.NDArray[Any] = np.zeros((5, 4))
-    block[0] = radius, radius * slope, _least_w(window, perspective), float(perspective)
-    block[1:4, :3] = rays
-    block[4, :3] = eye
-    return block.astype("<f4").tobytes()
+    return TUBES_BLOCK.pack(
+        tube_radius=radius,
+        tube_w_reach=radius * slope,
+        tube_near_w=_least_w(window, perspective),
+        tube_perspective=float(perspective),
+        tube_ray=rays[0],
+        tube_ray_x=rays[1],
+        tube_ray_y=rays[2],
+        tube_eye=eye,
+    )
 
 
 def _least_w(window: Array, perspective: bool) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import BLOCKS, MEASURE_STORAGE
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch, nowhere
 from ..shaders import Programs
 from .chunks import Chunk, storage_buffer
@@ -99,20 +99,19 @@ class FeedbackMeasurer:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
 
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
         """See :meth:`Measurer.measure`."""
-        program = self._programs.render(
-            {"vertex": "fiblets/raster/measure.vert"}, [*features, "TEXTURE_DATA"], varyings=("first", "joint", "turns")
-        )
+        stages = {"vertex": "fiblets/hardware_raster/measure.vert"}
+        program = self._programs.render(stages, [*features, "TEXTURE_DATA"], varyings=("first", "joint", "turns"))
         set_data_samplers(self._gl, program)
         data = DataTextures(self._gl, chunk)
         array = self._ctx.vertex_array(program, [])

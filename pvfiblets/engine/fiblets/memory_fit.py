@@ -27,7 +27,7 @@ import numpy as np
 
 from ...codec.restrict import Restriction, even_share
 from ..errors import EngineError, GPUMemoryError
-from ..opengl import INTEGERS, OpenGL
+from ..moderngl_extras import INTEGERS, GLExtras
 from ..passes import is_software
 from .chunks import ChunkPlan, plan_chunks
 from .pipelines.limits import Limits
@@ -35,7 +35,7 @@ from .pipelines.limits import Limits
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["PICTURE", "RESERVE", "Fitted", "Room", "free_host_memory", "free_memory"]
+__all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_host_memory", "free_memory"]
 
 PICTURE = 1920 * 1080
 """Pixels of the picture that is reckoned with; larger ones live on the reserve."""
@@ -78,7 +78,7 @@ class Fitted:
 
 
 @dataclass(frozen=True)
-class Room:
+class MemoryBudget:
     """Memory that a set may take; made by :meth:`of`.
 
     Attributes
@@ -102,13 +102,13 @@ class Room:
     largest: int | None = None
 
     @classmethod
-    def of(cls, ctx: moderngl.Context, gl: OpenGL, limits: Limits, largest: int | None) -> Room:
+    def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:
         """Ask the driver and the machine.
 
         Parameters
         ----------
         ctx : moderngl.Context
-        gl : OpenGL
+        gl : GLExtras
         limits : Limits
         largest : int, optional
             Bytes that all buffers together may have.
@@ -182,13 +182,13 @@ class Room:
 
     def _buffers(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> int:
         """Bytes of all buffers that a set needs."""
-        marks = self.limits.mark_bytes(int(fiblets.n_fiblets))
+        marks = self.limits.visibility_bytes(int(fiblets.n_fiblets))
         return sum(plan.nbytes + plan.values for plan in plans) + marks + SHARED_BYTES
 
     def _said(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> str:
         """The numbers, for errors."""
         records, values = sum(plan.nbytes for plan in plans), sum(plan.values for plan in plans)
-        marks = self.limits.mark_bytes(int(fiblets.n_fiblets))
+        marks = self.limits.visibility_bytes(int(fiblets.n_fiblets))
         parts = {"records and codes": records + SHARED_BYTES, "marks": marks, "values of points": values}
         rooms = [] if self.largest is None else [(self.largest, "as was asked for")]
         if self.video is not None:
@@ -208,13 +208,13 @@ def _fraction_of(part: Restriction, whole: FibletSet) -> float:
     return max(some / every for some, every in sizes if every)
 
 
-def free_memory(ctx: moderngl.Context, gl: OpenGL) -> int | None:
+def free_memory(ctx: moderngl.Context, gl: GLExtras) -> int | None:
     """Bytes that buffers can still take, where it can be known beforehand.
 
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     """
     if is_software(ctx):
         return free_host_memory()

@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from ...codec import layout
 from ..errors import EngineError
-from .chunks import Chunk, padded, storage_buffer
+from .chunks import CHUNK_BLOCK, Chunk, padded, storage_buffer
 from .measures import Measurer
 from .sampled_volume import VolumeSource, VolumeTexture
 from .upload import fill_buffer, rows_of
@@ -185,8 +185,9 @@ class ValueSources:
             last = min(last + 1, len(stored.codes))
             size = padded((last - first) * stored.codes.dtype.itemsize)
             chunk.buffers["values"] = fill_buffer(self._ctx, size, rows_of(stored.codes, first, last), name)
-            chunk.buffers["chunk"].write(np.uint32(bits).tobytes(), offset=20)
-            chunk.buffers["chunk"].write(np.array([stored.lo, scale], "<f4").tobytes(), offset=32)
+            CHUNK_BLOCK.write(
+                chunk.buffers["chunk"], value_bits=bits, value_of_code_0=stored.lo, value_per_code=scale
+            )
 
     def _make_starts(self, name: str, features: Sequence[str]) -> None:
         starts = dict(enumerate(self._starts(name, features)))
@@ -260,7 +261,7 @@ def _curvatures(m: _Measures, carry: Any) -> tuple[Floats, Any, tuple[float, flo
 
 
 def _turns(a: Floats, b: Floats) -> Floats:
-    """``turn()`` of ``shaders/compute/turn.glsl`` on rows."""
+    """``turn()`` of ``shaders/fiblets/attributes/turn.glsl`` on rows."""
     la, lb = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     good = (la > 0.0) & (lb > 0.0)
     a = a / np.where(good, la, 1.0)[:, None]

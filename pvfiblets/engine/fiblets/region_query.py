@@ -18,8 +18,8 @@ import numpy.typing as npt
 from ...query.point_flags import ALL, ANY, FIRST, LAST
 from ..bindings import ANSWER_STORAGE, BLOCKS
 from ..errors import GPUMemoryError
-from ..frame import FRAME_BYTES, Array
-from ..opengl import OpenGL
+from ..frame import FRAME_BLOCK, Array
+from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch
 from ..regions.uniform_block import RegionBlock
 from ..shaders import Programs
@@ -35,7 +35,6 @@ BATCH = 1 << 20
 """Fiblets asked at a time, so that no dispatch runs for long."""
 
 _STAGES = 3
-_REFERENCE_AT = 160  # bytes into the block `Frame`, see shaders/frame/blocks.glsl
 
 # As shaders/fiblets/compute/query.comp has them.
 _INSIDE, _OUTSIDE, _UNSURE, _FIRST_INSIDE, _FIRST_UNSURE, _LAST_INSIDE, _LAST_UNSURE = (1 << k for k in range(7))
@@ -49,7 +48,7 @@ class RegionQuery:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     fiblets : FibletSet
         The whole set, with its codes.
@@ -67,7 +66,7 @@ class RegionQuery:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         fiblets: FibletSet,
         chunks: Sequence[Chunk],
@@ -97,7 +96,8 @@ class RegionQuery:
         Parameters
         ----------
         features : sequence of str
-            What the fiblets need to be decoded. The uniform blocks 1 and 4 are bound already; 0 is bound anew.
+            What the fiblets need to be decoded. The blocks ``Coding`` and ``Rotations`` are bound already; ``Frame`` is
+            bound anew.
         region : Region
             In data mm.
         sampling : float, optional
@@ -146,10 +146,8 @@ class RegionQuery:
             self._block.release()
             return False
         if self._frame is None:
-            self._frame = self._ctx.buffer(reserve=FRAME_BYTES)
-        block = np.zeros(FRAME_BYTES, np.uint8)
-        block[_REFERENCE_AT : _REFERENCE_AT + 12] = reference.astype("<u4").view(np.uint8)
-        self._frame.write(block.tobytes())
+            self._frame = self._ctx.buffer(bytes(FRAME_BLOCK.nbytes))
+        FRAME_BLOCK.write(self._frame, reference=reference)
         self._frame.bind_to_uniform_block(BLOCKS["Frame"])
         return True
 

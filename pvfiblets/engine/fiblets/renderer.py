@@ -18,7 +18,7 @@ from .census import Census, count_fiblets, no_counts
 from .chunks import Chunk
 from .depth_peeling import LayeredBuffer, Layers
 from .filter_textures import Filter
-from .memory_fit import Room
+from .memory_fit import MemoryBudget
 from .pipelines import CONSTANTS, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
 from .style import FibletStyle
@@ -108,7 +108,7 @@ class FibletRenderer(Drawable[FibletStyle]):
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
             whole = fiblets
-            room = Room.of(ctx, self._gl, limits, max_total_bytes)
+            room = MemoryBudget.of(ctx, self._gl, limits, max_total_bytes)
             fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share

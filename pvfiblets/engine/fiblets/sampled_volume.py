@@ -34,11 +34,19 @@ import numpy.typing as npt
 
 from ..bindings import BLOCKS, SAMPLED
 from ..errors import EngineError, GPUMemoryError
+from ..uniform_struct import Field, UniformStruct
 
-__all__ = ["SAMPLING_BYTES", "VolumeSource", "VolumeTexture"]
+__all__ = ["SAMPLING_BLOCK", "VolumeSource", "VolumeTexture"]
 
-
-SAMPLING_BYTES = 96
+SAMPLING_BLOCK = UniformStruct(
+    "Sampling",
+    Field("voxel_from_local", "mat4", "voxel indices of (local mm, 1)"),
+    Field("volume_shape", "vec3", "voxels along each axis"),
+    Field("volume_nearest", "int", "1: the nearest voxel's value; 0: between eight voxels"),
+    Field("volume_least", "float", "value of texel 0"),
+    Field("volume_per_unit", "float", "value per texel unit"),
+    Field("volume_whole", "int", "1: values are whole numbers of units"),
+)
 LARGEST_WHOLE = 2**24
 """Up to here float32 holds every whole number."""
 
@@ -177,7 +185,7 @@ class VolumeTexture:
             )
         texels, dtype, self._low, self._scale = _texels(source)
         self._whole = dtype.startswith("nu")
-        self.nbytes = texels.nbytes + SAMPLING_BYTES
+        self.nbytes = texels.nbytes + SAMPLING_BLOCK.nbytes
         data = np.ascontiguousarray(texels.T)  # i runs fastest
         try:
             self._texture = ctx.texture3d((shape[0], shape[1], shape[2]), 1, data, alignment=1, dtype=dtype)
@@ -187,7 +195,7 @@ class VolumeTexture:
             self._texture.release()
             raise GPUMemoryError(f"no GPU memory for {texels.nbytes} bytes of a volume: {problem}")
         self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
-        self._block = ctx.buffer(reserve=SAMPLING_BYTES)
+        self._block = ctx.buffer(reserve=SAMPLING_BLOCK.nbytes)
 
     def bind(self, to_data: Array) -> None:
         """Say where the picture's local coordinates lie in the volume, and bind both.
@@ -197,11 +205,16 @@ class VolumeTexture:
         to_data : numpy.ndarray
             (4, 4) float64, local mm to the fiblets' mm (:func:`pvfiblets.engine.frame.local_frame`).
         """
-        block = np.zeros((6, 4), "<f4")
-        block[:4] = (self.source.voxels @ to_data).T  # columns first
-        block[4] = *self.source.values.shape, bool(self.source.nearest)
-        block[5] = self._low, self._scale, self._whole, 0.0
-        self._block.write(block.tobytes())
+        self._block.write(
+            SAMPLING_BLOCK.pack(
+                voxel_from_local=self.source.voxels @ to_data,
+                volume_shape=self.source.values.shape,
+                volume_nearest=bool(self.source.nearest),
+                volume_least=self._low,
+                volume_per_unit=self._scale,
+                volume_whole=self._whole,
+            )
+        )
         self._block.bind_to_uniform_block(BLOCKS["Sampling"])
         self._texture.use(SAMPLED["sampled_volume"])
 

@@ -8,11 +8,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...codec import layout, tables
+from ...codec import direction_codebook, layout
 from ..bindings import BLOCKS
-from ..clipping import BLOCK_BYTES, clip_planes_block
-from ..frame import FRAME_BYTES, frame_block, segment_pixels
-from .line_tubes import TUBES_BYTES, tubes_block
+from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
+from ..frame import FRAME_BLOCK, frame_block, segment_pixels
+from ..uniform_struct import Field, UniformStruct
+from .line_tubes import TUBES_BLOCK, tubes_block
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -20,7 +21,21 @@ if TYPE_CHECKING:
     from .chunks import Chunk
     from .style import FibletStyle
 
-__all__ = ["SharedBlocks", "decoding_features"]
+__all__ = ["CODING_BLOCK", "ROTATIONS_BLOCK", "SharedBlocks", "decoding_features"]
+
+CODING_BLOCK = UniformStruct(
+    "Coding",
+    Field("anchor_scale", "vec3", "mm per anchor integer, along each axis"),
+    Field("radius_scale", "float", "mm per unit of a capsule's radius"),
+    Field("step_low", "float", "mm: the least step of direction fiblets"),
+    Field("step_span", "float", "mm from there to the greatest"),
+    Field("lattice_edge", "float", "mm"),
+    Field("end_vector_scale", "float", "mm per unit of an end vector"),
+    Field("rotation_scales", "vec4[4]", "of each cap angle, by fours: what the integers of its rotations are times"),
+)
+ROTATIONS_BLOCK = UniformStruct(
+    "Rotations", Field("rotations", "uvec4[1024]", "256 words a cap angle, by fours, of codec/direction_codebook.py")
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -59,14 +74,19 @@ class SharedBlocks:
         self._fiblets = fiblets
         self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         self.segment = 0.0
-        coding = np.zeros((6, 4), "<f4")
-        coding[0] = *fiblets.anchor_scale, fiblets.reach_scale
-        coding[1] = fiblets.step_lo, fiblets.step_hi - fiblets.step_lo, fiblets.lattice, fiblets.parameters.end_scale
-        coding[2:] = tables.packed_scales().reshape(4, 4)
+        coding = CODING_BLOCK.pack(
+            anchor_scale=fiblets.anchor_scale,
+            radius_scale=fiblets.reach_scale,
+            step_low=fiblets.step_lo,
+            step_span=fiblets.step_hi - fiblets.step_lo,
+            lattice_edge=fiblets.lattice,
+            end_vector_scale=fiblets.parameters.end_scale,
+            rotation_scales=direction_codebook.packed_scales().reshape(4, 4),
+        )
         self.buffers: dict[str, moderngl.Buffer] = {
-            "rotations": ctx.buffer(np.ascontiguousarray(tables.packed(), "<u4").tobytes()),
-            "coding": ctx.buffer(coding.tobytes()),
-            "frame": ctx.buffer(bytes(FRAME_BYTES)),
+            "rotations": ctx.buffer(ROTATIONS_BLOCK.pack(rotations=direction_codebook.packed().reshape(-1, 4))),
+            "coding": ctx.buffer(coding),
+            "frame": ctx.buffer(bytes(FRAME_BLOCK.nbytes)),
         }
 
     @property
@@ -82,7 +102,7 @@ class SharedBlocks:
 
     def forget_camera(self) -> None:
         """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
-        self.buffers["frame"].write(bytes(FRAME_BYTES))
+        self.buffers["frame"].write(bytes(FRAME_BLOCK.nbytes))
 
     def write_camera(self, view: View, style: FibletStyle) -> tuple[bool, bool]:
         """Bring the blocks of the camera up to date; say whether anything may cross the edges, or planes."""
@@ -94,20 +114,20 @@ class SharedBlocks:
         if style.radius is None:
             self._drop("tubes")
         else:
-            self._write("tubes", "Tubes", TUBES_BYTES, tubes_block(view, style.radius, *self.place))
+            self._write("tubes", TUBES_BLOCK, tubes_block(view, style.radius, *self.place))
             radius += style.radius
         planes = clip_planes_block(view, 2.0 * style.half_width or 1.0, *self.place, radius)
         if planes is None:
             self._drop("clip_planes")
         else:
-            self._write("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
+            self._write("clip_planes", CLIP_PLANES_BLOCK, planes)
         return margin < radius, planes is not None
 
-    def _write(self, name: str, block: str, size: int, data: bytes) -> None:
+    def _write(self, name: str, struct: UniformStruct, data: bytes) -> None:
         if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=size)
+            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
         self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
 
     def _drop(self, name: str) -> None:
         if name in self.buffers:

@@ -13,11 +13,11 @@ from tqdm import tqdm
 from ...codec import layout
 from ...codec.archive import forget
 from ..errors import EngineError, GPUMemoryError
-from .chunks import Chunk, ChunkPlan, reserve_buffer
+from .chunks import CHUNK_BLOCK, Chunk, ChunkPlan, reserve_buffer
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from .memory_fit import Fitted, Room
+    from .memory_fit import Fitted, MemoryBudget
 
 __all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
@@ -119,14 +119,22 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
     before = _points_before(fiblets, first)
     if max(before, last) >= 2**32:
         raise EngineError(f"fiblet {first} is {before} points into its streamline; shaders count less than 2^32")
-    block = np.zeros(12, np.uint32)
-    block[:3] = n, first, before
-    block[4], block[6], block[7] = ranks[0], plan.pages[1] - plan.pages[0], -(-n // 2)
+    block = CHUNK_BLOCK.pack(
+        chunk_fiblets=n,
+        chunk_first=first,
+        chunk_points_before=before,
+        chunk_first_rank=ranks[0],
+        chunk_pages=plan.pages[1] - plan.pages[0],
+        chunk_end_words=-(-n // 2),
+        value_bits=0,
+        value_of_code_0=0.0,
+        value_per_code=0.0,
+    )
     chunk = Chunk(plan, frozenset())
     try:
         for name, pieces in arrays.items():
             chunk.buffers[name] = fill_buffer(ctx, plan.sizes[name], pieces, name, show)
-        chunk.buffers["chunk"] = ctx.buffer(block.tobytes())
+        chunk.buffers["chunk"] = ctx.buffer(block)
     except BaseException:
         chunk.release()
         raise
@@ -135,7 +143,7 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
 
 
 def upload_fitting(
-    ctx: moderngl.Context, fiblets: FibletSet, room: Room, fit: str | None, chunks: list[Chunk], progress: bool
+    ctx: moderngl.Context, fiblets: FibletSet, room: MemoryBudget, fit: str | None, chunks: list[Chunk], progress: bool
 ) -> Fitted:
     """Copy what fits, and say what that is.
 
@@ -143,7 +151,7 @@ def upload_fitting(
     ----------
     ctx : moderngl.Context
     fiblets : FibletSet
-    room : Room
+    room : MemoryBudget
     fit : {None, 'sample'}
         What to do where memory does not suffice.
     chunks : list of Chunk

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..opengl import OpenGL
-    from ..regions.ray_intervals import Cutter
+    from ..moderngl_extras import GLExtras
+    from ..regions.ray_intervals import RegionIntervals
     from ..regions.uniform_block import RegionBlock
     from ..shaders import Programs
     from ..view import View
@@ -31,7 +31,7 @@ class Visibility:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     whole, drawn : FibletSet
         What filters speak of, and what lies on the GPU: the same, or some of its streamlines.
@@ -41,7 +41,7 @@ class Visibility:
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         whole: FibletSet,
         drawn: FibletSet,
@@ -51,7 +51,7 @@ class Visibility:
         self._gl = gl
         self._programs = programs
         self._filter = FilterTextures(ctx, whole, drawn, chunks)
-        self._cutter: Cutter | None = None
+        self._cutter: RegionIntervals | None = None
         self._block: RegionBlock | None = None
 
     @property
@@ -85,10 +85,10 @@ class Visibility:
             self._drop_region()
             return
         if self._cutter is None:
-            from ..regions.ray_intervals import Cutter
+            from ..regions.ray_intervals import RegionIntervals
             from ..regions.uniform_block import RegionBlock
 
-            self._cutter = Cutter(self._ctx, self._gl, self._programs)
+            self._cutter = RegionIntervals(self._ctx, self._gl, self._programs)
             self._block = RegionBlock(self._ctx, self._gl)
         assert self._block is not None
         self._cutter.prepare(view, origin, scale, top)

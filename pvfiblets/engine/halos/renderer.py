@@ -19,7 +19,7 @@ from .vertices import Vertices
 
 if TYPE_CHECKING:
     from ...halos.style import HaloStyle
-    from ..culling.listing import Listing
+    from ..culling.two_phase_items import Listing
 
 __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
@@ -70,7 +70,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         Copied to the GPU here.
     culling : {'two-phase', None}
         How items behind others are found out, where OpenGL 4.3 and many of them are there for it
-        (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
+        (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
 
     Attributes
     ----------

@@ -1,8 +1,9 @@
-"""Uniform blocks of lines and points with halos: the camera's, and their own (``shaders/halos/block.glsl``)."""
+"""Uniform blocks of lines and points with halos: the camera's, and their own.
+
+``shaders/halos/block.glsl`` says what the symbols are.
+"""
 
 from __future__ import annotations
-
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -10,13 +11,14 @@ import numpy.typing as npt
 
 from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
 from ..bindings import BLOCKS
-from ..clipping import BLOCK_BYTES, clip_planes_block
-from ..frame import FRAME_BYTES, frame_block, local_frame
+from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
+from ..frame import FRAME_BLOCK, frame_block, local_frame
 from ..lattice import TOP
+from ..uniform_struct import Field, UniformStruct
 from ..view import Style, View
 from .vertices import MOST
 
-__all__ = ["CONSTANTS", "HALOS_BYTES", "ITEM_SHIFT", "HaloBlocks"]
+__all__ = ["CONSTANTS", "HALOS_BLOCK", "ITEM_SHIFT", "HaloBlocks"]
 
 BESIDE = 3.0
 """Half pictures from the middle, beyond which an axis is cut off."""
@@ -24,22 +26,35 @@ BESIDE = 3.0
 ITEM_SHIFT = 3
 """Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
 
-CONSTANTS = {"max_clip_planes": 8, "displacement_words": TABLE_SIZE // 4, "item_shift": ITEM_SHIFT, "beside": BESIDE}
+CONSTANTS = {"item_shift": ITEM_SHIFT, "beside": BESIDE}
 """Of the shaders."""
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}
 _TABLE = len(DISPLACEMENTS)
-_LAYOUT: list[Any] = [
-    ("widths", "<f4", 4),
-    ("depth", "<f4", 4),
-    ("cue", "<f4", 4),
-    ("filter", "<f4", 4),
-    ("mask", "<f4", 4),
-    ("counts", "<i4", 4),
-    ("rows", "<f4", (4, 4)),
-    ("table", "<f4", TABLE_SIZE),
-]
-HALOS_BYTES = np.dtype(_LAYOUT).itemsize
+
+HALOS_BLOCK = UniformStruct(
+    "Halos",
+    Field("halo_line_reach", "float", "reach of w_line / 2"),
+    Field("halo_border_reach", "float", "reach of (w_strip - w_line) / 2, the halo on either side of a line"),
+    Field("halo_least_half_width", "float", "pixels of half the least width of a line"),
+    Field("halo_place_scale", "float", "mm per integer of a place"),
+    Field("halo_displacement", "float", "d_max"),
+    Field("halo_depth_per_mm", "float", "1 - depth falls by this per mm, and"),
+    Field("halo_depth_swing", "float", "by this / (W (W + halo_w_per_mm mm)) per mm"),
+    Field("halo_w_per_mm", "float", "change of W along the view"),
+    Field("halo_cue", "vec4", "a line is narrower at p by this share: its dot product with (p, 1)"),
+    Field("halo_filter_low", "float", "least number that is seen"),
+    Field("halo_filter_high", "float", "greatest number that is seen"),
+    Field("halo_filter_taper", "float", "mm over which lines narrow to where a threshold cuts them"),
+    Field("halo_cue_most", "float", "the largest share of halo_cue"),
+    Field("half_picture", "vec2", "half the picture's width and height in pixels"),
+    Field("halo_smooth", "int", "1 where lines have smooth edges"),
+    Field("halo_items", "int", "vertices of lines, or points"),
+    Field("halo_window_rows", "mat4", "(p, 1) before it is (X, Y, U, W): its columns are rows of the window's matrix"),
+    Field("halo_table", f"vec4[{TABLE_SIZE // 4}]", "entries of f, by fours"),
+    Field("halo_displacement_kind", "int", "of f: 0 x, 1 x^2, 2 sqrt(x), 3 by halo_table"),
+    Field("halo_table_entries", "int", "of halo_table that count"),
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -76,11 +91,11 @@ class HaloBlocks:
         beside : bool
             Whether anything may lie before the near plane, beyond the far one or far beside the picture.
         """
-        self._put("frame", "Frame", FRAME_BYTES, frame_block(view, Style(), *self._place)[0])
-        self._put("halos", "Halos", HALOS_BYTES, self._block(view, look, n_items))
+        self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
+        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items))
         planes = clip_planes_block(view, 1.0, *self._place, 0.0)
         if planes is not None:
-            self._put("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
+            self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
         elif "clip_planes" in self.buffers:
             self.buffers.pop("clip_planes").release()
         return planes is not None, self._beside(view)
@@ -96,29 +111,40 @@ class HaloBlocks:
         axis, scale_of_w, perspective = _axis(z, w)
         across = [row[:3] - (row[:3] @ axis) * axis for row in (x, y)]
         pixels = float(np.mean(half_size * np.linalg.norm(across, axis=1)))  # per mm, times W
-        block = np.zeros((), _LAYOUT)
-        block["widths"] = (
-            0.5 * look.line_width * pixels,
-            0.5 * (look.strip_width - look.line_width) * pixels,
-            0.5 * look.min_width,
-            self._place[1][0],
-        )
         # 1 - depth is (W - Z) / 2W: in perspective it changes by W to the power of -1, else it is linear.
+        per_mm, swing = 0.0, 0.0
         if perspective:
-            swing = 0.5 * float((w[3] - z[3]) - (w[:3] - z[:3]) @ axis / scale_of_w * w[3])
-            block["depth"] = look.max_displacement, 0.0, max(swing, 0.0) * scale_of_w, scale_of_w
+            bend = 0.5 * float((w[3] - z[3]) - (w[:3] - z[:3]) @ axis / scale_of_w * w[3])
+            swing = max(bend, 0.0) * scale_of_w
         else:
-            block["depth"] = look.max_displacement, float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0), 0.0, 0.0
-        block["cue"] = self._cue(to_data, axis, w, scale_of_w, perspective, look.width_cue)
-        block["filter"] = *np.clip((look.low, look.high), -MOST, MOST), look.filter_taper, float(look.smooth)
-        block["mask"] = 0.0, *half_size, look.width_cue
-        table = look.displacement
-        named = isinstance(table, str)
-        block["counts"] = n_items, _KINDS[table] if isinstance(table, str) else _TABLE, 0 if named else len(table), 0
-        block["rows"] = np.array([half_size[0] * x, half_size[1] * y, (w - z) / 2.0, w])
-        if not isinstance(table, str):
-            block["table"][: len(table)] = table
-        return block.tobytes()
+            per_mm = float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0)
+        low, high = np.clip((look.low, look.high), -MOST, MOST)
+        f = look.displacement
+        table = np.zeros(TABLE_SIZE)
+        if not isinstance(f, str):
+            table[: len(f)] = f
+        return HALOS_BLOCK.pack(
+            halo_line_reach=0.5 * look.line_width * pixels,
+            halo_border_reach=0.5 * (look.strip_width - look.line_width) * pixels,
+            halo_least_half_width=0.5 * look.min_width,
+            halo_place_scale=self._place[1][0],
+            halo_displacement=look.max_displacement,
+            halo_depth_per_mm=per_mm,
+            halo_depth_swing=swing,
+            halo_w_per_mm=scale_of_w if perspective else 0.0,
+            halo_cue=self._cue(to_data, axis, w, scale_of_w, perspective, look.width_cue),
+            halo_filter_low=low,
+            halo_filter_high=high,
+            halo_filter_taper=look.filter_taper,
+            halo_cue_most=look.width_cue,
+            half_picture=half_size,
+            halo_smooth=bool(look.smooth),
+            halo_items=n_items,
+            halo_window_rows=np.array([half_size[0] * x, half_size[1] * y, (w - z) / 2.0, w]).T,
+            halo_table=table.reshape(-1, 4),
+            halo_displacement_kind=_KINDS[f] if isinstance(f, str) else _TABLE,
+            halo_table_entries=0 if isinstance(f, str) else len(f),
+        )
 
     def _cue(
         self, to_data: Array, axis: Array, w: Array, scale_of_w: float, perspective: bool, strength: float
@@ -136,11 +162,11 @@ class HaloBlocks:
             return (0.0, 0.0, 0.0, 0.0)
         return (*(strength / (farthest - nearest) * axis), -strength * nearest / (farthest - nearest))
 
-    def _put(self, name: str, block: str, size: int, data: bytes) -> None:
+    def _put(self, name: str, struct: UniformStruct, data: bytes) -> None:
         if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=size)
+            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
         self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
 
     def release(self) -> None:
         """Give the buffers back; twice is harmless."""

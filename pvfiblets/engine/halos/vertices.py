@@ -17,7 +17,7 @@ from ...halos.geometry import HaloLines, HaloPoints
 from ..bindings import HALOS
 from ..errors import EngineError
 from ..lattice import lattice, places
-from ..opengl import TEXEL_FORMATS, BufferTexture, OpenGL
+from ..moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 
 __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 
@@ -37,7 +37,7 @@ class Vertices:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     drawn : HaloLines or HaloPoints
 
     Attributes
@@ -55,7 +55,7 @@ class Vertices:
         too large for float32.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, drawn: HaloLines | HaloPoints) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, drawn: HaloLines | HaloPoints) -> None:
         self._ctx, self._gl, self._drawn = ctx, gl, drawn
         self._textures: dict[str, BufferTexture] = {}
         self._holds: dict[str, object] = {}

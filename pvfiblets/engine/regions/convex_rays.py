@@ -1,4 +1,4 @@
-"""Where rays enter and leave convex shapes, and what joins those: the numbers of ``shaders/regions/rays.glsl``.
+"""Where rays enter and leave convex shapes, and what joins those: the uniform block of ``shaders/regions/rays.glsl``.
 
 All matrices are composed in float64, and expanded about a leaf's own centre in the picture, so that float32 holds what
 is left of them to the last digits.
@@ -12,17 +12,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ...query.region import MAX_LEAVES
 from ...query.shapes import AND, BOX, NOT, SPHERE, SURFACE
 from ..frame import Array
+from ..uniform_struct import Field, UniformStruct
 from .clip_planes import SIDES
 
 if TYPE_CHECKING:
     from ...query.shapes import Region, Shape
 
-__all__ = ["Form", "rays_block", "to_unit", "window_matrix"]
+__all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
 
 _ROWS = 6
 _PLANES, _SPHERE, _SURFACE = range(3)
+
+RAYS_BLOCK = UniformStruct(
+    "Rays",
+    Field("rays_rows", f"vec4[{_ROWS * MAX_LEAVES}]", f"{_ROWS} a leaf: of planes, or of a sphere"),
+    Field("rays_centres", f"vec3[{MAX_LEAVES}]", "c of each leaf"),
+    Field("rays_rectangles", f"ivec4[{MAX_LEAVES}]", "of a surface: left, lower, right, upper pixel that it may touch"),
+    Field("rays_first_layers", f"int[{MAX_LEAVES}]", "of a surface, among all surfaces' layers"),
+    Field("rays_layer_counts", f"int[{MAX_LEAVES}]", "of a surface"),
+    Field("rays_first_tallies", f"int[{MAX_LEAVES}]", "of a surface, among all surfaces' tallies; -1: it has none"),
+)
 
 
 def to_unit(leaf: Shape, offset: Array) -> Array:
@@ -63,7 +75,7 @@ def _centre(window: Array, place: Array, size: tuple[int, int]) -> Array:
 
 
 @dataclass(frozen=True)
-class Form:
+class RegionSignature:
     """What a program is written for: how many leaves there are, of which kinds, and what joins them.
 
     Attributes
@@ -78,7 +90,7 @@ class Form:
     program: tuple[int, ...]
 
     @classmethod
-    def of(cls, region: Region) -> Form:
+    def of(cls, region: Region) -> RegionSignature:
         """Return that of a region."""
         return cls(tuple(leaf.kind for leaf in region.leaves), region.program)
 
@@ -143,17 +155,14 @@ def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, in
     Returns
     -------
     numpy.ndarray
-        A structured scalar: ``rows``, ``centres``, ``surfaces``.
+        Scalar of ``RAYS_BLOCK.dtype``.
 
     Raises
     ------
     numpy.linalg.LinAlgError
         If the matrix is singular.
     """
-    leaves = len(region.leaves)
-    block: npt.NDArray[Any] = np.zeros(
-        (), [("rows", "<f4", (leaves, _ROWS, 4)), ("centres", "<f4", (leaves, 4)), ("surfaces", "<i4", (leaves, 4))]
-    )
+    block: npt.NDArray[Any] = np.zeros((), RAYS_BLOCK.dtype)
     inverse = np.linalg.inv(window)
     if not np.isfinite(inverse).all():
         raise np.linalg.LinAlgError("a view without depth")
@@ -163,8 +172,8 @@ def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, in
         about = _centre(window, np.append(leaf.centre - offset, 1.0), size)
         unit = _expanded(to_unit(leaf, offset) @ inverse, about)
         rows = _quadric(unit, size) if leaf.kind == SPHERE else _scaled(SIDES[leaf.kind] @ unit, size)
-        block["rows"][k, : len(rows)] = rows
-        block["centres"][k, :3] = about
+        block["rays_rows"][_ROWS * k : _ROWS * k + len(rows)] = rows
+        block["rays_centres"][k, :3] = about
     return block
 
 

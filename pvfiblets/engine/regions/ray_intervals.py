@@ -1,4 +1,4 @@
-"""Where a region begins and ends along each pixel's ray: `Cutter`, for ``shaders/regions/boundaries.glsl``.
+"""Where a region begins and ends along each pixel's ray: `RegionIntervals`, for ``shaders/regions/boundaries.glsl``.
 
 This work is based on: Schertzer et al. 2022, section 5.1 and figure 10: a mesh drawn into a depth buffer for its front
 and one for its back decides by pixel which fragments lie inside, which is right for convex meshes. Here every pixel has
@@ -27,11 +27,11 @@ from ...query.shapes import SURFACE
 from ..bindings import BLOCKS, REGIONS
 from ..errors import EngineError
 from ..frame import Array, local_frame
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
 from .clip_planes import check_region
-from .convex_rays import Form, rays_block, to_unit, window_matrix
+from .convex_rays import RAYS_BLOCK, RegionSignature, rays_block, to_unit, window_matrix
 from .layer_stack import LayerStack, Rectangle, Squares
 from .surface_crossings import SurfaceLayers, rectangle_of
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ...query.shapes import Region
     from ...query.surfaces import Surface
 
-__all__ = ["Cutter"]
+__all__ = ["RegionIntervals"]
 
 
 _SCISSOR_TEST = 0x0C11
@@ -51,27 +51,29 @@ _LAYERS = 2
 """Of boundaries, before any pixel is known to have more than fit in."""
 
 
-class Cutter:
+class RegionIntervals:
     """Keeps the boundaries of a region along the rays of a picture.
 
     Parameters
     ----------
     ctx : moderngl.Context
         OpenGL 3.3 or later.
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
         self._made: tuple[object, ...] | None = None
-        self._form: tuple[Form, tuple[int, ...]] | None = None
+        self._form: tuple[RegionSignature, tuple[int, ...]] | None = None
         self._stack: LayerStack | None = None
         self._squares = Squares(ctx, gl, programs)
         self._surfaces: SurfaceLayers | None = None
-        self._forms: dict[tuple[Form, int], tuple[moderngl.Program, moderngl.VertexArray, frozenset[str]]] = {}
+        self._forms: dict[
+            tuple[RegionSignature, int], tuple[moderngl.Program, moderngl.VertexArray, frozenset[str]]
+        ] = {}
         self._block: moderngl.Buffer | None = None
         self.layers = 0
 
@@ -132,12 +134,10 @@ class Cutter:
             return
         crossings = self._draw_surfaces(region, block, to_clip, offset, size)
         crossings += 2 * sum(leaf.kind != SURFACE for leaf in region.leaves)
-        if self._block is None or self._block.size != block.nbytes:
-            if self._block is not None:
-                self._block.release()
-            self._block = self._ctx.buffer(reserve=block.nbytes)
+        if self._block is None:
+            self._block = self._ctx.buffer(reserve=RAYS_BLOCK.nbytes)
         self._block.write(block.tobytes())
-        form = Form.of(region)
+        form = RegionSignature.of(region)
         meshes = tuple(id(cast("Surface", leaf).mesh) for leaf in region.leaves if leaf.kind == SURFACE)
         if (form, meshes) != self._form:  # a simpler one needs no more than it does
             self._form = form, meshes
@@ -164,7 +164,7 @@ class Cutter:
         found = []
         for k, leaf in enumerate(region.leaves):
             if leaf.kind == SURFACE:
-                found.append(block["centres"][k].astype(int).tolist())
+                found.append(block["rays_rectangles"][k].tolist())
             else:
                 placed = to_clip @ np.linalg.inv(to_unit(leaf, offset))
                 found.append(rectangle_of(placed, np.full(3, -1.0), np.ones(3), size))
@@ -195,11 +195,13 @@ class Cutter:
         surfaces = [cast("Surface", region.leaves[k]) for k in leaves]
         peeled = self._surfaces.draw(surfaces, to_clip, offset, size)
         for k, place in zip(leaves, peeled, strict=True):
-            block["surfaces"][k, :3] = place.first, place.layers, place.tallies
-            block["centres"][k] = place.rectangle
+            block["rays_rectangles"][k] = place.rectangle
+            block["rays_first_layers"][k] = place.first
+            block["rays_layer_counts"][k] = place.layers
+            block["rays_first_tallies"][k] = place.tallies
         return sum(place.crossings for place in peeled)
 
-    def _combine(self, form: Form, stack: LayerStack, rectangle: Rectangle) -> None:
+    def _combine(self, form: RegionSignature, stack: LayerStack, rectangle: Rectangle) -> None:
         """Draw all layers of the boundaries."""
         assert self._block is not None
         program, array = self._program(form, stack.together)
@@ -222,7 +224,7 @@ class Cutter:
             framebuffer.use()
             array.render(moderngl.TRIANGLES, vertices=3)
 
-    def _program(self, form: Form, outputs: int) -> tuple[moderngl.Program, moderngl.VertexArray]:
+    def _program(self, form: RegionSignature, outputs: int) -> tuple[moderngl.Program, moderngl.VertexArray]:
         """Return the program for a form of region and layers at once, and what to render three vertices of."""
         key = form, outputs
         if key not in self._forms:

@@ -25,7 +25,7 @@ import numpy as np
 from ..bindings import CROSSINGS
 from ..errors import EngineError, GPUMemoryError
 from ..frame import Array
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from .layer_stack import LayerStack, Rectangle, Squares
 
@@ -122,11 +122,11 @@ class SurfaceLayers:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs

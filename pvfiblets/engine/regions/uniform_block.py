@@ -1,11 +1,11 @@
-"""Regions on the GPU: the uniform block of ``shaders/regions/block.glsl``, and the distance fields that it refers to.
+"""Regions on the GPU: the uniform block ``Regions``, and the distance fields that it refers to.
 
 A leaf's map from data mm is composed with the reference anchor of the local coordinates in float64, so that float32
 rounds relative to what lies near that reference (:mod:`pvfiblets.engine.frame`). Every classification in the shaders is
-conservative: what rounding may turn over counts as undecided.
+conservative: what rounding may turn over counts as undecided. ``shaders/regions/block.glsl`` says what the symbols are.
 
-Budget: the block takes :data:`BLOCK_BYTES`, of the 16 KiB that OpenGL promises. A surface's field takes about 64^3
-texels of 4 bytes, 1 MB; a label volume's one for each voxel.
+Budget: the block takes 5.3 KiB of the 16 that OpenGL promises. A surface's field takes about 64^3 texels of 4 bytes,
+1 MB; a label volume's one for each voxel.
 """
 
 from __future__ import annotations
@@ -21,33 +21,32 @@ from ...query.region import MAX_LEAVES, MAX_OPS
 from ...query.shapes import LABELS, SURFACE
 from ..bindings import BLOCKS, REGIONS
 from ..errors import GPUMemoryError
+from ..uniform_struct import Field, UniformStruct
 
 if TYPE_CHECKING:
-    from ...query.fields import Field
+    from ...query.fields import Field as DistanceField
     from ...query.region import Region
     from ...query.shapes import Shape
-    from ..opengl import OpenGL
+    from ..moderngl_extras import GLExtras
 
-__all__ = ["BLOCK_BYTES", "FieldTextures", "RegionBlock", "region_block", "region_features"]
-
-
+__all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
 UNDECIDED = -1
 """Kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it."""
 
-_BLOCK = np.dtype(
-    [
-        ("info", "<i4", 4),
-        ("program", "<i4", MAX_OPS),
-        ("leaves", "<i4", (MAX_LEAVES, 4)),
-        ("rows", "<f4", (MAX_LEAVES, 3, 4)),
-        ("slopes", "<f4", (MAX_LEAVES, 4)),
-        ("slacks", "<f4", (MAX_LEAVES, 4)),
-        ("field_sizes", "<i4", (MAX_LEAVES, 4)),
-        ("field_steps", "<f4", (MAX_LEAVES, 4)),
-    ]
+REGIONS_BLOCK = UniformStruct(
+    "Regions",
+    Field("region_words", "int", "of the program"),
+    Field("region_program", f"ivec4[{MAX_OPS // 4}]", "postfix, by fours: a leaf, or one of the words below"),
+    Field("region_kinds", f"int[{MAX_LEAVES}]", "of leaves"),
+    Field("region_rows", f"vec4[{3 * MAX_LEAVES}]", "three rows a leaf: u = xyz . p + w"),
+    Field("region_slopes", f"vec3[{MAX_LEAVES}]", "change of u per mm: lengths of the rows"),
+    Field("region_whole_slopes", f"float[{MAX_LEAVES}]", "change of u as a whole, at most, in the field's units"),
+    Field("region_slacks", f"vec3[{MAX_LEAVES}]", "slack that does not depend on p"),
+    Field("region_field_corners", f"ivec3[{MAX_LEAVES}]", "first texel of a leaf's field"),
+    Field("region_field_shapes", f"ivec3[{MAX_LEAVES}]", "texels along each axis"),
+    Field("region_field_steps", f"vec3[{MAX_LEAVES}]", "units of the field from texel to texel"),
 )
-BLOCK_BYTES = _BLOCK.itemsize
 
 _LARGEST = 1e30  # float32 squares are taken of positions, not of these
 _LEAST = float(np.finfo(np.float32).tiny)  # smaller numbers may be flushed to 0
@@ -77,11 +76,11 @@ def region_block(region: Region, to_data: Array, corners: Sequence[Corner] = ())
     Returns
     -------
     bytes
-        :data:`BLOCK_BYTES` of them.
+        As many as :data:`REGIONS_BLOCK` has.
     """
-    block: npt.NDArray[Any] = np.zeros((), _BLOCK)
-    block["info"][:2] = len(region.program), len(region.leaves)
-    block["program"][: len(region.program)] = region.program
+    block: npt.NDArray[Any] = np.zeros((), REGIONS_BLOCK.dtype)
+    block["region_words"] = len(region.program)
+    block["region_program"].reshape(-1)[: len(region.program)] = region.program
     fields = dict(zip((id(field) for field in _fields_of(region)), corners, strict=True))
     for k, leaf in enumerate(region.leaves):
         _pack_leaf(block, k, leaf, to_data[:3, 3], fields)
@@ -102,20 +101,22 @@ def _pack_leaf(block: npt.NDArray[Any], k: int, leaf: Shape, offset: Array, corn
         linear, moved = linear / field.spacing[:, None], (moved - field.origin) / field.spacing
         lost = lost / field.spacing
         kind = LABELS if field.whole else SURFACE  # of blocks of voxels no sign alone is sure
-        block["leaves"][k, 1:] = corners[id(field)]
-        block["field_sizes"][k, :3] = field.values.shape[::-1]
-        block["field_steps"][k, :3] = steps
+        block["region_field_corners"][k, :3] = corners[id(field)]
+        block["region_field_shapes"][k, :3] = field.values.shape[::-1]
+        block["region_field_steps"][k, :3] = steps
     values = np.concatenate([linear, moved[:, None]], axis=1)
-    slopes = np.array([*np.linalg.norm(linear, axis=1), np.linalg.norm(linear * steps[:, None], 2)])
-    good = bool(np.isfinite(values).all() and max(np.abs(values).max(), slopes.max(), lost.max()) < _LARGEST)
-    block["leaves"][k, 0] = kind if good else UNDECIDED
+    slopes, whole = np.linalg.norm(linear, axis=1), float(np.linalg.norm(linear * steps[:, None], 2))
+    largest = max(np.abs(values).max(), slopes.max(), whole, lost.max())
+    good = bool(np.isfinite(values).all() and largest < _LARGEST)
+    block["region_kinds"][k, 0] = kind if good else UNDECIDED
     if good:
-        block["rows"][k] = values
-        block["slopes"][k] = slopes * _UP + _LEAST
-        block["slacks"][k, :3] = lost * _UP + 4.0 * _LEAST
+        block["region_rows"][3 * k : 3 * k + 3] = values
+        block["region_slopes"][k, :3] = slopes * _UP + _LEAST
+        block["region_whole_slopes"][k, 0] = whole * _UP + _LEAST
+        block["region_slacks"][k, :3] = lost * _UP + 4.0 * _LEAST
 
 
-def _fields_of(region: Region) -> list[Field]:
+def _fields_of(region: Region) -> list[DistanceField]:
     """Fields of a region's leaves, each once."""
     fields = {id(leaf.field): leaf.field for leaf in region.leaves if leaf.field is not None}
     return list(fields.values())
@@ -136,7 +137,7 @@ class FieldTextures:
     def __init__(self, ctx: moderngl.Context, largest: int) -> None:
         self._ctx = ctx
         self._largest = largest
-        self._fields: list[Field] = []
+        self._fields: list[DistanceField] = []
         self._texture: moderngl.Texture3D | None = None
         self.corners: list[Corner] = []
 
@@ -145,12 +146,12 @@ class FieldTextures:
         """Bytes on the GPU."""
         return 0 if self._texture is None else 4 * int(np.prod(self._texture.size))
 
-    def update(self, fields: Sequence[Field]) -> None:
+    def update(self, fields: Sequence[DistanceField]) -> None:
         """Make the texture of some fields, unless it is there.
 
         Parameters
         ----------
-        fields : sequence of Field
+        fields : sequence of DistanceField
 
         Raises
         ------
@@ -214,7 +215,7 @@ class RegionBlock:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
 
     Attributes
     ----------
@@ -222,7 +223,7 @@ class RegionBlock:
         Of programs that look at the region; none while there is none.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras) -> None:
         self._ctx = ctx
         self._gl = gl
         self._buffer: moderngl.Buffer | None = None
@@ -233,7 +234,7 @@ class RegionBlock:
     @property
     def nbytes(self) -> int:
         """Bytes on the GPU."""
-        return self._textures.nbytes + (0 if self._buffer is None else BLOCK_BYTES)
+        return self._textures.nbytes + (0 if self._buffer is None else REGIONS_BLOCK.nbytes)
 
     def write(self, region: Region, to_data: Array) -> None:
         """Bring block and fields up to date, and bind the block.
@@ -253,7 +254,7 @@ class RegionBlock:
         self._textures.update(_fields_of(region))
         packed = region_block(region, to_data, self._textures.corners)
         if self._buffer is None:
-            self._buffer = self._ctx.buffer(reserve=BLOCK_BYTES)
+            self._buffer = self._ctx.buffer(reserve=REGIONS_BLOCK.nbytes)
         if packed != self._packed:
             self._buffer.write(packed)
             self._packed = packed

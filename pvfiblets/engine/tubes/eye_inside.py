@@ -18,13 +18,13 @@ from ..view import View
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import SplineTubes
 
-__all__ = ["Inside"]
+__all__ = ["EyeInsideTest"]
 
 _GROUP = 256
 Array = npt.NDArray[np.float64]
 
 
-class Inside:
+class EyeInsideTest:
     """The boxes of one set's segments.
 
     Parameters

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from ..bindings import TUBES
 from ..errors import EngineError
 from ..lattice import lattice, places
-from ..opengl import BufferTexture, OpenGL
+from ..moderngl_extras import BufferTexture, GLExtras
 
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
@@ -33,7 +33,7 @@ class Nodes:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     tubes : SplineTubes
 
     Attributes
@@ -51,7 +51,7 @@ class Nodes:
         radius, derivative or extent is too large for float32.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, tubes: SplineTubes) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, tubes: SplineTubes) -> None:
         self._ctx, self._gl, self._tubes = ctx, gl, tubes
         self._textures: dict[str, BufferTexture] = {}
         self.buffers: dict[str, moderngl.Buffer] = {}

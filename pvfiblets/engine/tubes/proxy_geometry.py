@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..shaders import Programs
 from ..vertex_pulling import BATCH, QUAD, PulledShapes
 
-__all__ = ["Silhouettes"]
+__all__ = ["ProxyGeometry"]
 
 # Outwards, counter-clockwise: corners by their bits x, y, z.
 _BOX = np.array(
@@ -25,7 +25,7 @@ _SHAPES: dict[str, tuple[str, npt.NDArray[np.int64], int]] = {
 _DEPTH_CLAMP = 0x864F
 
 
-class Silhouettes:
+class ProxyGeometry:
     """Draws the segments of one set.
 
     Parameters

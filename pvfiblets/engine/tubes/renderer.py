@@ -13,11 +13,11 @@ from ..gbuffer import GBuffer
 from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
 from ..view import View
-from .eye_inside import Inside
+from .eye_inside import EyeInsideTest
 from .nodes import Nodes
 from .options import AUTO, SOLVERS, TubeStyle, check_choices
-from .proxy_geometry import Silhouettes
-from .uniform_blocks import CONSTANTS, TubeBlocks
+from .proxy_geometry import ProxyGeometry
+from .uniform_blocks import TubeBlocks
 
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
@@ -47,7 +47,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         Steps of one search for a root; the solver's own number by default.
     culling : {'two-phase', None}
         How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
-        it (:mod:`pvfiblets.engine.culling.listing`). It changes no pixel.
+        it (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
     middle : float
         Share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
     discard : bool
@@ -89,16 +89,16 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self.pipeline = "rectangles" if silhouettes == AUTO else silhouettes
         self.solver = "illinois" if solver == AUTO else solver
         self.iterations = SOLVERS[self.solver].iterations if iterations is None else int(iterations)
-        super().__init__(ctx, CONSTANTS)
+        super().__init__(ctx, {})
         self._tubes, self._middle, self._discard = tubes, float(middle), discard
         with self._making():
             self._nodes = self._keep(Nodes(ctx, self._gl, tubes))
             place = self._nodes.origin, self._nodes.scale, TOP
             self._blocks = self._keep(TubeBlocks(ctx, place, tubes.scaled))
-            self._silhouettes = self._keep(Silhouettes(ctx, self._programs, self.pipeline, tubes.n_segments))
+            self._silhouettes = self._keep(ProxyGeometry(ctx, self._programs, self.pipeline, tubes.n_segments))
             listable = tubes.n_segments if self.pipeline == "rectangles" else 0
             self._make_listing(culling, listable, tubes.n_segments, cull="tubes/cull.comp", features=["TUBES"])
-        self._inside = Inside(tubes, self._middle)
+        self._inside = EyeInsideTest(tubes, self._middle)
 
     def _draw(self, view: View, style: TubeStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         reads = self._nodes.show(self._attribute(style))

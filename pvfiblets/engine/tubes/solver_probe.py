@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import BLOCKS, TUBE_PROBE
-from ..opengl import OpenGL
+from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 from .options import SOLVERS, check_choices
-from .uniform_blocks import CONSTANTS, SPLINES_BYTES
+from .uniform_blocks import SPLINES_BLOCK
 
 __all__ = ["SolverProbe"]
 
@@ -60,13 +60,13 @@ class SolverProbe:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         check_choices(solver=solver, iterations=iterations)
-        self._ctx, self._gl = ctx, OpenGL(ctx)
-        self._programs = Programs(ctx, CONSTANTS)
+        self._ctx, self._gl = ctx, GLExtras(ctx)
+        self._programs = Programs(ctx, {})
         feature = SOLVERS[solver].feature
         wanted = {"TUBE_CHAIN": chain or hollow or feature is None, "TUBE_HOLLOW": hollow}
         features = [name for name, on in wanted.items() if on] + ([feature] if feature else [])
         self._program, self._array = self._programs.screen("tubes/probe.frag", features)
-        self._block = ctx.buffer(bytes(SPLINES_BYTES))
+        self._block = ctx.buffer(bytes(SPLINES_BLOCK.nbytes))
         self.limit(SOLVERS[solver].iterations if iterations is None else iterations)
         self._clock = clock
         self.seconds = 0.0
@@ -124,7 +124,7 @@ class SolverProbe:
     def limit(self, iterations: int) -> None:
         """Search by so many iterations from now on; the program stays the same."""
         check_choices(iterations=iterations)
-        self._block.write(np.array([iterations, 0, 0, 0], "<i4").tobytes(), offset=16)
+        SPLINES_BLOCK.write(self._block, tube_search_steps=iterations)
 
     def _run(self, rows: Array) -> Array:
         ctx, count = self._ctx, len(rows)

@@ -1,4 +1,7 @@
-"""Uniform blocks of spline tubes: the camera's, shared with fiblets, and their own (``shaders/tubes/block.glsl``)."""
+"""Uniform blocks of spline tubes: the camera's, shared with fiblets, and their own.
+
+``shaders/tubes/block.glsl`` says what the symbols are.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +10,25 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import BLOCKS
-from ..clipping import BLOCK_BYTES, clip_planes_block
-from ..fiblets.line_tubes import TUBES_BYTES, tubes_block
-from ..frame import FRAME_BYTES, frame_block, local_frame
+from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
+from ..fiblets.line_tubes import TUBES_BLOCK, tubes_block
+from ..frame import FRAME_BLOCK, frame_block, local_frame
+from ..uniform_struct import Field, UniformStruct
 from ..view import Style, View
 
-__all__ = ["CONSTANTS", "SPLINES_BYTES", "TubeBlocks"]
+__all__ = ["SPLINES_BLOCK", "TubeBlocks"]
 
-SPLINES_BYTES = 160
+SPLINES_BLOCK = UniformStruct(
+    "Splines",
+    Field("tube_place_scale", "float", "mm per integer of a place"),
+    Field("tube_control_share", "float", "c"),
+    Field("tube_least_over_w", "float", "mm, over W, of half the least width"),
+    Field("tube_by_length", "int", "1 where derivatives are by length, 0 where by a segment's parameter"),
+    Field("tube_search_steps", "int", "of a root search"),
+    Field("tube_segments", "int", "of all tubes"),
+    Field("tube_window_rows", "vec4[8]", "from (local mm, 1) to X, Y, W and U, each as float32 and what that leaves"),
+)
 Array = npt.NDArray[np.float64]
-
-CONSTANTS = {"max_clip_planes": 8}
-"""Of the shaders."""
 
 
 class TubeBlocks:
@@ -58,36 +68,41 @@ class TubeBlocks:
         iterations, n_segments : int
         """
         tubes = tubes_block(view, 1.0, *self._place)
-        rays = np.frombuffer(tubes, "<f4").reshape(5, 4).astype(np.float64)
-        pixel = max(np.linalg.norm(rays[2, :3]), np.linalg.norm(rays[3, :3]))
-        block = np.zeros((), [("scale", "<f4", 4), ("counts", "<i4", 4), ("rows", "<f4", (4, 2, 4))])
-        block["scale"] = self._place[1][0], middle, 0.5 * min_width * pixel, float(self._scaled)
-        block["counts"] = iterations, n_segments, 0, 0
-        block["rows"] = self._rows(view)
-        self._put("frame", "Frame", FRAME_BYTES, frame_block(view, Style(), *self._place)[0])
-        self._put("tubes", "Tubes", TUBES_BYTES, tubes)
-        self._put("splines", "Splines", SPLINES_BYTES, block.tobytes())
+        rays = np.frombuffer(tubes, TUBES_BLOCK.dtype)[0]
+        pixel = max(np.linalg.norm(rays[axis].astype(np.float64)) for axis in ("tube_ray_x", "tube_ray_y"))
+        splines = SPLINES_BLOCK.pack(
+            tube_place_scale=self._place[1][0],
+            tube_control_share=middle,
+            tube_least_over_w=0.5 * min_width * pixel,
+            tube_by_length=self._scaled,
+            tube_search_steps=iterations,
+            tube_segments=n_segments,
+            tube_window_rows=self._rows(view),
+        )
+        self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
+        self._put("tubes", TUBES_BLOCK, tubes)
+        self._put("splines", SPLINES_BLOCK, splines)
         planes = clip_planes_block(view, 1.0, *self._place, reach)
         if planes is None:
             if "clip_planes" in self.buffers:
                 self.buffers.pop("clip_planes").release()
             return False
-        self._put("clip_planes", "ClipPlanes", BLOCK_BYTES, planes)
+        self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
         return True
 
     def _rows(self, view: View) -> Array:
-        """(4, 2, 4): from local mm to X, Y, W of the window and to W - Z, in two parts."""
+        """(8, 4): from local mm to X, Y, W of the window and to W - Z, each in two parts."""
         x, y, z, w = local_frame(view, *self._place)[2]
         width, height = view.size
         rows = np.array([width / 2 * (x + w), height / 2 * (y + w), w, (w - z) / 2])
         high = rows.astype(np.float32).astype(np.float64)
-        return np.stack([high, rows - high], axis=1)
+        return np.stack([high, rows - high], axis=1).reshape(8, 4)
 
-    def _put(self, name: str, block: str, size: int, data: bytes) -> None:
+    def _put(self, name: str, struct: UniformStruct, data: bytes) -> None:
         if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=size)
+            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
         self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
 
     def release(self) -> None:
         """Give the buffers back; twice is harmless."""

@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
-from ...volumes.options import RaycastOptions
+from ...volumes.options import PROJECTIONS, RaycastOptions
 from ...volumes.volume import RaycastVolume
 from ..bindings import VOLUMES
 from ..errors import EngineError
-from ..opengl import BufferTexture, OpenGL
+from ..moderngl_extras import BufferTexture, GLExtras
 
 __all__ = ["NodeList", "takes_means"]
 
@@ -26,7 +26,7 @@ class NodeList:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     volume : RaycastVolume
 
     Attributes
@@ -40,7 +40,7 @@ class NodeList:
         0 while rays skip nothing: then there is none, neither here nor on the GPU.
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, volume: RaycastVolume) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, volume: RaycastVolume) -> None:
         self._ctx, self._gl, self._volume = ctx, gl, volume
         self._octrees: dict[int, Octree] = {}
         self._took: dict[int, float] = {}
@@ -149,4 +149,4 @@ def takes_means(casting: RaycastOptions) -> bool:
 
 
 def _peaks(casting: RaycastOptions) -> bool:
-    return casting.mode in ("mip", "local-mip")
+    return casting.mode in PROJECTIONS

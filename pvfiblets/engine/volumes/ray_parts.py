@@ -10,18 +10,18 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...volumes.volume import RaycastVolume
-    from ..opengl import OpenGL
-    from ..regions.ray_intervals import Cutter
+    from ..moderngl_extras import GLExtras
+    from ..regions.ray_intervals import RegionIntervals
     from ..shaders import Programs
     from ..view import View
 
-__all__ = ["RayCuts"]
+__all__ = ["VolumeRegionIntervals"]
 
 TOP = 1 << 16
 """Steps of the lattice over the volume's bounds of which one point is the origin of local coordinates."""
 
 
-class RayCuts:
+class VolumeRegionIntervals:
     """The boundaries of a view's region, which fiblets are cut by, too (:mod:`pvfiblets.engine.regions.ray_intervals`).
 
     Nothing is on the GPU, and nothing imported, while views have no region.
@@ -29,14 +29,14 @@ class RayCuts:
     Parameters
     ----------
     ctx : moderngl.Context
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     volume : RaycastVolume
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, volume: RaycastVolume) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, volume: RaycastVolume) -> None:
         self._made_of = ctx, gl, programs
-        self._cutter: Cutter | None = None
+        self._cutter: RegionIntervals | None = None
         bounds = np.array(volume.bounds).reshape(3, 2)
         self._origin, self._scale = bounds[:, 0], np.ptp(bounds, axis=1) / TOP
 
@@ -54,9 +54,9 @@ class RayCuts:
             self.release()
             return []
         if self._cutter is None:
-            from ..regions.ray_intervals import Cutter
+            from ..regions.ray_intervals import RegionIntervals
 
-            self._cutter = Cutter(*self._made_of)
+            self._cutter = RegionIntervals(*self._made_of)
         self._cutter.prepare(view, self._origin, self._scale, TOP)
         return ["CLIP_REGION"]
 

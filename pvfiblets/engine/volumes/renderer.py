@@ -12,10 +12,10 @@ from ..drawable import Drawable
 from ..gbuffer import GBuffer
 from ..view import Style, View
 from .nodes import NodeList, takes_means
-from .ray_parts import RayCuts
-from .tables import Tables
+from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
 from .textures import VolumeTexture
+from .transfer_textures import TransferTextures
 from .uniform_blocks import CONSTANTS, RayBlock
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ __all__ = ["VolumeRenderer", "VolumeStyle"]
 
 _OF_MODE = {
     "isosurface": ["VOLUME_SURFACE"],
-    "composite": ["VOLUME_LIGHT"],
+    "composite": ["VOLUME_COMPOSITE"],
     "mip": [],
     "local-mip": ["VOLUME_LOCAL"],
 }
@@ -104,8 +104,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             self._voxels = self._keep(VolumeTexture(ctx, volume), "voxels")
             self._block = self._keep(RayBlock(ctx, volume, (self._voxels.scale, self._voxels.shift)))
             self._nodes = self._keep(NodeList(ctx, self._gl, volume))
-            self._tables = self._keep(Tables(ctx, volume))
-            self._cuts = self._keep(RayCuts(ctx, self._gl, self._programs, volume))
+            self._tables = self._keep(TransferTextures(ctx, volume))
+            self._cuts = self._keep(VolumeRegionIntervals(ctx, self._gl, self._programs, volume))
 
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
         casting = style.casting

@@ -1,4 +1,4 @@
-"""The uniform block of rays through a volume (``shaders/volumes/block.glsl``), computed in float64."""
+"""The uniform block of rays through a volume, computed in float64 (symbols: ``shaders/volumes/block.glsl``)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ...volumes.transfer import ALLOWED, FINEST
 from ...volumes.volume import RaycastVolume
 from ..bindings import BLOCKS
 from ..errors import EngineError
+from ..uniform_struct import Field, UniformStruct
 from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "RayBlock"]
@@ -21,31 +22,41 @@ __all__ = ["CONSTANTS", "MAX_LEVELS", "RayBlock"]
 MAX_LEVELS = 12
 """Levels of an octree: leaves of 8 voxels in a volume of up to 16,384 along an axis."""
 
-CONSTANTS: dict[str, Any] = {
-    "max_planes": MAX_CLIP_PLANES + 2,
-    "max_levels": MAX_LEVELS,
-    "adaptive_error": ALLOWED,
-    "finest": FINEST,
-    "parts": PARTS,
-}
+CONSTANTS: dict[str, Any] = {"adaptive_error": ALLOWED, "finest": FINEST, "parts": PARTS}
 """Of the shaders."""
 
-_LAYOUT: list[Any] = [
-    ("start", "<f4", (3, 4)),
-    ("way", "<f4", (3, 4)),
-    ("to_mm", "<f4", (3, 4)),
-    ("to_voxels", "<f4", (3, 4)),
-    ("depth", "<f4", (2, 4)),
-    ("planes", "<f4", (CONSTANTS["max_planes"], 4)),
-    ("low", "<f4", 4),
-    ("high", "<f4", 4),
-    ("size", "<f4", 4),
-    ("values", "<f4", 4),
-    ("table", "<f4", 4),
-    ("surfaces", "<f4", MAX_VALUES),
-    ("counts", "<i4", 4),
-    ("levels", "<i4", (MAX_LEVELS, 4)),
-]
+MAX_PLANES = MAX_CLIP_PLANES + 2
+
+RAYCAST_BLOCK = UniformStruct(
+    "Raycast",
+    Field("ray_origin", "vec3[3]", "O in the picture's middle, and what a pixel to the right and one up add to it"),
+    Field("ray_direction", "vec3[3]", "D likewise, of any length"),
+    Field("mm_from_voxels", "mat3", "of directions"),
+    Field("gradient_from_voxels", "mat3", "to changes per mm from changes per voxel: the inverse's transpose"),
+    Field("u_from_voxels", "vec4", "U is its dot product with (voxels, 1)"),
+    Field("w_from_voxels", "vec4", "W likewise"),
+    Field("ray_planes", f"vec4[{MAX_PLANES}]", "kept where they are not negative: near, far, the caller's"),
+    Field("box_low", "vec3", "corner of what is there, in voxels"),
+    Field("ray_step", "float", "mm"),
+    Field("box_high", "vec3", "the opposite corner"),
+    Field("opaque_from", "float", "opacity at which a ray ends"),
+    Field("volume_shape", "vec3", "voxels along each axis"),
+    Field("peak_threshold", "float", "value from which on a local maximum is a peak"),
+    Field("field_scale", "float", "value = what the texture holds * field_scale + field_shift"),
+    Field("field_shift", "float", "value of 0 in the texture"),
+    Field("value_low", "float", "least value that is seen"),
+    Field("value_high", "float", "greatest value that is seen"),
+    Field("transfer_low", "float", "value at the first end of the transfer function"),
+    Field("transfer_high", "float", "value at its other end"),
+    Field("half_picture", "vec2", "half the picture's width and height in pixels"),
+    Field("ray_plane_count", "int", "of ray_planes"),
+    Field("isovalue_count", "int", "of isovalues"),
+    Field("refinement_steps", "int", "of a surface's place on a ray"),
+    Field("top_level", "int", "of the octree"),
+    Field("isovalues", f"float[{MAX_VALUES}]", "of surfaces"),
+    Field("octree_shapes", f"ivec3[{MAX_LEVELS}]", "nodes along each axis, by level, leaves first"),
+    Field("octree_starts", f"int[{MAX_LEVELS}]", "places of the levels' first nodes in the list"),
+)
 _LARGEST = float(np.finfo(np.float32).max)
 
 Array = npt.NDArray[np.float64]
@@ -64,7 +75,7 @@ class RayBlock:
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, reading: tuple[float, float]) -> None:
         self._volume, self._reading = volume, reading
-        self.buffer = ctx.buffer(reserve=np.dtype(_LAYOUT).itemsize)
+        self.buffer = ctx.buffer(reserve=RAYCAST_BLOCK.nbytes)
 
     @property
     def buffers(self) -> dict[str, moderngl.Buffer]:
@@ -89,33 +100,48 @@ class RayBlock:
         size = np.array(volume.shape, np.float64)
         clip = view.model_view_projection @ volume.affine
         clip /= np.abs(clip).max() or 1.0
-        block: npt.NDArray[Any] = np.zeros((), _LAYOUT)
-        start, way = _rays(clip, view.size, size)
-        block["start"][:, :3], block["way"][:, :3] = start, way
-        block["to_mm"][:, :3] = volume.affine[:3, :3].T
-        block["to_voxels"][:, :3] = volume.inverse[:3, :3]
+        origin, direction = _rays(clip, view.size, size)
         _, _, z, w = clip
-        block["depth"] = (w - z) / 2.0, w
         planes = [w + z, w - z, *(np.asarray(view.clip_planes, np.float64).reshape(-1, 4) @ volume.affine)]
         planes = [plane / (np.abs(plane[:3]).max() or 1.0) for plane in planes]
         box = np.array(casting.box if casting.box is not None else (-np.inf, np.inf) * 3).reshape(3, 2)
         low, high = np.maximum(box[:, 0], 0.0), np.minimum(box[:, 1], size - 1.0)
-        if (low > high).any() or not way.any():  # the box is beside the volume, or there is no depth: nothing is there
+        if (low > high).any() or not direction.any():  # beside the volume, or there is no depth: nothing is there
             planes = [np.array([0.0, 0.0, 0.0, -1.0])]
-        block["planes"][: len(planes)] = np.clip(planes, -_LARGEST, _LARGEST)
-        block["low"][:3], block["high"][:3] = low, high
-        block["low"][3], block["high"][3] = self.step_mm(casting), casting.stop
-        block["size"] = *size, view.size[0] / 2.0
-        least, greatest = max(casting.low, -_LARGEST), min(casting.high, _LARGEST)
-        block["values"] = *self._reading, least, greatest
-        ends = volume.value_range if casting.transfer is None else casting.transfer.clim
-        block["table"] = *ends, view.size[1] / 2.0, min(max(casting.threshold, -_LARGEST), _LARGEST)
-        block["surfaces"][: len(casting.values)] = casting.values
         if len(levels) > MAX_LEVELS:
             raise EngineError(f"an octree of {len(levels)} levels; this program has {MAX_LEVELS} at most")
-        block["counts"] = len(planes), len(casting.values), casting.iterations, len(levels) - 1
-        block["levels"][: len(levels)] = levels
-        self.buffer.write(block.tobytes())
+        transfer = volume.value_range if casting.transfer is None else casting.transfer.clim
+        self.buffer.write(
+            RAYCAST_BLOCK.pack(
+                ray_origin=origin,
+                ray_direction=direction,
+                mm_from_voxels=volume.affine[:3, :3],
+                gradient_from_voxels=volume.inverse[:3, :3].T,
+                u_from_voxels=(w - z) / 2.0,
+                w_from_voxels=w,
+                ray_planes=np.clip(planes, -_LARGEST, _LARGEST),
+                box_low=low,
+                ray_step=self.step_mm(casting),
+                box_high=high,
+                opaque_from=casting.stop,
+                volume_shape=size,
+                peak_threshold=min(max(casting.threshold, -_LARGEST), _LARGEST),
+                field_scale=self._reading[0],
+                field_shift=self._reading[1],
+                value_low=max(casting.low, -_LARGEST),
+                value_high=min(casting.high, _LARGEST),
+                transfer_low=transfer[0],
+                transfer_high=transfer[1],
+                half_picture=np.array(view.size) / 2.0,
+                ray_plane_count=len(planes),
+                isovalue_count=len(casting.values),
+                refinement_steps=casting.iterations,
+                top_level=len(levels) - 1,
+                isovalues=np.asarray(casting.values, np.float64),
+                octree_shapes=levels[:, :3],
+                octree_starts=levels[:, 3],
+            )
+        )
         self.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
 
     def release(self) -> None:
@@ -124,7 +150,7 @@ class RayBlock:
 
 
 def _rays(clip: Array, picture: tuple[int, int], size: Array) -> tuple[Array, Array]:
-    """Return start and direction of rays in voxels, each (3, 3): in the picture's middle, and by pixel right and up.
+    """Return origin and direction of rays in voxels, each (3, 3): in the picture's middle, and by pixel right and up.
 
     Starts lie where the volume begins to be near, so that float32 has its digits there. A matrix that shows no depth
     gets rays of no length, which meet nothing.

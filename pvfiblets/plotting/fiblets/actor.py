@@ -16,8 +16,9 @@ from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.scalars import find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
-from pvfiblets.plotting.fiblets.settings import FibletSettings
+from pvfiblets.plotting.fiblets.settings import THINNEST, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
+from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import Shading
@@ -203,27 +204,41 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         return self._mapper.line_width
 
     def _write_line_width(self, width: float) -> None:
-        self.prop.line_width = width
+        with own_writes():
+            self.prop.line_width = width
         self._mapper.line_width = width
+        self._relight()
+
+    def _property_changed(self) -> None:
+        super()._property_changed()
+        width = min(max(self.GetProperty().GetLineWidth(), THINNEST), WIDEST)
+        if width != self._mapper.line_width:
+            self._mapper.line_width = width
+        self._take_tube_shading()
+        self._relight()
+
+    def _show(self, scalars: Scalars | None) -> None:
+        super()._show(scalars)
+        self._relight()
 
     def _read_transparency(self) -> str | int | None:
-        extra: Any = self._mapper.extras.get(_LAYERS)
-        if extra is None:
+        effect: Any = self._mapper.effects.get(_LAYERS)
+        if effect is None:
             return None
-        return "layers" if extra.count == _SOME_LAYERS else extra.count
+        return "layers" if effect.count == _SOME_LAYERS else effect.count
 
     def _write_transparency(self, transparency: str | int | None) -> None:
         if transparency is None:
-            self._mapper.set_extra(_LAYERS, None)
+            self._mapper.set_effect(_LAYERS, None)
             return
         layers = _SOME_LAYERS if transparency == "layers" else transparency
         try:
-            extra = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
+            effect = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
             ) from error
-        self._mapper.set_extra(_LAYERS, extra)
+        self._mapper.set_effect(_LAYERS, effect)
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -85,7 +85,7 @@ class Picked:
         """``(n,)`` float64: the numbers that colour the places; NaN where colours are no numbers."""
         scalars = self._data["scalars"]
         nothing = np.full(len(self), np.nan)
-        if scalars is None or scalars.kind in ("orientation", "streamline_rgb"):
+        if scalars is None or scalars.kind in ("orientation", "streamline_rgba"):
             return nothing
         if scalars.kind == "streamline_scalar":
             return np.asarray(scalars.values[self.ids], np.float64)
@@ -128,7 +128,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
     if name in fiblets.per_point:
         lines = fiblets.decompress(ids)
         return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
-    from pvfiblets.codec.places import Places
+    from pvfiblets.codec.streamline_ranges import StreamlineRanges
     from pvfiblets.query.measures import measure
 
     part = fiblets.extract(ids)
@@ -138,7 +138,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
         return None
     if measured.kind != "point":
         return None
-    where = Places.of(part)
+    where = StreamlineRanges.of(part)
     offsets = np.concatenate([[0], np.cumsum(where.points)])
     rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
     return np.asarray(measured.array(), np.float64)[rows], offsets

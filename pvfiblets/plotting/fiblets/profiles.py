@@ -166,9 +166,9 @@ class SelectionMeasures:
         values = np.asarray(whole.array(), np.float64)
         if whole.kind == "streamline":
             return values[ids]
-        from pvfiblets.codec.places import places_of
+        from pvfiblets.codec.streamline_ranges import ranges_of
 
-        places = places_of(self.fiblets, ids)
+        places = ranges_of(self.fiblets, ids)
         ends = np.cumsum(places.points)
         rows = np.arange(int(places.points.sum())) + np.repeat(places.point - ends + places.points, places.points)
         return values[rows]
@@ -198,7 +198,7 @@ class SelectionMeasures:
         from pvfiblets.query.profile import mean_profile
 
         if scalars is None:
-            if self._scalars is None or self._scalars.kind != "point_value":
+            if self._scalars is None or self._scalars.kind != "point_scalar":
                 raise ValueError("scalars is None, and what colours the actor is no value per point; name one")
             scalars = self._scalars.name
         mean, std = mean_profile(self.fiblets, self.selection, scalars, n)

@@ -45,8 +45,8 @@ class Scalars:
     Parameters
     ----------
     name : str
-        For the scalar bar, and for the engine where ``kind`` is ``"point_value"``.
-    kind : {"orientation", "streamline_rgb", "streamline_scalar", "point_value", "point_rgb"}
+        For the scalar bar, and for the engine where ``kind`` is ``"point_scalar"``.
+    kind : {"orientation", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba"}
         How the mapper has to use them.
     values : array, optional
         (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
@@ -57,9 +57,9 @@ class Scalars:
     categories : dict, optional
         Of numbers that are labels: what each stands for.
     volume : VolumeSource, optional
-        To be sampled at the points, where ``kind`` is ``"point_value"``.
-    see_through : bool
-        Whether some of the colours of ``"point_rgb"`` have an alpha below 1.
+        To be sampled at the points, where ``kind`` is ``"point_scalar"``.
+    has_alpha : bool
+        Whether some of the colours of ``"point_rgba"`` have an alpha below 1.
     """
 
     name: str
@@ -69,12 +69,12 @@ class Scalars:
     positive: float = 1e-6
     volume: VolumeSource | None = None
     categories: dict[int, str] | None = None
-    see_through: bool = False
+    has_alpha: bool = False
 
     @property
     def mapped(self) -> bool:
         """Whether a colour map turns these into colours, so that a scalar bar makes sense."""
-        return self.kind in ("streamline_scalar", "point_value")
+        return self.kind in ("streamline_scalar", "point_scalar")
 
     @property
     def title(self) -> str:
@@ -134,7 +134,7 @@ def find_scalars(
     if isinstance(scalars, VolumeSource):
         low, high = scalars.range
         return Scalars(
-            scalars.name, "point_value", None, (low, high), scalars.least_positive, scalars
+            scalars.name, "point_scalar", None, (low, high), scalars.least_positive, scalars
         )
     if isinstance(scalars, Distance):
         values = measure(fiblets, scalars)
@@ -145,7 +145,7 @@ def find_scalars(
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
-        return Scalars(scalars, "point_value", None, (low, high), smallest)
+        return Scalars(scalars, "point_scalar", None, (low, high), smallest)
     if scalars in fiblets.per_streamline:
         return per_streamline(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines)
     if scalars == ORIENTATION:
@@ -154,10 +154,10 @@ def find_scalars(
         return per_streamline("length", fiblets.lengths(), fiblets.n_streamlines)
     if scalars == "arc_length":
         longest = _longest(fiblets)
-        return Scalars("arc_length", "point_value", None, (0.0, longest or 1.0), fiblets.step)
+        return Scalars("arc_length", "point_scalar", None, (0.0, longest or 1.0), fiblets.step)
     if scalars == "curvature":
         least, most = _curvature_range(fiblets)
-        return Scalars("curvature", "point_value", None, (least, most), most / 1e3)
+        return Scalars("curvature", "point_scalar", None, (least, most), most / 1e3)
     if scalars in COMPUTED["streamline"]:
         return per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
     if scalars == GROUP:
@@ -241,7 +241,7 @@ def per_streamline(name: str, values: Any, n_streamlines: int, *, whole: str = "
         colours = np.round(np.nan_to_num(colours) * 255.0)
     elif colours.size and (colours.min() < 0 or colours.max() > 255):
         raise ValueError(f"colours {name!r} must lie between 0 and 255")
-    return Scalars(name, "streamline_rgb", np.ascontiguousarray(colours, dtype=np.uint8))
+    return Scalars(name, "streamline_rgba", np.ascontiguousarray(colours, dtype=np.uint8))
 
 
 def _longest(fiblets: FibletSet) -> float:

@@ -17,7 +17,7 @@ from pvfiblets.plotting.fiblets.profiles import SelectionMeasures
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.scalars import Scalars
-    from pvfiblets.plotting.fiblets.selection_overlay import Standout
+    from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
 
 MODES = ("replace", "add", "remove", "toggle")
 _AS_BEFORE: Any = object()
@@ -61,7 +61,7 @@ class Selecting(SelectionMeasures):
     def _init_selection(self) -> None:
         self._selected: np.ndarray | None = None
         self._selection_style = SelectionStyle()
-        self._standout: Standout | None = None
+        self._standout: SelectionOverlay | None = None
 
     # Picking ------------------------------------------------------------------------------------
 
@@ -300,21 +300,21 @@ class Selecting(SelectionMeasures):
             from pvfiblets.mappers.shading import Silhouette
 
             silhouette = Silhouette(selected, style.silhouette)
-        for name, extra in (("selection", highlight), ("selection silhouette", silhouette)):
-            if extra is not None or name in self._mapper.extras:
-                self._mapper.set_extra(name, extra)
+        for name, effect in (("selection", highlight), ("selection silhouette", silhouette)):
+            if effect is not None or name in self._mapper.effects:
+                self._mapper.set_effect(name, effect)
         if self._standout is not None:
             self._standout.leave()
             self._standout = None
         if apart:
             self._standout = self._make_standout(style)
 
-    def _make_standout(self, style: SelectionStyle) -> Standout:
-        from pvfiblets.plotting.fiblets.selection_overlay import Standout
+    def _make_standout(self, style: SelectionStyle) -> SelectionOverlay:
+        from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
 
         width = self._mapper.line_width if style.width is None else style.width
         radius = style.radius if style.as_tubes else None
-        return Standout(
+        return SelectionOverlay(
             self,  # type: ignore[arg-type]  # as above
             self.selection,
             color=style.color,

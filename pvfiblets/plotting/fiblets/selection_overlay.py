@@ -36,23 +36,23 @@ MOST_POINTS = 400_000
 """Of spline tubes: they take 50 bytes for each on the GPU, fiblets two."""
 
 SHADES = ("ambient_occlusion", "depth_cue")
-"""Names of extras whose defaults are the extent of all that the owner has."""
+"""Names of effects whose defaults are the extent of all that the owner has."""
 
 
 class _OfAll:
-    """An extra that takes its defaults from the whole of which a part is drawn."""
+    """An effect that takes its defaults from the whole of which a part is drawn."""
 
-    def __init__(self, extra: Any, whole: FibletSet) -> None:
-        self._extra, self._whole = extra, whole
+    def __init__(self, effect: Any, whole: FibletSet) -> None:
+        self._effect, self._whole = effect, whole
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._extra, name)
+        return getattr(self._effect, name)
 
     def prepare(self, kept: Any, draw: Draw) -> Any:
-        return self._extra.prepare(kept, replace(draw, fiblets=self._whole))
+        return self._effect.prepare(kept, replace(draw, fiblets=self._whole))
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        self._extra.set_uniforms(kept, program, replace(draw, fiblets=self._whole))
+        self._effect.set_uniforms(kept, program, replace(draw, fiblets=self._whole))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class _Splines:
     values: str | None
 
 
-class Standout:
+class SelectionOverlay:
     """A second actor for some of an actor's streamlines.
 
     Parameters
@@ -190,11 +190,11 @@ class Standout:
             self.mapper.colouring = self._colours(mapper.colouring)
         if self._changed("planes", mapper.GetClippingPlanes()):
             self.mapper.SetClippingPlanes(mapper.GetClippingPlanes())
-        extras = mapper.extras
-        for name in SHADES:
-            if self._changed(name, extras.get(name)):
-                extra = extras.get(name)
-                self.mapper.set_extra(name, None if extra is None else _OfAll(extra, self._fiblets))
+        effects = mapper.effects
+        for name in SHADES if self._radius is not None else (*SHADES, "light"):
+            if self._changed(name, effects.get(name)):
+                effect = effects.get(name)
+                self.mapper.set_effect(name, None if effect is None else _OfAll(effect, self._fiblets))
         if self._plan is not None:
             return
         if self._changed("options", mapper.options):
@@ -226,10 +226,10 @@ class Standout:
         else:
             mapper = FibletMapper(self._fiblets.extract(self.ids), line_width=self._width)
             if self._radius is not None:
-                mapper.set_extra("tubes", Tubes(self._radius))
+                mapper.set_effect("tubes", Tubes(self._radius))
         if self._outline is not None:
             ids = self.ids if plan is None else plan.ids
-            mapper.set_extra("silhouette", Silhouette(np.ones(len(ids), np.bool_), self._outline))
+            mapper.set_effect("silhouette", Silhouette(np.ones(len(ids), np.bool_), self._outline))
         return mapper
 
     def _remake(self, plan: _Splines | None) -> None:
@@ -241,7 +241,7 @@ class Standout:
         self.mapper.detach()
         self.mapper, self._plan = mapper, plan
         self.mapper.attach(self.actor)
-        for name in ("options", "colouring", "planes", "region", "filtering", *SHADES):
+        for name in ("options", "colouring", "planes", "region", "filtering", "light", *SHADES):
             self._taken.pop(name, None)
 
     def _changed(self, name: str, value: Any, *, equal: bool = False) -> bool:
@@ -256,13 +256,13 @@ class Standout:
     def _colours(self, colouring: Colouring) -> Colouring:
         if self._color is not None:
             return Colouring("solid", color=self._color)
-        if colouring.mode in ("streamline_rgb", "streamline_scalar") and colouring.values is not None:
+        if colouring.mode in ("streamline_rgba", "streamline_scalar") and colouring.values is not None:
             ids = self.ids if self._plan is None else self._plan.ids
             return replace(colouring, values=np.asarray(colouring.values)[ids])
         return colouring
 
 
-def weak_method(standout: Standout) -> Any:
+def weak_method(standout: SelectionOverlay) -> Any:
     """Return a function that calls ``before_picture`` while the object lives."""
     import weakref
 
@@ -331,9 +331,9 @@ def part_of_filter(filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> Any:
     streamlines = None if filtering.streamlines is None else filtering.streamlines[ids]
     words = None
     if filtering.points is not None:
-        from pvfiblets.codec.places import places_of
+        from pvfiblets.codec.streamline_ranges import ranges_of
 
-        places = places_of(fiblets, ids)
+        places = ranges_of(fiblets, ids)
         places = places.at(np.argsort(places.point, kind="stable"))  # a part is coded in the order of the whole
         lengths = places.points
         first = np.cumsum(lengths) - lengths

@@ -23,9 +23,13 @@ def _clim_span(actor: Any) -> tuple[float, float]:
     return scalars.range if scalars is not None and scalars.mapped else actor.clim
 
 
+THINNEST, WIDEST = 1e-3, 64.0
+"""Pixels of lines; a property of VTK's may ask for less and for more."""
+
+
 def _line_width(name: str, width: Any) -> float:
-    if not 0.0 < float(width) <= 64.0:
-        raise ValueError(f"{name} is {width!r}; give pixels above 0 and up to 64")
+    if not 0.0 < float(width) <= WIDEST:
+        raise ValueError(f"{name} is {width!r}; give pixels above 0 and up to {WIDEST:g}")
     return float(width)
 
 
@@ -97,18 +101,25 @@ class FibletSettings(Settings):
         False,
         "Whether light falls on lines wider than a pixel as on round tubes.\n\n"
         "Only the light changes: their depth stays that of flat lines. ``illuminated`` goes before it.\n"
-        "Nothing to be seen without ``lighting``.",
+        "Nothing to be seen without ``lighting``. The same as ``prop.render_lines_as_tubes``, which\n"
+        "the theme may set.",
         argument=False,
-        where=Switch("pvfiblets.mappers.line_tubes:TubeShading"),
+        where=LATER,
+        check=truth,
         row=Row("Round lines", "Light lines wider than a pixel as round tubes.", "Lines",
                 matters=lambda s: s["line_width"] > 1.0 and s["tube_radius"] is None),
     )  # fmt: skip
-    lighting = shared.lighting("Shade the lines by the scene's lights; ``None`` for the theme's.", True)
+    lighting = shared.lighting(
+        "Shade the lines by the scene's lights; the theme's by default. Light leaves at least 0.6 of every colour, "
+        "and all of those that numbers stand for: they match their scalar bar.",
+        None,
+    )
     illuminated: Setting[bool] = Setting(
         False,
         "Whether each light is reflected as by a thin cylinder, whichever side it comes from.\n\n"
-        "Off, a line has the one normal that faces the viewer, so that only light from there counts\n"
-        "fully (Zöckler et al. 1996; Mallo et al. 2005). Nothing to be seen without ``lighting``.",
+        "Light and shade are as strong as these lights make them (Zöckler et al. 1996; Mallo et al.\n"
+        "2005). Off, they are gentle, and leave colours that numbers stand for as they are. Nothing\n"
+        "to be seen without ``lighting``.",
         argument=False,
         where=Switch("pvfiblets.mappers.shading:Illuminated"),
         row=Row("Cylinders", "Reflect lights as thin cylinders do, from whichever side.", "Shading",

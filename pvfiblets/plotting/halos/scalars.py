@@ -264,13 +264,13 @@ def _columns(scalars: Any) -> int:
 
 def _at_points(name: str, values: np.ndarray) -> Scalars:
     if values.ndim == 2:
-        return Scalars(name, "point_rgb", see_through=bool((values[:, 3] < 1.0).any()))
+        return Scalars(name, "point_rgba", has_alpha=bool((values[:, 3] < 1.0).any()))
     finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     if not len(finite):
-        return Scalars(name, "point_value")
+        return Scalars(name, "point_scalar")
     positive = finite[finite > 0]
     least = float(positive.min()) if len(positive) else 1e-6
-    return Scalars(name, "point_value", None, (float(finite.min()), float(finite.max())), least)
+    return Scalars(name, "point_scalar", None, (float(finite.min()), float(finite.max())), least)
 
 
 def _named(held: Held) -> Held:

@@ -194,7 +194,7 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
     def _write_silhouette(self, wanted: Mapping[str, Any] | bool | None) -> None:
         if wanted is None or wanted is False:
             self._shades.pop("silhouette", None)
-            self._mapper.set_extra("silhouette", None)
+            self._mapper.set_effect("silhouette", None)
             return
         if wanted is not True and not isinstance(wanted, Mapping):
             raise ValueError(f"silhouette is {wanted!r}; give True, False or a dict of settings")
@@ -212,7 +212,7 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
                     f"{len(chosen) - 1}, or a mask of {len(chosen)}"
                 ) from error
         color = pv.Color(settings["color"]).float_rgb
-        self._mapper.set_extra("silhouette", Silhouette(chosen, color, settings["width"]))
+        self._mapper.set_effect("silhouette", Silhouette(chosen, color, settings["width"]))
         self._shades["silhouette"] = settings
 
     # Inside -------------------------------------------------------------------------------------

@@ -233,14 +233,14 @@ def _at_nodes(name: str, tubes: SplineTubes) -> Scalars:
     """Numbers at nodes have the nodes' own range, whatever the curves between them do."""
     values = tubes.values[name].values
     if values.ndim == 2:
-        return Scalars(name, "point_rgb", see_through=bool((values[:, 3] < 1.0).any()))
+        return Scalars(name, "point_rgba", has_alpha=bool((values[:, 3] < 1.0).any()))
     values = values[np.bincount(tubes.segments.ravel(), minlength=tubes.n_nodes) > 0]
     finite = values[np.isfinite(values)]
     if not len(finite):
-        return Scalars(name, "point_value")
+        return Scalars(name, "point_scalar")
     positive = finite[finite > 0.0]
     least = float(positive.min()) if len(positive) else 1e-6
-    return Scalars(name, "point_value", None, (float(finite.min()), float(finite.max())), least)
+    return Scalars(name, "point_scalar", None, (float(finite.min()), float(finite.max())), least)
 
 
 def _rgba(colours: np.ndarray, rgb: bool) -> np.ndarray:

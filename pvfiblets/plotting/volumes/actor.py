@@ -231,14 +231,17 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     def _shade(self, name: str, kind: type, wanted: Any) -> None:
         super()._shade(name, kind, wanted)
         if name in OF_SURFACES:
-            self._of_surfaces[name] = self._mapper.extras.get(name)
+            self._of_surfaces[name] = self._mapper.effects.get(name)
             self._look()
+
+    def _property_changed(self) -> None:
+        """Leave the colour to the volume's settings."""
 
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
         surface = self.mode == SURFACE
-        for name, extra in self._of_surfaces.items():
-            self._mapper.set_extra(name, extra if surface else None)
+        for name, effect in self._of_surfaces.items():
+            self._mapper.set_effect(name, effect if surface else None)
         self.prop.lighting = self._lit and surface
         opacity = float(self.opacity) if surface and is_number(self.opacity) else 1.0
         if opacity != self._see_through:  # what was set of the property itself stays
@@ -264,4 +267,4 @@ def _scalars(volume: RaycastVolume) -> Scalars:
     low, high = volume.value_range
     if low == high:
         high = max(low + 1.0, float(np.nextafter(low, np.inf)))
-    return Scalars(volume.name, "point_value", None, (low, high))
+    return Scalars(volume.name, "point_scalar", None, (low, high))

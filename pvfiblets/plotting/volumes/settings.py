@@ -8,6 +8,8 @@ from typing import Any
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.setting_places import OWN, Effect, Own, Place
 from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings
+from pvfiblets.volumes.options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
+from pvfiblets.volumes.volume import FILTERS
 
 _MISSING = "volumes that rays are cast through have no {name}: "
 _CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigmoid_5", "sigmoid_7", "sigmoid_10",
@@ -65,11 +67,10 @@ class VolumeSettings(Settings):
         'that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
         "least ``peak``, or the greatest value where there is none.",
         kind="str",
-        choices=("composite", "isosurface", "mip", "local-mip"),
+        choices=MODES,
         where=CASTING,
         row=Row("Mode", "What a ray through the volume shows.", default="isosurface",
-                choices=[("composite", "light"), ("isosurface", "surface"), ("mip", "greatest value"),
-                         ("local-mip", "first peak")]),
+                choices=list(zip(MODES, ("light", "surface", "greatest value", "first peak"), strict=True))),
     )  # fmt: skip
     values: Setting[Any] = Setting(
         None,
@@ -109,7 +110,7 @@ class VolumeSettings(Settings):
         where=CHOSEN,
         row=Row("Opacity", "How opaque values are, from the low end of the range to the high one.", type="choice",
                 choices=[(name, name.replace("_", " ")) for name in _CURVES],
-                matters=_mode("composite", "mip", "local-mip")),
+                matters=_mode("composite", *PROJECTIONS)),
     )  # fmt: skip
     opacity_unit_distance: Setting[float] = Setting(
         None,
@@ -125,7 +126,7 @@ class VolumeSettings(Settings):
         header="(float, float), optional",
         where=CHOSEN,
         row=Row("Only values", "Values that are there; empty: all.", type="range", optional=True, span=_values_span,
-                matters=_mode("composite", "mip", "local-mip")),
+                matters=_mode("composite", *PROJECTIONS)),
     )  # fmt: skip
     peak: Setting[float] = Setting(
         None,
@@ -155,7 +156,7 @@ class VolumeSettings(Settings):
         "trilinear",
         "Reconstruction between voxels.",
         kind="str",
-        choices=("nearest", "trilinear", "tricubic"),
+        choices=FILTERS,
         where=CASTING,
         row=Row("Between voxels", "Reconstruction between voxels.", "Rays"),
     )
@@ -163,7 +164,7 @@ class VolumeSettings(Settings):
         "regula-falsi",
         "How the place of a surface on its ray is refined.",
         kind="str",
-        choices=("regula-falsi", "newton", "none"),
+        choices=REFINEMENTS,
         where=CASTING,
         row=Row("Refine surfaces", "How a surface's place is found.", "Rays", matters=_mode("isosurface")),
     )
@@ -176,7 +177,7 @@ class VolumeSettings(Settings):
         'light however dense and steep opacities are: it is ``"preintegrated"`` where that suffices, takes steps in '
         "parts at edges from voxel to voxel, and is several times as slow where opacities are steep.",
         kind="str",
-        choices=("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4"),
+        choices=INTEGRATORS,
         where=CASTING,
         row=Row("Integrator", "How light is added up over a step.", "Rays", matters=_mode("composite")),
     )

@@ -28,7 +28,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel
 
-from ..measure import median_step
+from ..errors_and_times import median_step
 from . import COUNT_BYTES
 from .octahedral import from_cap, pack, ratio_of, to_cap, unpack
 

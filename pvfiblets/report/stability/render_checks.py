@@ -1,7 +1,8 @@
 """What the cases that draw share: cameras in float64, pictures read back, and where lines must show.
 
 A thin line is drawn from pixel centre to pixel centre. How far that may lead away from the true line is worked out in
-``shaders/fiblets/raster/cells.glsl``: √5/2 pixels, and the shift of the grid, √2 · 23/256. ``OFF_LINE`` is the sum.
+``shaders/fiblets/segments/thin_line_rule.glsl``: √5/2 pixels, and the shift of the grid, √2 · 23/256. ``OFF_LINE`` is
+their sum.
 """
 
 from __future__ import annotations

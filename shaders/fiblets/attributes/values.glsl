@@ -1,6 +1,6 @@
 // The per-point value of the G-buffer, if the style asks for one; without, nothing of this file is left but a zero.
 //
-//   stored       one or two bytes per point; code c means chunk_values.x + chunk_values.y * c, the largest means NaN
+//   stored       one or two bytes per point; code c means value_of_code_0 + value_per_code * c, the largest means NaN
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
 //   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
 //                anchor, because the segment before an anchor is another fiblet's
@@ -18,7 +18,7 @@ uint values_last;  // index within the fiblet of the last point that a segment o
 
 // Two codes of 16 bits or four of 8 to a word. A chunk's points are fewer than 2^32, their bits are not.
 uint value_code(uint segment) {
-    uint bits = chunk_bases.y, point = values_first + min(segment, values_last);
+    uint bits = value_bits, point = values_first + min(segment, values_last);
     uint shift = bits == 8u ? 2u : 1u, within = point & ((1u << shift) - 1u);
     return bitfieldExtract(value_word(point >> shift), int(within * bits), int(bits));
 }
@@ -28,17 +28,17 @@ void begin_values(uint f) {
     values_last = fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u);
 }
 
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_along(uint segment, float t, uint step, float rest) {
     segment += step;
     t = rest;
-    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << chunk_bases.y) - 1u;
+    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << value_bits) - 1u;
     if (a == invalid || b == invalid) {
         a = b = t < 0.5 ? a : b;
         if (a == invalid) return uintBitsToFloat(0x7FC00000u);
     }
-    return chunk_values.x + chunk_values.y * mix(float(a), float(b), t);
+    return value_of_code_0 + value_per_code * mix(float(a), float(b), t);
 }
 
 float value_of_point(uint i) { return 0.0; }
@@ -60,7 +60,7 @@ void begin_values(uint f) {
 }
 
 // A whole fiblet drawn as one segment is longer than that: its length is that of its steps.
-void start_values(uint segment, vec3 delta, float steps) {
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {
     arc_from = arc_to;
     if (steps <= 1.0) arc_to += length(delta);
     else if (!ends(arc_fiblet)) arc_to = start_value(arc_fiblet + 1u);
@@ -96,7 +96,7 @@ void begin_values(uint f) {
     }
 }
 
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_along(uint segment, float t, uint step, float rest) {
     return mix(curvatures[segment + step], curvatures[segment + step + 1u], rest);
@@ -127,10 +127,9 @@ float value_of_point(uint i) {
     return volume_values_at.y;
 }
 
-// The walk is at the segment's end.
-void start_values(uint segment, vec3 delta, float steps) {
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {
     volume_from = volume_to;
-    volume_to = walk_point;
+    volume_to = to;
     volume_steps = steps;
     volume_values_at.x = volume_values_at.y;
     volume_known = bvec2(volume_known.y, false);
@@ -151,7 +150,7 @@ float value_along_capsule(uint f, float steps, uint step, float rest) {
 
 #else
 void begin_values(uint f) {}
-void start_values(uint segment, vec3 delta, float steps) {}
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 float value_along(uint segment, float t, uint step, float rest) { return 0.0; }
 float value_of_point(uint i) { return 0.0; }
 #endif

@@ -11,9 +11,9 @@ uniform uint max_groups;  // along one axis
 void main() {
     for (uint i = gl_LocalInvocationIndex; i < list_count; i += gl_WorkGroupSize.x) {
         uint at = argument_base + 4u * i;
-        uint groups = (marks[at + 3u] + {{ group_words }}u - 1u) / {{ group_words }}u;
-        marks[at] = min(groups, max_groups);
-        marks[at + 1u] = (groups + max_groups - 1u) / max_groups;
-        marks[at + 2u] = 1u;
+        uint groups = (visibility_bits[at + 3u] + {{ group_words }}u - 1u) / {{ group_words }}u;
+        visibility_bits[at] = min(groups, max_groups);
+        visibility_bits[at + 1u] = (groups + max_groups - 1u) / max_groups;
+        visibility_bits[at + 2u] = 1u;
     }
 }

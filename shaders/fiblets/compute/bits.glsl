@@ -16,10 +16,10 @@ uint bits_of(uint word);
 
 // The k-th fiblet of this group, or NO_FIBLET.
 uint nth_fiblet(uint k) {
-    uint before = chunk.y >> 5u, entry = group_index() * {{ group_words }}u;
-    uint end = min(entry + {{ group_words }}u, marks[argument_of(part) + 3u]);
+    uint before = chunk_first >> 5u, entry = group_index() * {{ group_words }}u;
+    uint end = min(entry + {{ group_words }}u, visibility_bits[argument_of(part) + 3u]);
     for (; entry < end; ++entry) {
-        uint word = marks[list_entry(part, before, entry)];
+        uint word = visibility_bits[list_entry(part, before, entry)];
         uint bits = bits_of(before + word), here = uint(bitCount(bits));
         if (k < here) return word * 32u + nth_bit(bits, k);
         k -= here;

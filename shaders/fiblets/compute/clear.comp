@@ -23,7 +23,7 @@ uniform uint argument_count;  // words
 void main() {
     uint row = group_index();
     if (row == 0u) {
-        for (uint i = gl_LocalInvocationIndex; i < argument_count; i += gl_WorkGroupSize.x) marks[argument_base + i] = 0u;
+        for (uint i = gl_LocalInvocationIndex; i < argument_count; i += gl_WorkGroupSize.x) visibility_bits[argument_base + i] = 0u;
     }
     if (row >= uint(viewport.y)) return;
     for (uint x = gl_LocalInvocationIndex; x < uint(viewport.x); x += gl_WorkGroupSize.x) {

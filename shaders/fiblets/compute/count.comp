@@ -1,4 +1,4 @@
-// Counts fiblets for reports: those in the view volume (culling/frustum.glsl), as the cull pass finds them, and those that the
+// Counts fiblets for reports: those in the view volume (culling/criteria.glsl), as the cull pass finds them, and those that the
 // last picture drew, where the marks tell.
 //
 // One invocation per 32 fiblets. A set has fewer than 2^32 fiblets: 32 bits count them all.
@@ -6,7 +6,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "culling/frustum.glsl"
+#include "culling/criteria.glsl"
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
@@ -17,11 +17,11 @@ uniform bool marked;  // whether there are marks
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
-    if (first >= chunk.x) return;
-    uint inside = 0u, these = 0u, count = min(32u, chunk.x - first);
+    if (first >= chunk_fiblets) return;
+    uint inside = 0u, these = 0u, count = min(32u, chunk_fiblets - first);
     for (uint i = 0u; i < count; ++i) inside += outside_view(first + i, capsule_of(first + i)) ? 0u : 1u;
     if (marked) {
-        for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk.y >> 5u) + word, which)));
+        for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk_first >> 5u) + word, which)));
     }
     atomicAdd(in_view, inside);
     atomicAdd(drawn, these);

@@ -1,8 +1,8 @@
-// Plans a picture: frustum culling (culling/frustum.glsl), and which programs draw what is left.
+// Plans a picture: frustum culling (culling/criteria.glsl), and which programs draw what is left.
 //
 // Invariants
 //   - No fiblet is culled of which one pixel would be drawn.
-//   - A fiblet of class 0 lies inside all planes, by `guard.z` and its radius: its segments need no clipping. One of
+//   - A fiblet of class 0 lies inside all planes, by `plane_rounding` and its radius: its segments need no clipping. One of
 //     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, and
 //     those that the caller's planes or region may touch, or some points of which are not to be shown. Class 3 are those of class 0 that are drawn as one segment.
 //
@@ -13,7 +13,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "culling/frustum.glsl"
+#include "culling/criteria.glsl"
 #if FEATURE_CULL_PYRAMID
 #include "culling/visibility_prediction.glsl"
 #endif
@@ -23,34 +23,34 @@ layout(local_size_x = {{ group_size }}) in;
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
-    if (first >= chunk.x) return;
-    uint shown = 0u, crossing = 0u, crossing_depth = 0u, single = 0u, likely = 0u, count = min(32u, chunk.x - first);
+    if (first >= chunk_fiblets) return;
+    uint shown = 0u, crossing = 0u, crossing_depth = 0u, single = 0u, likely = 0u, count = min(32u, chunk_fiblets - first);
     for (uint i = 0u; i < count; ++i) {
         Capsule c = capsule_of(first + i);
         bool outside = false, partly = false;
         float edges = above_planes(c, 0, 4, outside), depths = above_planes(c, 4, 6, outside);
-        if (!outside && !left_out(first + i, c, partly)) shown |= 1u << i;
+        if (!outside && !fails_criteria(first + i, c, partly)) shown |= 1u << i;
         if (partly) crossing_depth |= 1u << i;
-        if (edges < c.r + guard.z) crossing |= 1u << i;
-        if (depths < c.r + guard.z) crossing_depth |= 1u << i;
+        if (edges < c.r + plane_rounding) crossing |= 1u << i;
+        if (depths < c.r + plane_rounding) crossing_depth |= 1u << i;
 #if FEATURE_LEVEL_OF_DETAIL
         if (is_one_segment(c)) single |= 1u << i;
 #endif
 #if FEATURE_CULL_PYRAMID
-        if (probably_shows(c)) likely |= 1u << i;
+        if (predicted_visible(c)) likely |= 1u << i;
 #endif
     }
-    word = ((chunk.y >> 5u) + word) * WORDS;
-    uint before = marks[word + SEEN];
+    word = ((chunk_first >> 5u) + word) * WORDS;
+    uint before = visibility_bits[word + SEEN];
     for (uint part = 0u; part <= REST; part += CLASSES) {
-        uint these = shown & (part == 0u ? before : ~before & (part == GUESSED ? likely : ~likely));
+        uint these = shown & (part == 0u ? before : ~before & (part == PREDICTED ? likely : ~likely));
         uint inside = these & ~crossing & ~crossing_depth;
-        marks[word + part] = inside & ~single;
-        marks[word + part + 1u] = these & crossing & ~crossing_depth;
-        marks[word + part + 2u] = these & crossing_depth;
-        marks[word + part + 3u] = inside & single;
+        visibility_bits[word + part] = inside & ~single;
+        visibility_bits[word + part + 1u] = these & crossing & ~crossing_depth;
+        visibility_bits[word + part + 2u] = these & crossing_depth;
+        visibility_bits[word + part + 3u] = inside & single;
     }
-    marks[word + CANDIDATES] = 0u;
-    marks[word + SEEN] = 0u;
-    marks[word + TIED] = 0u;
+    visibility_bits[word + CANDIDATES] = 0u;
+    visibility_bits[word + SEEN] = 0u;
+    visibility_bits[word + TIED] = 0u;
 }

@@ -13,7 +13,7 @@
 #endif
 layout(local_size_x = {{ group_size }}) in;
 
-#include "fiblets/raster/segments.glsl"
+#include "fiblets/compute/software_raster/segments.glsl"
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif
@@ -30,9 +30,12 @@ bool won;
 
 #include "fiblets/compute/bits.glsl"
 
-uint bits_of(uint word) { return mark_of(word, part + CLASSES * drawing); }
+uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
 
-void start_segment(uint segment, vec3 delta, float steps) {}
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit) { return hit.normal; }
+#endif
 
 // Whether a pixel that would show is there: kept by the caller's region, and of no earlier layer's surface.
 bool may_show(ivec2 pixel, float z, uint segment) {
@@ -61,12 +64,12 @@ void main() {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
 #if FEATURE_INT64_ATOMICS
-        owner = chunk.y + f;
+        owner = chunk_first + f;
         draw_fiblet(f);
 #else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(marks[((chunk.y + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+        if (won) atomicOr(visibility_bits[((chunk_first + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
 #endif
     }
 }

@@ -20,19 +20,19 @@ bool out_of_sight(Capsule c) {
 
 void test_plan(uint word, uint first) {
     uint tested = 0u, kept = 0u;
-    for (uint which = 0u; which < CLASSES; ++which) tested |= marks[word + which];
+    for (uint which = 0u; which < CLASSES; ++which) tested |= visibility_bits[word + which];
     for (uint rest = tested; rest != 0u; rest &= rest - 1u) {
         uint i = uint(findLSB(rest));
         if (!out_of_sight(capsule_of(first + i))) kept |= 1u << i;
     }
-    for (uint which = 0u; which < CLASSES; ++which) marks[word + which] &= kept;
+    for (uint which = 0u; which < CLASSES; ++which) visibility_bits[word + which] &= kept;
 }
 
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
-    if (first >= chunk.x) return;
-    word = ((chunk.y >> 5u) + word) * WORDS;
+    if (first >= chunk_fiblets) return;
+    word = ((chunk_first >> 5u) + word) * WORDS;
 #if FEATURE_CULL_COVERAGE
     test_plan(word, first);
 #endif

@@ -6,7 +6,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "frame/blocks.glsl"
+#include "uniforms/Chunk.glsl"
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
@@ -16,18 +16,18 @@ shared uint counts[CLASSES];
 shared uint starts[CLASSES];
 
 uint bits_of(uint word, uint which) {
-    if (drawing <= DRAW_REST) return mark_of(word, which + CLASSES * drawing);
-    if (drawing == TEST_REST) return mark_of(word, REST + which);
+    if (drawing <= DRAW_REST) return visibility_word(word, which + CLASSES * drawing);
+    if (drawing == TEST_REST) return visibility_word(word, REST + which);
     return taken_again(word, which);
 }
 
 void main() {
-    uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex, before = chunk.y >> 5u;
-    bool here = word * 32u < chunk.x;
+    uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex, before = chunk_first >> 5u;
+    bool here = word * 32u < chunk_fiblets;
     if (here && refined != 0u) {
-        uint at = (before + word) * WORDS, kept = marks[at + KEPT];
-        for (uint which = 0u; which < CLASSES; ++which) marks[at + REST + which] &= kept;
-        marks[at + KEPT] = 0u;
+        uint at = (before + word) * WORDS, kept = visibility_bits[at + KEPT];
+        for (uint which = 0u; which < CLASSES; ++which) visibility_bits[at + REST + which] &= kept;
+        visibility_bits[at + KEPT] = 0u;
     }
     if (gl_LocalInvocationIndex < CLASSES) counts[gl_LocalInvocationIndex] = 0u;
     barrier();
@@ -39,10 +39,10 @@ void main() {
     barrier();
     if (gl_LocalInvocationIndex < CLASSES && counts[gl_LocalInvocationIndex] > 0u) {
         uint which = gl_LocalInvocationIndex;
-        starts[which] = atomicAdd(marks[argument_of(which) + 3u], counts[which]);
+        starts[which] = atomicAdd(visibility_bits[argument_of(which) + 3u], counts[which]);
     }
     barrier();
     for (uint which = 0u; which < CLASSES; ++which) {
-        if (slots[which] != 0xFFFFFFFFu) marks[list_entry(which, before, starts[which] + slots[which])] = word;
+        if (slots[which] != 0xFFFFFFFFu) visibility_bits[list_entry(which, before, starts[which] + slots[which])] = word;
     }
 }

@@ -106,7 +106,7 @@ void main() {
     uint f = stage == CLASSIFY ? batch_first + slot : lists[(stage == SIFT ? 0u : batch_size) + slot];
     bool last_asked = (f & LAST_ASKED) != 0u;
     f &= ~LAST_ASKED;
-    uint rank = rank_of(f) - chunk_bases.x, shift = 8u * (rank & 3u);
+    uint rank = rank_of(f) - chunk_first_rank, shift = 8u * (rank & 3u);
     uint known = (answers[rank >> 2] >> shift) & 255u, found = 0u;
     bool open = (known & SETTLED) != SETTLED || last_asked;
     if (stage == CLASSIFY) {

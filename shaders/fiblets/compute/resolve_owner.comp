@@ -3,14 +3,14 @@
 //
 // Ties (equal depth keys in one pixel) go to the fiblet with the smallest index: a picture does not depend on the order
 // in which a driver runs groups. Every tied fiblet is a candidate, because it came nearest or tied when it was drawn. One
-// that takes a pixel from another may have written it before that one did: it is marked, and settle.comp writes it again.
+// that takes a pixel from another may have written it before that one did: it is marked, and resolve_ties.comp writes it again.
 //
 // A fiblet that took a pixel is seen: the next picture begins with it.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "fiblets/raster/segments.glsl"
+#include "fiblets/compute/software_raster/segments.glsl"
 
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/bits.glsl"
@@ -22,7 +22,7 @@ layout(r32ui, binding = {{ image_depth }}) readonly uniform uimage2D depth_image
 layout(r32ui, binding = {{ image_owner }}) coherent uniform uimage2D owner_image;
 layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;
 layout(rg32f, binding = {{ image_position }}) writeonly uniform image2D position_image;
-#include "fiblets/compute/cross_line.glsl"
+#include "fiblets/compute/store_across.glsl"
 
 uint owner;
 bool kept;
@@ -35,8 +35,9 @@ void plot(Fragment fragment, Segment segment) {
     uint before = imageAtomicMin(owner_image, pixel, owner);
     if (before < owner) return;
     if (before > owner && before != NO_FIBLET) tied = true;
-    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    float t = along(fragment, segment);
+    imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
     store_relief(pixel, fragment.relief);
 }
 
@@ -44,12 +45,12 @@ void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-        owner = chunk.y + f;
+        owner = chunk_first + f;
         kept = tied = false;
         begin_pixels(f);
         draw_fiblet(f);
         uint word = (owner >> 5) * WORDS, bit = 1u << (f & 31u);
-        if (kept) atomicOr(marks[word + SEEN], bit);
-        if (tied) atomicOr(marks[word + TIED], bit);
+        if (kept) atomicOr(visibility_bits[word + SEEN], bit);
+        if (tied) atomicOr(visibility_bits[word + TIED], bit);
     }
 }

@@ -5,7 +5,7 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "fiblets/raster/segments.glsl"
+#include "fiblets/compute/software_raster/segments.glsl"
 
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/bits.glsl"
@@ -17,7 +17,7 @@ layout(r32ui, binding = {{ image_depth }}) readonly uniform uimage2D depth_image
 layout(r32ui, binding = {{ image_owner }}) readonly uniform uimage2D owner_image;
 layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;
 layout(rg32f, binding = {{ image_position }}) writeonly uniform image2D position_image;
-#include "fiblets/compute/cross_line.glsl"
+#include "fiblets/compute/store_across.glsl"
 
 uint owner;
 
@@ -25,8 +25,9 @@ void plot(Fragment fragment, Segment segment) {
     ivec2 pixel = fragment.pixel;
     if (imageLoad(owner_image, pixel).x != owner || depth_key(fragment.z) != imageLoad(depth_image, pixel).x) return;
     if (!new_surface(pixel, segment.index)) return;
-    imageStore(ids_image, pixel, uvec4(pixel_ids, 0u, 0u));
-    imageStore(position_image, pixel, vec4(pixel_place(segment.index, along(fragment, segment)), 0.0, 0.0));
+    float t = along(fragment, segment);
+    imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
+    imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
     store_relief(pixel, fragment.relief);
 }
 
@@ -34,7 +35,7 @@ void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-        owner = chunk.y + f;
+        owner = chunk_first + f;
         begin_pixels(f);
         draw_fiblet(f);
     }

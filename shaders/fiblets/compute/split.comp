@@ -1,5 +1,5 @@
 // Where the driver has atomics of 64 bits (fiblets/compute/nearest.glsl): from words to the G-buffer's depth and owners. When all is
-// drawn, owners are marked: settle.comp writes their pixels, and the next picture begins with them.
+// drawn, owners are marked: resolve_ties.comp writes their pixels, and the next picture begins with them.
 //
 // A work group per row of pixels. A run of pixels with the same owner marks it once.
 
@@ -29,8 +29,8 @@ void main() {
         if (marking == 0u || key == 0xFFFFFFFFu) continue;
         if (x > 0u && fiblet_of(nearest[at - 1u]) == fiblet) continue;
         uint mark = (fiblet >> 5) * WORDS, bit = 1u << (fiblet & 31u);
-        if ((marks[mark + SEEN] & bit) != 0u) continue;
-        atomicOr(marks[mark + SEEN], bit);
-        atomicOr(marks[mark + CANDIDATES], bit);
+        if ((visibility_bits[mark + SEEN] & bit) != 0u) continue;
+        atomicOr(visibility_bits[mark + SEEN], bit);
+        atomicOr(visibility_bits[mark + CANDIDATES], bit);
     }
 }

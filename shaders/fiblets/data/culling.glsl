@@ -6,10 +6,12 @@
 //
 //   anchors      two words a fiblet
 //   pages        four words a row: rank, first code, first point of a page; behind the pages, streamlines by rank
-//   bounds       capsule radii, two to a word; from word chunk_bases.w on, the end vectors, one word by rank
+//   bounds       capsule radii, two to a word; from word chunk_end_words on, the end vectors, one word by rank
 //   anchors_low  lower halves of 32-bit anchors, three to a fiblet, two to a word
 
 #include "frame/blocks.glsl"
+#include "uniforms/Chunk.glsl"
+#include "uniforms/Coding.glsl"
 
 #if FEATURE_TEXTURE_DATA
 uniform usamplerBuffer anchor_texels;      // rg32ui

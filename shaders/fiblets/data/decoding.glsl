@@ -1,5 +1,5 @@
 // What decoding reads beside fiblets/data/culling.glsl: the second half of a record, the codes, and the rotations that direction
-// codes stand for (codec/layout.glsl and pvfiblets/codec/tables.py), from storage buffers or from buffer textures.
+// codes stand for (codec/layout.glsl and pvfiblets/codec/direction_codebook.py), from storage buffers or from buffer textures.
 
 #if FEATURE_TEXTURE_DATA
 uniform usamplerBuffer decoding_texels;    // r32ui: OpenGL before 4.0 has no buffer textures of three components
@@ -15,5 +15,5 @@ uint code_word(uint index) { return codes[index]; }
 #endif
 
 // 16 KiB, the least that OpenGL promises to a uniform block: cap angle by cap angle 256 words, four to a row.
-layout(std140, binding = 4) uniform Rotations { uvec4 rotations[1024]; };
+#include "uniforms/Rotations.glsl"
 uint rotation_word(uint index) { return rotations[index >> 2][index & 3u]; }

@@ -8,7 +8,7 @@
 // Without the feature all points are kept, and nothing is left of this file but that.
 
 #include "fiblets/decode/words.glsl"
-#include "fiblets/attributes/place.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
 
 #if FEATURE_POINT_MASK
 uniform usampler2D point_mask;

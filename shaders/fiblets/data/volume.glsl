@@ -1,18 +1,16 @@
-// A volume that is sampled at points of a streamline; pvfiblets/engine/fiblets/sampled_volume.py packs the block and makes the texture.
+// A volume that is sampled at points of a streamline; pvfiblets/engine/fiblets/sampled_volume.py declares and packs the
+// block and makes the texture.
 //
 // Symbols
 //   at           voxel indices; voxel centres lie at whole numbers, so that the volume reaches from -1/2 to n - 1/2
-//   texel        of a normalised texture 0..1, else the value itself: value = x + texel * y, rounded to whole texel units
+//   texel        of a normalised texture 0..1, else the value itself: value = volume_least + texel * volume_per_unit, of
+//                which the product is rounded where values are whole
 //
 // Trilinear: the sum of eight voxels, each with the product of its three weights. It is not left to the texture unit, whose
 // weights have eight bits, and which would let a NaN with no weight count. Coordinates carry float32's rounding: NaN counts
 // from a weight of LIGHT on, or a point on a voxel's centre would be NaN because of a neighbour.
 
-layout(std140, binding = 6) uniform Sampling {
-    mat4 voxel_from_local;
-    vec4 volume_size;      // xyz: voxels; w: 1: the nearest voxel's value
-    vec4 volume_values;    // x: value of texel 0; y: value per texel unit; z: 1: values are whole numbers of units
-};
+#include "uniforms/Sampling.glsl"
 
 #if FEATURE_TEXTURE_DATA
 uniform sampler3D sampled_volume;  // pvfiblets/engine/fiblets/data_textures.py says where
@@ -25,8 +23,8 @@ const float LIGHT = 1e-4;
 bool is_nan(float v) { return (floatBitsToUint(v) & 0x7FFFFFFFu) > 0x7F800000u; }
 
 float voxel_value(ivec3 at) {
-    float v = texelFetch(sampled_volume, at, 0).x * volume_values.y;
-    return volume_values.x + (volume_values.z > 0.0 ? floor(v + 0.5) : v);
+    float v = texelFetch(sampled_volume, at, 0).x * volume_per_unit;
+    return volume_least + (volume_whole != 0 ? floor(v + 0.5) : v);
 }
 
 // A voxel's part in a sum. Infinity times nothing would be NaN.
@@ -37,10 +35,10 @@ float voxel_part(ivec3 at, float weight) {
 
 // Value at a point in local millimetres; NaN outside.
 float volume_at(vec3 p) {
-    vec3 at = (voxel_from_local * vec4(p, 1.0)).xyz, top = volume_size.xyz - 1.0;
+    vec3 at = (voxel_from_local * vec4(p, 1.0)).xyz, top = volume_shape - 1.0;
     if (!(all(greaterThanEqual(at, vec3(-0.5))) && all(lessThanEqual(at, top + 0.5)))) return uintBitsToFloat(0x7FC00000u);
     at = clamp(at, vec3(0.0), top);
-    if (volume_size.w > 0.0) return voxel_value(ivec3(min(floor(at + 0.5), top)));
+    if (volume_nearest != 0) return voxel_value(ivec3(min(floor(at + 0.5), top)));
     vec3 low = min(floor(at), max(top - 1.0, 0.0)), t = at - low;
     ivec3 first = ivec3(low), last = ivec3(min(low + 1.0, top));
     vec2 wx = vec2(1.0 - t.x, t.x), wy = vec2(1.0 - t.y, t.y), wz = vec2(1.0 - t.z, t.z);
@@ -52,7 +50,7 @@ float volume_at(vec3 p) {
 
 // Between the values at two points.
 float value_between(float a, float b, float t) {
-    return volume_size.w > 0.0 || is_nan(a) || is_nan(b) ? (t < 0.5 ? a : b) : mix(a, b, t);
+    return volume_nearest != 0 || is_nan(a) || is_nan(b) ? (t < 0.5 ? a : b) : mix(a, b, t);
 }
 
 // On a segment that stands for so many steps from point to point, as if the points were evenly spread: `rest` of the way

@@ -41,24 +41,6 @@ vec4 product(vec4 a, vec4 b) {
     return vec4(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
 }
 
-#if FEATURE_LATTICE
-// The box of a lattice fiblet: its least corner, its size, bytes per code, and where the codes start.
-void lattice_box(uvec3 words, inout uint byte, out ivec3 lo, out uvec2 n, out uint width) {
-    int shape = int(fiblet_shape(words));
-    lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
-    n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);
-    width = fiblet_kind(words);
-#if FEATURE_WIDE_LATTICE
-    if (fiblet_kind(words) == KIND_WIDE && fiblet_last(words) > 0u) {
-        lo = ivec3(codes_at(byte), codes_at(byte + 4u), codes_at(byte + 8u));
-        n = uvec2(codes_at(byte + 12u), codes_at(byte + 16u));
-        width = fiblet_step(words) & 7u;
-        byte += FIBLET_WIDE_HEADER;
-    }
-#endif
-}
-#endif
-
 void decode_together(uint f) {
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words), byte = first_code(f, words), thread = gl_LocalInvocationIndex;
@@ -86,9 +68,7 @@ void decode_together(uint f) {
             uvec2 n;
             ivec3 lo;
             lattice_box(words, at, lo, n, width);
-            uint code = codes_at(at + (i - 1u) * width) & (0xFFFFFFFFu >> (32u - 8u * width));
-            uint row = code / n.x;
-            prefix_lattice[i] = lo + ivec3(code - row * n.x, row % n.y, row / n.y);
+            prefix_lattice[i] = lattice_cell(at + (i - 1u) * width, width, lo, n);
         }
 #endif
     }
@@ -111,7 +91,7 @@ void decode_together(uint f) {
 
     // (d) positions
 #if FEATURE_LATTICE
-    unit = steps.z * exp2(-float(fiblet_cap(words)));
+    unit = lattice_edge * exp2(-float(fiblet_cap(words)));
 #endif
     vec3 anchor = anchor_local(f);
     bool end = ends(f);

@@ -7,8 +7,8 @@
 #if FEATURE_RANK_TO_ID
 // Streamlines by rank stand behind the pages, four a row.
 uint id_of_rank(uint rank) {
-    uint index = rank - chunk_bases.x;
-    return page_words(chunk_bases.z + (index >> 2))[index & 3u];
+    uint index = rank - chunk_first_rank;
+    return page_words(chunk_pages + (index >> 2))[index & 3u];
 }
 #endif
 #if FEATURE_ANCHORS_LOW
@@ -25,9 +25,9 @@ vec3 anchor_local(uint f) {
     q = (q << 16u) | uvec3(anchor_low(3u * f), anchor_low(3u * f + 1u), anchor_low(3u * f + 2u));
     vec3 d = vec3(difference(q.x, reference.x), difference(q.y, reference.y), difference(q.z, reference.z));
 #else
-    vec3 d = vec3(ivec3(q) - ivec3(reference.xyz));
+    vec3 d = vec3(ivec3(q) - ivec3(reference));
 #endif
-    precise vec3 p = d * anchor_scale.xyz;
+    precise vec3 p = d * anchor_scale;
     return p;
 }
 

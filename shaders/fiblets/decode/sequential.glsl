@@ -52,19 +52,8 @@ void walk_begin(uint f) {
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
         walk.k = ivec3(0);
-        walk.step = steps.z * exp2(-float(fiblet_cap(words)));
-        int shape = int(fiblet_shape(words));
-        walk.lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
-        walk.n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);
-        walk.width = walk.kind;
-#if FEATURE_WIDE_LATTICE
-        if (walk.kind == KIND_WIDE && walk.last > 0u) {
-            walk.lo = ivec3(codes_at(walk.byte), codes_at(walk.byte + 4u), codes_at(walk.byte + 8u));
-            walk.n = uvec2(codes_at(walk.byte + 12u), codes_at(walk.byte + 16u));
-            walk.width = fiblet_step(words) & 7u;
-            walk.byte += FIBLET_WIDE_HEADER;
-        }
-#endif
+        walk.step = lattice_edge * exp2(-float(fiblet_cap(words)));
+        lattice_box(words, walk.byte, walk.lo, walk.n, walk.width);
     }
 #endif
 }
@@ -73,10 +62,8 @@ void walk_begin(uint f) {
 void walk_next(uint i) {
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
-        uint code = codes_at(walk.byte) & (0xFFFFFFFFu >> (32u - 8u * walk.width));
+        ivec3 cell = lattice_cell(walk.byte, walk.width, walk.lo, walk.n);
         walk.byte += walk.width;
-        uint row = code / walk.n.x;
-        ivec3 cell = walk.lo + ivec3(code - row * walk.n.x, row % walk.n.y, row / walk.n.y);
         walk.k += cell;
         walk_delta = walk.step * vec3(cell);
         walk_point = walk_anchor + walk.step * vec3(walk.k);

@@ -11,7 +11,10 @@
 #include "fiblets/decode/record.glsl"
 #include "fiblets/data/decoding.glsl"
 
-uvec3 decoding_words(uint f) { return uvec3(decoding_word(3u * f), decoding_word(3u * f + 1u), decoding_word(3u * f + 2u)); }
+uvec3 decoding_words(uint f) {
+    uint at = FIBLET_DECODING_WORDS * f;
+    return uvec3(decoding_word(at), decoding_word(at + 1u), decoding_word(at + 2u));
+}
 
 // First byte of a fiblet's codes, counted from the chunk's first.
 uint first_code(uint f, uvec3 words) { return page_words(f >> FIBLET_PAGE_BITS).y + fiblet_code(words); }
@@ -37,7 +40,7 @@ vec4 rotation(uint cap, uint code, float scale) {
 
 float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }
 
-float step_length(uvec3 words) { return steps.x + float(fiblet_step(words)) * (steps.y / FIBLET_STEP_LEVELS); }
+float step_length(uvec3 words) { return step_low + float(fiblet_step(words)) * (step_span / FIBLET_STEP_LEVELS); }
 
 // The first direction's frame, M_0 of the paper. The octahedron's fold is decided on the integers, so that rounding
 // cannot choose another frame than the encoder's.
@@ -65,3 +68,27 @@ vec4 turned(vec4 a, vec4 t) {
                           a.w * t.z + a.x * t.y + a.z * t.w, a.w * t.w - a.y * t.y - a.z * t.z);
     return q;
 }
+
+#if FEATURE_LATTICE
+// The box of a lattice fiblet: its least corner, its size, bytes per code, and where the codes start.
+void lattice_box(uvec3 words, inout uint byte, out ivec3 lo, out uvec2 n, out uint width) {
+    int shape = int(fiblet_shape(words));
+    lo = ivec3(bitfieldExtract(shape, 0, 8), bitfieldExtract(shape, 8, 8), bitfieldExtract(shape, 16, 8));
+    n = uvec2((uint(shape) >> 24u) + 1u, (fiblet_step(words) & 255u) + 1u);
+    width = fiblet_kind(words);
+#if FEATURE_WIDE_LATTICE
+    if (fiblet_kind(words) == KIND_WIDE && fiblet_last(words) > 0u) {
+        lo = ivec3(codes_at(byte), codes_at(byte + 4u), codes_at(byte + 8u));
+        n = uvec2(codes_at(byte + 12u), codes_at(byte + 16u));
+        width = fiblet_step(words) & 7u;
+        byte += FIBLET_WIDE_HEADER;
+    }
+#endif
+}
+
+ivec3 lattice_cell(uint byte, uint width, ivec3 lo, uvec2 n) {
+    uint code = codes_at(byte) & (0xFFFFFFFFu >> (32u - 8u * width));
+    uint row = code / n.x;
+    return lo + ivec3(code - row * n.x, row % n.y, row / n.y);
+}
+#endif

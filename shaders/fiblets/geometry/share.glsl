@@ -1,7 +1,7 @@
 // Which fiblet an invocation draws and from which segment on; SHARE is how many segments of it. Leaves the walk at its
-// beginning (fiblets/raster/polyline.glsl).
+// beginning (fiblets/segments/polyline.glsl).
 
-flat in uint shown[];  // fiblets/raster/survivors.vert
+flat in uint shown[];  // fiblets/hardware_raster/survivors.vert
 
 uniform uint shares;
 

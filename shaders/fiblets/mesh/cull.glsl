@@ -4,7 +4,7 @@
 // Use: all invocations call cull(n); it returns how many survived, and the first has them in `survivors`. A task work group
 // has {{ task_fiblets }} fiblets, because most are culled: a group that yields nothing should not cost its launch for 32 only.
 
-#include "culling/survives.glsl"
+#include "fiblets/hardware_raster/cull.glsl"
 #include "fiblets/mesh/survivors.glsl"
 
 uniform uint first_group;  // drawing calls are limited in length (pvfiblets/engine/fiblets/pipelines/mesh.py)
@@ -22,7 +22,7 @@ uint cull(out Survivors survivors) {
 #endif
     for (uint i = 0u; i < ROUNDS; ++i) {
         uint f = survivors.first + THREADS * i + thread;
-        bool here = f < chunk.x && survives(f);
+        bool here = f < chunk_fiblets && survives(f);
 #if FEATURE_SUBGROUPS
         survivors.bits[i] = subgroupBallot(here).x;
         count += uint(bitCount(survivors.bits[i]));

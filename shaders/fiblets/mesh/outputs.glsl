@@ -1,5 +1,5 @@
 // What a mesh stage writes: vertices, the lines or triangles between them, and, primitive by primitive, what the fragments are
-// handed (fiblets/raster/varyings.glsl). Tests put storage buffers in the place of this file and run the same stages as compute
+// handed (fiblets/hardware_raster/varyings.glsl). Tests put storage buffers in the place of this file and run the same stages as compute
 // shaders.
 
 #define VARYING perprimitiveNV out
@@ -8,7 +8,7 @@
 
 uint varying_primitive;
 
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 
 void put_vertex(uint vertex, vec4 at) { gl_MeshVerticesNV[vertex].gl_Position = at; }
 

@@ -12,13 +12,13 @@
 // Primitives are in the opposite order, and so are shares: of two segments with the same depth in a pixel the one drawn first
 // stays, and that is to be the later one, as in the compute pipeline.
 
-#include "fiblets/raster/clipped_segment.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
 #include "fiblets/mesh/shares.glsl"
 #if FEATURE_WIDE_LINES
-#include "fiblets/raster/wide.glsl"
+#include "fiblets/hardware_raster/wide.glsl"
 const uint PRIMITIVES = 2u;  // of a segment
 #else
-#include "fiblets/raster/thin.glsl"
+#include "fiblets/hardware_raster/thin.glsl"
 const uint PRIMITIVES = 1u;
 #endif
 

@@ -1,7 +1,7 @@
 // One invocation draws one fiblet, or a share of it, point after point (paper: Schertzer et al. 2022, sections 3.3.1 and
 // 4.5.3): the pipeline `mesh-serial`, for comparison with fiblets/mesh/together.glsl.
 
-#include "fiblets/raster/polyline.glsl"
+#include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/pixel.glsl"
 #include "fiblets/mesh/draw_segment.glsl"
 
@@ -13,14 +13,18 @@ void draw_share(uint f, uint share) {
         put_count(0u);
         return;
     }
+    vec3 to = walk_point;
+    next_point(1u);
     for (uint i = 0u; i < end; ++i) {
-        vec3 from = walk_point;
+        vec3 from = to, delta = walk_delta;
+        to = walk_point;
         float before = value_of_point(i);
-        next_point(i + 1u);
-        start_segment(i, walk_delta, polyline.steps);
+        vec3 ahead = walk_ahead(i + 1u);
+        start_segment(i, to, delta, ahead);
         if (i < first) continue;
-        Varyings varyings = Varyings(pixel_ids, chunk.y + f, pixel_first_point, i, pixel_steps, vec2(before, value_of_point(i + 1u)));
-        draw_segment(i - first, end - first, varyings, from, walk_point, i == 0u && polyline.begin, i + 1u == polyline.count && polyline.end);
+        Varyings varyings = Varyings(pixel_streamline, packed_tangents(tangents), chunk_first + f, pixel_first_point, i, polyline.steps,
+                                     vec2(before, value_of_point(i + 1u)), goes_on(i + 1u) ? ahead : vec3(0.0));
+        draw_segment(i - first, end - first, varyings, from, to, i == 0u && polyline.begin, i + 1u == polyline.count && polyline.end);
     }
     put_count(PRIMITIVES * (end - first));
 }

@@ -10,8 +10,9 @@
 #include "fiblets/decode/parallel.glsl"
 #include "culling/bounds.glsl"
 #include "fiblets/data/point_mask.glsl"
-#include "fiblets/attributes/place.glsl"
-#include "frame/tangent.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
+#include "fiblets/attributes/neighbours.glsl"
+#include "fiblets/attributes/tangent.glsl"
 #include "fiblets/data/values.glsl"
 #if FEATURE_VALUES_CURVATURE
 #include "fiblets/attributes/turn.glsl"
@@ -33,6 +34,9 @@ struct Group {
     vec3 far_to;
     float unit;      // mm that decoded steps are in units of: the step of a direction fiblet, or the lattice's edge
     bool moves;      // of direction codes
+    vec3 behind;     // runs of the segment before its first point, and of the one after its last
+    vec3 beyond;
+    bool on;         // whether the line goes on there as it does here
 };
 
 Group group;
@@ -56,13 +60,20 @@ vec3 delta_of(uint i) {
     return prefix_point[i + 1u] - prefix_point[i];
 }
 
-// A segment of no length has the tangent of the one before it, or +x.
-uint tangent_of(uint segment) {
-    for (uint i = segment + 1u; i > 0u; --i) {
-        vec3 delta = delta_of(i - 1u);
-        if (delta != vec3(0.0)) return packed_tangent(delta, 0u);
+uvec2 tangents_of_segment(uint segment) {
+    vec3 before = group.behind, after = segment + 1u == group.count ? group.beyond : delta_of(segment + 1u);
+    for (uint i = segment; i > 0u; --i) {
+        before = delta_of(i - 1u);
+        if (before != vec3(0.0)) break;
     }
-    return 0u;
+    bool leads = segment + 1u == group.count && !group.whole;
+    return packed_tangents(tangents_of(unit_or_none(before), unit_or_none(delta_of(segment)), unit_or_none(after), leads));
+}
+
+// The run of the segment after one, where the line goes on as it says.
+vec3 ahead_of(uint segment) {
+    if (segment + 1u < group.count) return delta_of(segment + 1u);
+    return group.on ? group.beyond : vec3(0.0);
 }
 
 #if FEATURE_VALUES_ARC_LENGTH
@@ -122,10 +133,10 @@ void draw_share(uint f, uint share) {
     begin_point_mask(f);
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words);
-    group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION);
+    group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION, vec3(0.0), vec3(0.0), false);
     if (group.end && last == 0u) group.spans = 0.0;
     group.count = last + (group.end && last > 0u ? 0u : 1u);
-    group.unit = group.moves ? step_length(words) : steps.z * exp2(-float(fiblet_cap(words)));
+    group.unit = group.moves ? step_length(words) : lattice_edge * exp2(-float(fiblet_cap(words)));
 #if FEATURE_LEVEL_OF_DETAIL
     Capsule capsule = capsule_of(f);
     if (is_one_segment(capsule) && all_points_shown()) {
@@ -141,6 +152,16 @@ void draw_share(uint f, uint share) {
         if (gl_LocalInvocationIndex == 0u) put_count(0u);
         return;
     }
+    if (!group.whole && group.spans == 0.0 && !group.begin && f > 0u) {  // a single point: the segment that leads to it
+        decode_together(f - 1u);
+        group.behind = anchor_local(f) - prefix_point[fiblet_last(decoding_words(f - 1u))];
+    } else {
+        group.behind = direction_before(f, group.whole);
+    }
+    group.beyond = direction_after(f, group.whole);
+#if FEATURE_WIDE_LINES
+    group.on = alike_after(f, group.whole);
+#endif
     if (!group.whole) decode_together(f);
 #if FEATURE_VALUES_ARC_LENGTH
     if (!group.whole) add_lengths();
@@ -148,7 +169,7 @@ void draw_share(uint f, uint share) {
     uint streamline = streamline_of(f);
     float first_point = float(points_before(f));
     for (uint i = first + gl_LocalInvocationIndex; i < end; i += PREFIX_THREADS) {
-        Varyings varyings = Varyings(uvec2(streamline, tangent_of(i)), chunk.y + f, first_point, i, group.spans, values_of(i));
+        Varyings varyings = Varyings(streamline, tangents_of_segment(i), chunk_first + f, first_point, i, group.spans, values_of(i), ahead_of(i));
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
         draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }

@@ -5,11 +5,13 @@
 layout(lines) in;
 layout(triangle_strip, max_vertices = 4) out;
 
-#include "fiblets/raster/wide.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/wide.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 
 in vec4 end_point[];
 flat in uvec4 segment_ids[];
+flat in uint segment_tangent[];
+flat in vec3 segment_ahead[];
 flat in float segment_first[];
 
 void main() {
@@ -18,7 +20,7 @@ void main() {
     ClippedSegment piece;
     if ((ids.w & 0x40000u) != 0u) return;
     if (!piece_of(from.xyz, to.xyz, (ids.w & 0x10000u) != 0u, (ids.w & 0x20000u) != 0u, piece)) return;
-    Varyings varyings = Varyings(ids.xy, ids.z, segment_first[0], ids.w & 255u, float((ids.w >> 8u) & 255u), vec2(from.w, to.w));
+    Varyings varyings = Varyings(ids.x, uvec2(ids.y, segment_tangent[0]), ids.z, segment_first[0], ids.w & 255u, float((ids.w >> 8u) & 255u), vec2(from.w, to.w), segment_ahead[0]);
     for (int corner = 0; corner < 4; ++corner) {
         gl_Position = corner_of(piece, corner);
         write_varyings(varyings, piece, from.xyz, to.xyz);

@@ -1,10 +1,10 @@
-// Pipeline `tessellation`, thin lines: one end of a segment's part (fiblets/raster/thin.glsl).
+// Pipeline `tessellation`, thin lines: one end of a segment's part (fiblets/hardware_raster/thin.glsl).
 
 #version 430
 
 #include "fiblets/tessellation/segment.glsl"
-#include "fiblets/raster/thin.glsl"
-#include "fiblets/raster/write_varyings.glsl"
+#include "fiblets/hardware_raster/thin.glsl"
+#include "fiblets/hardware_raster/write_varyings.glsl"
 
 void main() {
     Segment segment = this_segment();
@@ -15,7 +15,7 @@ void main() {
     }
     Thin line = thin_line(piece);
     gl_Position = at_start ? line.first : line.last;
-    Varyings varyings = Varyings(segment.ids, patch_ids.y, patch_first, segment.index, segment.steps,
-                           vec2(segment.from.w, segment.to.w));
+    Varyings varyings = Varyings(patch_ids.x, segment.tangents, patch_ids.y, patch_first, segment.index, segment.steps,
+                           vec2(segment.from.w, segment.to.w), vec3(0.0));
     write_varyings(varyings, piece, segment.from.xyz, segment.to.xyz);
 }

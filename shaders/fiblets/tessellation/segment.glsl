@@ -3,7 +3,7 @@
 #include "frame/blocks.glsl"
 #include "fiblets/tessellation/patch.glsl"
 #include "codec/layout.glsl"
-#include "frame/tangent.glsl"
+#include "fiblets/attributes/tangent.glsl"
 #include "fiblets/data/point_mask.glsl"
 
 layout(isolines, equal_spacing) in;
@@ -12,6 +12,10 @@ in Half { vec4 points[HALF]; } halves[];
 
 patch in uvec4 patch_ids;
 patch in float patch_first;
+patch in uvec2 patch_around;
+#if FEATURE_WIDE_LINES
+patch in vec3 patch_beyond;
+#endif
 #if FEATURE_POINT_MASK
 patch in uvec4 patch_mask;
 #endif
@@ -22,7 +26,7 @@ struct Segment {
     uint index;
     vec4 from;      // local mm; w: per-point value
     vec4 to;
-    uvec2 ids;      // streamline; tangent
+    uvec2 tangents; // at its start and end
     float steps;
     bool start;
     bool cap;
@@ -31,13 +35,18 @@ struct Segment {
 
 bool at_start;      // of the segment; else at its end
 
-// A segment of no length keeps the tangent of the one before it, or +x.
-uint tangent_of(uint segment) {
-    for (uint i = segment + 1u; i > 0u; --i) {
-        vec3 delta = point_of(i).xyz - point_of(i - 1u).xyz;
-        if (delta != vec3(0.0)) return packed_tangent(delta, 0u);
+vec3 around(uint word) { return word == NO_DIRECTION ? vec3(0.0) : unpacked_tangent(word); }
+
+vec3 delta_of(uint segment) { return point_of(segment + 1u).xyz - point_of(segment).xyz; }
+
+uvec2 tangents_of_segment(uint segment, uint count) {
+    vec3 before = around(patch_around.x), after = segment + 1u == count ? around(patch_around.y) : delta_of(segment + 1u);
+    for (uint i = segment; i > 0u; --i) {
+        before = delta_of(i - 1u);
+        if (before != vec3(0.0)) break;
     }
-    return 0u;
+    bool leads = segment + 1u == count && (patch_ids.w & 4u) == 0u;
+    return packed_tangents(tangents_of(unit_or_none(before), unit_or_none(delta_of(segment)), unit_or_none(after), leads));
 }
 
 // Where segments are never cut, one isoline leads through all points, and a vertex ends a segment; the first begins one.
@@ -61,6 +70,6 @@ Segment this_segment() {
     mask_joined = (patch_mask.w & 2u) != 0u;
 #endif
     bool drawn = mask_segment(index, start, cap);
-    return Segment(index, point_of(index), point_of(index + 1u), uvec2(patch_ids.x, tangent_of(index)),
+    return Segment(index, point_of(index), point_of(index + 1u), tangents_of_segment(index, count),
                    float(patch_ids.z >> 8u), start, cap, drawn);
 }

@@ -13,14 +13,14 @@ from .limits import TEXTURED, Limits
 if TYPE_CHECKING:
     import moderngl
 
-    from ...opengl import OpenGL
+    from ...moderngl_extras import GLExtras
     from ...shaders import Programs
 
 __all__ = ["CONSTANTS", "ComputePipeline", "DrawRequest", "Limits", "Pipeline", "make_measurer", "make_pipeline"]
 
 
 def make_pipeline(
-    name: str, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int, n_chunks: int, limits: Limits
+    name: str, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int, n_chunks: int, limits: Limits
 ) -> Pipeline:
     """Make a pipeline by its name, which the context must support."""
     if name in ("mesh", "mesh-serial"):
@@ -38,7 +38,7 @@ def make_pipeline(
     return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups)
 
 
-def make_measurer(name: str, ctx: moderngl.Context, gl: OpenGL, programs: Programs, limits: Limits) -> Measurer:
+def make_measurer(name: str, ctx: moderngl.Context, gl: GLExtras, programs: Programs, limits: Limits) -> Measurer:
     """Make what measures fiblets beside a pipeline."""
     if name in TEXTURED:
         return FeedbackMeasurer(ctx, gl, programs)

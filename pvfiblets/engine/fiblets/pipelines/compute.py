@@ -6,30 +6,31 @@ pass           what it does
 clear          empties depth, owners and lists
 cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
                the last picture's depth, of which class they are
-seen           draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
-guessed        draws the depth of those that will probably show
+visible        draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
+predicted      draws the depth of those that will probably show
 pyramid        makes the depth so far into a pyramid
-occlusion      tests the rest against it, as a whole, and refine in pieces
+occlusion      tests the rest against it, each fiblet as a whole
+refine         tests in pieces those that were not hidden as a whole
 depth          draws the depth of what is left
-own            draws those so marked again: where depth was kept, the least fiblet index owns the pixel and writes
+resolve_owner  draws those so marked again: where depth was kept, the least fiblet index owns the pixel and writes
                streamline, tangent and place into it
-settle         writes the pixels that more than one fiblet took, by their owners
+resolve_ties   writes the pixels that more than one fiblet took, by their owners
 =============  =================================================================================================
 
-Of these, guessed to refine belong to two-phase culling. Last time's fiblets and depth only decide the order: the
+Of these, predicted to refine belong to two-phase culling. Last time's fiblets and depth only decide the order: the
 picture is the same whatever was seen before. There is a program for each class of fiblets
 (``shaders/fiblets/compute/cull.comp``): those inside all planes of the view volume need no clipping, those drawn as
 one segment no decoding.
 
 Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth passes keep depth and fiblet in one word
-(``shaders/fiblets/compute/nearest.glsl``). A pass ``split`` makes depth and owners of the words, before the pyramid
-and at the end; then ``resolve_owner`` draws the owners alone, by the program of ``resolve_ties``, which there is no
-more need of.
+(``shaders/fiblets/compute/nearest.glsl``). Passes make depth and owners of the words, ``split`` before the pyramid and
+``owners`` at the end; then ``resolve_owner`` draws the owners alone, by the program of ``resolve_ties``, which there is
+no more need of.
 
 Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
 calls whatever there is to draw.
 
-The sources are in ``shaders/compute``; what a program includes is decided by features.
+The sources are in ``shaders/fiblets/compute``; what a program includes is decided by features.
 """
 
 from __future__ import annotations
@@ -45,11 +46,11 @@ import numpy as np
 from ....codec.layout import MAX_POINTS
 from ...bindings import BLOCKS, IMAGES, STORAGE
 from ...errors import EngineError
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...passes import GROUP_SIZE, dispatch, is_software
 from ...shaders import EXTENDED, Programs
 from ..chunks import Chunk, storage_buffer
-from .constants import GROUP_WORDS, MARK_WORDS
+from .constants import GROUP_WORDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ __all__ = ["CLASSES", "ComputePipeline"]
 CLASSES = 4
 ROUNDS = 6
 ARGUMENT_BYTES = 16
-SEEN, GUESSED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
+SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
 
 
 SOFTWARE_ITERATIONS = 60_000
@@ -109,7 +110,7 @@ class ComputePipeline:
         self.planned = False
         self._words = -(-n_fiblets // 32)
         self._round_arguments = n_chunks * CLASSES
-        self._list_base = self._words * MARK_WORDS
+        self._list_base = self._words * VISIBILITY_WORDS
         self._argument_base = self._list_base + self._words * CLASSES
         size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
         self._own: dict[str, moderngl.Buffer] = {}
@@ -155,7 +156,7 @@ class ComputePipeline:
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
-            if occlusion is not None and occlusion.guesses:
+            if occlusion is not None and occlusion.predicts:
                 features.append(occlusion.feature)
                 occlusion.bind(self._program("cull", features))
             self._run("cull", features, request)
@@ -166,9 +167,9 @@ class ComputePipeline:
         with passes.timed("visible"):
             self._round("depth", SEEN, request)
         if occlusion is not None and occlusion.halfway:
-            if occlusion.guesses:
-                with passes.timed("guessed"):
-                    self._round("depth", GUESSED, request)
+            if occlusion.predicts:
+                with passes.timed("predicted"):
+                    self._round("depth", PREDICTED, request)
             self._split(request, marking=False)
             with passes.timed("pyramid"):
                 occlusion.build(target)
@@ -191,7 +192,7 @@ class ComputePipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, OpenGL(self._ctx), self._programs, 32 * self._words)
+            self._raster = GeometryPipeline(self._ctx, GLExtras(self._ctx), self._programs, 32 * self._words)
         self._raster.draw(request)
 
     def _bind_nearest(self, size: int) -> None:

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from ....query.region import MAX_LEAVES, MAX_OPS
 from ...passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
 from ..filter_textures import MASK_BITS
 
-__all__ = ["CONSTANTS", "GROUP_WORDS", "MARK_WORDS", "SHARES", "TASK_FIBLETS", "TASK_ROUNDS", "THREADS", "VERTICES"]
+__all__ = [
+    "CONSTANTS",
+    "GROUP_WORDS",
+    "SHARES",
+    "TASK_FIBLETS",
+    "TASK_ROUNDS",
+    "THREADS",
+    "VERTICES",
+    "VISIBILITY_WORDS",
+]
 
 GROUP_WORDS = 8
-MARK_WORDS = 15
+VISIBILITY_WORDS = 15
 
-SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
-VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
+SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "valued_capsule": 10,
+          "cut_capsule": 9}
+VERTICES = {"line": 61, "valued_line": 31, "cut_line": 60, "cut_valued_line": 40, "capsule": 48, "valued_capsule": 40,
+            "cut_capsule": 36}
 
 THREADS = 32
 """Of a mesh stage's work group: a warp, as the paper has it."""
@@ -26,11 +36,9 @@ TASK_FIBLETS = THREADS * TASK_ROUNDS
 CONSTANTS = {
     "group_size": GROUP_SIZE,
     "group_words": GROUP_WORDS,
-    "mark_words": MARK_WORDS,
+    "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,
-    "max_region_leaves": MAX_LEAVES,
-    "max_region_ops": MAX_OPS,
     "mesh_threads": THREADS,
     "task_fiblets": TASK_FIBLETS,
     "task_rounds": TASK_ROUNDS,

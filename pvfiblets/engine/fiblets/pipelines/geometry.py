@@ -1,18 +1,22 @@
 """The geometry pipeline (OpenGL 3.3): a point a fiblet goes in, lines come out, decoded while they are emitted.
 
-Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/geometry``, and beside it in
+``hardware_raster`` and ``segments``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/raster/varyings.glsl``, per-point values included:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, with per-point values among them or without:
 
-======================  ==========  ==============  ===========================================================
-drawn                   components  vertices        segments of a share
-======================  ==========  ==============  ===========================================================
-thin, uncut             16          1024 // 16: 64  60: all of them, by 61 vertices
-thin, may be cut        17          1024 // 17: 60  30: every segment may be a strip of its own
-wide                    20          1024 // 20: 51  12: four vertices each, 60 in five shares
-wide, caller's planes   26          1024 // 26: 39  9: four vertices each, 60 in seven shares
-======================  ==========  ==============  ===========================================================
+==============================  ==========  ==============  =======================================================
+drawn                           components  vertices        segments of a share
+==============================  ==========  ==============  =======================================================
+thin, uncut                     15          1024 // 15: 68  60: all of them, by 61 vertices
+thin, uncut, with values        17          1024 // 17: 60  30
+thin, may be cut                16          1024 // 16: 64  30: every segment may be a strip of its own
+thin, may be cut, with values   18          1024 // 18: 56  20
+wide                            20          1024 // 20: 51  12: four vertices each, 60 in five shares
+wide, with values               22          1024 // 22: 46  10: 60 in six shares
+wide, caller's planes, either   28          1024 // 28: 36  9: 60 in seven shares
+==============================  ==========  ==============  =======================================================
 
 A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
 """
@@ -31,6 +35,10 @@ from .textured import TexturedPipeline
 __all__ = ["GeometryPipeline"]
 
 
+_HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME"}
+"""Values that vertices carry; of a stored one fragments look up the codes."""
+
+
 class GeometryPipeline(TexturedPipeline):
     """Draws chunks through geometry stages; parameters as for :class:`RasterPipeline`."""
 
@@ -40,15 +48,16 @@ class GeometryPipeline(TexturedPipeline):
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
         geometry, fragment = ("capsules", "capsule") if request.wide else ("lines", "line")
         return {
-            "vertex": "fiblets/raster/survivors.vert",
+            "vertex": "fiblets/hardware_raster/survivors.vert",
             "geometry": f"fiblets/geometry/{geometry}.geom",
-            "fragment": f"fiblets/raster/{fragment}.frag",
+            "fragment": f"fiblets/hardware_raster/{fragment}.frag",
         }
 
     def _shares(self, request: DrawRequest) -> int:
         # The geometry stages choose by the same features.
+        valued = "valued_" if _HANDED_OVER.intersection(request.values) else ""
         if request.wide:
-            share = SHARES["cut_capsule" if request.planes else "capsule"]
+            share = SHARES["cut_capsule" if request.planes else f"{valued}capsule"]
         else:
-            share = SHARES["cut_line" if request.clipping else "line"]
+            share = SHARES[f"cut_{valued}line" if request.clipping else f"{valued}line"]
         return -(-MAX_POINTS // share)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import moderngl
 
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from .compute import CLASSES
-from .constants import MARK_WORDS
+from .constants import VISIBILITY_WORDS
 
 __all__ = ["TEXTURED", "Limits"]
 
@@ -20,7 +20,7 @@ MESH = ("mesh", "mesh-serial")
 LARGEST = 2**31 - 4
 """Bytes of a buffer, whatever a driver allows: what shaders count in a chunk then fits into 32 bits (``chunks.py``)."""
 
-_MARK_BYTES = {"texture": 32, "buffer": 4 * (MARK_WORDS + CLASSES)}  # for 32 fiblets
+_VISIBILITY_BYTES = {"texture": 32, "buffer": 4 * (VISIBILITY_WORDS + CLASSES)}  # for 32 fiblets
 
 
 @dataclass(frozen=True)
@@ -44,20 +44,20 @@ class Limits:
     marks: int
     marked_by: str
 
-    def mark_bytes(self, n_fiblets: int) -> int:
+    def visibility_bytes(self, n_fiblets: int) -> int:
         """Bytes of those marks."""
-        return -(-n_fiblets // 32) * _MARK_BYTES[self.marked_by]
+        return -(-n_fiblets // 32) * _VISIBILITY_BYTES[self.marked_by]
 
     @classmethod
     def of(
-        cls, ctx: moderngl.Context, gl: OpenGL, pipeline: str, buffer_bytes: int | None, groups: int | None
+        cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
         """Ask the driver, and take what is less.
 
         Parameters
         ----------
         ctx : moderngl.Context
-        gl : OpenGL
+        gl : GLExtras
         pipeline : str
         buffer_bytes, groups : int, optional
             Of the user's.
@@ -73,4 +73,4 @@ class Limits:
         groups, records = min(axis, groups or axis), min(most, buffer_bytes or most)
         if pipeline in MESH:
             return cls(records, groups, side * side, "texture")
-        return cls(records, groups, 32 * (most // _MARK_BYTES["buffer"]), "buffer")
+        return cls(records, groups, 32 * (most // _VISIBILITY_BYTES["buffer"]), "buffer")

@@ -1,6 +1,6 @@
 """The mesh pipelines (GL_NV_mesh_shader): a task stage culls, a mesh stage decodes.
 
-Paper: Schertzer et al. 2022, sections 3.3, 3.4 and 4.5, figure 2. The sources are in ``shaders/mesh``.
+Paper: Schertzer et al. 2022, sections 3.3, 3.4 and 4.5, figure 2. The sources are in ``shaders/fiblets/mesh``.
 
 ===============  ==============================================================================================
 pipeline         how a fiblet is decoded
@@ -23,12 +23,12 @@ from collections.abc import Mapping
 
 import moderngl
 
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...shaders import Programs
 from ..chunks import Chunk
 from .constants import TASK_FIBLETS, THREADS
 from .draw_request import DrawRequest
-from .raster import RasterPipeline
+from .hardware_raster import RasterPipeline
 
 __all__ = ["MeshPipeline"]
 
@@ -43,7 +43,7 @@ class MeshPipeline(RasterPipeline):
     ----------
     ctx : moderngl.Context
         With GL_NV_mesh_shader.
-    gl : OpenGL
+    gl : GLExtras
     programs : Programs
     n_fiblets : int
         In all chunks.
@@ -56,7 +56,7 @@ class MeshPipeline(RasterPipeline):
     def __init__(
         self,
         ctx: moderngl.Context,
-        gl: OpenGL,
+        gl: GLExtras,
         programs: Programs,
         n_fiblets: int,
         *,
@@ -89,7 +89,7 @@ class MeshPipeline(RasterPipeline):
         return {
             "task": "fiblets/mesh/fiblets.task",
             "mesh": "fiblets/mesh/serial.mesh" if self.name == "mesh-serial" else "fiblets/mesh/together.mesh",
-            "fragment": "fiblets/raster/capsule.frag" if request.wide else "fiblets/raster/line.frag",
+            "fragment": "fiblets/hardware_raster/capsule.frag" if request.wide else "fiblets/hardware_raster/line.frag",
         }
 
     def _prepare(self, program: moderngl.Program) -> None:

@@ -1,7 +1,7 @@
 """The tessellation pipeline (OpenGL 4.1): a fiblet is a patch, which is decoded, and isolines become its segments.
 
-Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/tessellation``, with their budgets, and in
-``shaders/raster``.
+Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/tessellation``, with their budgets, and
+in ``hardware_raster`` and ``segments`` beside it.
 """
 
 from __future__ import annotations
@@ -26,18 +26,21 @@ class TessellationPipeline(TexturedPipeline):
     do not suffice: 512 fiblets make 512 * 60 * 2 = 61,440 vertices at most."""
 
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
-        stages = {"vertex": "fiblets/raster/survivors.vert", "tess_control": "fiblets/tessellation/decode.tesc"}
+        stages = {
+            "vertex": "fiblets/hardware_raster/survivors.vert",
+            "tess_control": "fiblets/tessellation/decode.tesc",
+        }
         if not request.wide:
             return {
                 **stages,
                 "tess_evaluation": "fiblets/tessellation/lines.tese",
-                "fragment": "fiblets/raster/line.frag",
+                "fragment": "fiblets/hardware_raster/line.frag",
             }
         return {
             **stages,
             "tess_evaluation": "fiblets/tessellation/capsules.tese",
             "geometry": "fiblets/tessellation/capsules.geom",
-            "fragment": "fiblets/raster/capsule.frag",
+            "fragment": "fiblets/hardware_raster/capsule.frag",
         }
 
     def _shares(self, request: DrawRequest) -> int:  # noqa: ARG002 (of one vertex each)

@@ -6,26 +6,26 @@ import abc
 
 import moderngl
 
-from ...opengl import OpenGL
+from ...moderngl_extras import GLExtras
 from ...passes import is_software
 from ...shaders import Programs
 from ..chunks import Chunk
 from ..data_textures import DataTextures, set_data_samplers
 from .draw_request import DrawRequest
-from .raster import RasterPipeline
+from .hardware_raster import RasterPipeline
 
 __all__ = ["TexturedPipeline"]
 
 
 class TexturedPipeline(RasterPipeline):
-    """Draws by stages that take data from buffer textures, and fiblets from ``fiblets/raster/survivors.vert``."""
+    """Draws by stages with data from buffer textures, and fiblets from ``fiblets/hardware_raster/survivors.vert``."""
 
     mode: int
     """What a vertex is to OpenGL."""
     software_batch: int | None = None
     """Vertices of one call, where Mesa's software OpenGL draws."""
 
-    def __init__(self, ctx: moderngl.Context, gl: OpenGL, programs: Programs, n_fiblets: int) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         super().__init__(ctx, gl, programs, n_fiblets)
         self._batch = self.software_batch if is_software(ctx) else None
         self._data: dict[int, DataTextures] = {}

@@ -1,0 +1,102 @@
+"""What ``pvfiblets density`` does."""
+
+from __future__ import annotations
+
+import logging
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pvfiblets.cli_files import print_json, show_progress
+from pvfiblets.query.density import CONTRASTS
+from pvfiblets.query.density import density as add_up
+from pvfiblets.query.density_map import DensityMap, check_target
+from pvfiblets.query.voxel_grid import SUFFIXES
+
+
+def density(
+    source: str,
+    target: str,
+    *,
+    voxel: list[float] | None,
+    like: str | None,
+    contrast: str,
+    weights: str | None,
+    ends_only: bool,
+    quiet: bool,
+    json: bool,
+) -> None:
+    """Write a volume of density."""
+    check_target(target)  # before minutes of work, not after
+    if voxel is not None and len(voxel) not in (1, 3):
+        raise ValueError(f"--voxel has {len(voxel)} numbers; give one side in mm, or three")
+    if quiet:
+        logging.getLogger("pvfiblets").setLevel(logging.ERROR)
+    begin = time.perf_counter()
+    found = add_up(
+        source,
+        None if voxel is None else voxel if len(voxel) == 3 else voxel[0],
+        like=_image(like),
+        weights=_numbers(weights),
+        contrast=contrast if contrast in CONTRASTS else _numbers(contrast),
+        ends_only=ends_only,
+        progress=show_progress(quiet, json),
+    )
+    seconds = time.perf_counter() - begin
+    found.save(target)
+    result = facts(target, found, seconds)
+    if json:
+        print_json(result)
+    else:
+        print(summary(result))
+
+
+def facts(target: str, found: DensityMap, seconds: float) -> dict[str, Any]:
+    """Return the keys of ``density --json``."""
+    voxels = found.values.reshape(*found.grid.shape, -1)
+    return {
+        "file": target,
+        "contrast": found.name,
+        "unit": found.unit or None,
+        "shape": list(found.grid.shape),
+        "voxel_mm": np.linalg.norm(found.affine[:3, :3], axis=0).tolist(),
+        "low": float(voxels.min()),
+        "high": float(voxels.max()),
+        "share_not_zero": float((voxels != 0).any(axis=3).mean()),
+        "share_outside": found.share_outside,
+        "seconds": seconds,
+    }
+
+
+def summary(result: dict[str, Any]) -> str:
+    """Return the same for people."""
+    sides = " x ".join(f"{n:,}" for n in result["shape"])
+    lines = [
+        f"{result['file']}: {sides} voxels of {' x '.join(f'{mm:.4g}' for mm in result['voxel_mm'])} mm",
+        f"{result['contrast']:<9}{result['low']:.6g} to {result['high']:.6g} {result['unit'] or ''}".rstrip()
+        + f"; {100.0 * result['share_not_zero']:.3g} % of the voxels are not 0",
+        f"time     {result['seconds']:.1f} s",
+    ]
+    if result["share_outside"] > 1e-9:
+        lines.insert(2, f"outside  {100.0 * result['share_outside']:.3g} % of the streamlines, which no voxel holds")
+    return "\n".join(lines)
+
+
+def _image(path: str | None) -> Any:
+    """Return what says where the voxels of an image lie."""
+    if path is None or path.lower().endswith(SUFFIXES):
+        return path
+    from pvfiblets.volumes.sources import as_raycast_volume
+
+    return as_raycast_volume(path)
+
+
+def _numbers(given: str | None) -> Any:
+    """Return the numbers of a file; a text that names none is the name of an array."""
+    from pvfiblets.formats import attachments
+
+    if given is None or Path(given).suffix.lower() not in attachments.SUFFIXES:
+        return given
+    return attachments.read_values(given)

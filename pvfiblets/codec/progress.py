@@ -1,0 +1,40 @@
+"""Progress of work that goes through streamlines chunk by chunk: a bar, or a function that is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeAlias
+
+from tqdm import tqdm
+
+from ..streamlines import Streamlines
+
+__all__ = ["Progress", "shown"]
+
+Progress: TypeAlias = bool | Callable[[str, float], None]
+"""Whether to show a bar; or what to call with what is being done and which share of it is, 0 to 1."""
+
+
+def shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress: Progress) -> Iterator[Streamlines]:
+    """Yield chunks, and show how far they have come.
+
+    Parameters
+    ----------
+    chunks : iterable of Streamlines
+    total : int or None
+        Points of all of them; None if nobody knows, and then the share stays 0.
+    what : str
+        What is being done.
+    progress : bool or callable
+    """
+    if callable(progress):
+        done = 0
+        for chunk in chunks:
+            progress(what, done / total if total else 0.0)
+            yield chunk
+            done += chunk.n_points
+        return
+    with tqdm(total=total, desc=what, unit="points", unit_scale=True, disable=not progress) as bar:
+        for chunk in chunks:
+            yield chunk
+            bar.update(chunk.n_points)

@@ -1,0 +1,90 @@
+"""Where a streamline stands in a set: its fiblets, and its points among all points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .layout import PAGE, PAGE_BITS, unpack
+
+if TYPE_CHECKING:
+    from .fibletset import FibletSet
+
+__all__ = ["StreamlineRanges", "coded_rows", "ranges_of"]
+
+FEW = 256  # streamlines that are looked for one by one; more are found by reading all records
+Ints = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class StreamlineRanges:
+    """Where some streamlines' fiblets and points stand among all.
+
+    Attributes
+    ----------
+    fiblet, fiblets, point, points : numpy.ndarray
+        ``(n,)`` int64: first fiblet and number of fiblets, first point and number of points.
+    """
+
+    fiblet: Ints
+    fiblets: Ints
+    point: Ints
+    points: Ints
+
+    @classmethod
+    def of(cls, fiblets: FibletSet) -> StreamlineRanges:
+        """Those of all streamlines."""
+        owners, n = fiblets.fiblet_streamlines(), fiblets.n_streamlines
+        begins = np.flatnonzero(np.diff(owners, prepend=-1))
+        first, point = np.zeros(n, np.int64), np.zeros(n, np.int64)
+        first[owners[begins]] = begins
+        point[owners[begins]] = fiblets.fiblet_points()[begins]
+        counts = np.bincount(owners, fiblets.fiblet_counts(), minlength=n).astype(np.int64)
+        return cls(first, np.bincount(owners, minlength=n), point, counts)
+
+    def at(self, chosen: Ints) -> StreamlineRanges:
+        """Those of some of them."""
+        return StreamlineRanges(self.fiblet[chosen], self.fiblets[chosen], self.point[chosen], self.points[chosen])
+
+
+def ranges_of(fiblets: FibletSet, chosen: Ints) -> StreamlineRanges:
+    """Ranges of chosen streamlines; a few are found without reading the records of the others."""
+    if len(chosen) > FEW:
+        return StreamlineRanges.of(fiblets).at(chosen)
+    return StreamlineRanges(*(np.array([_find(fiblets, int(i)) for i in chosen], np.int64).reshape(-1, 4).T))
+
+
+def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
+    """First fiblet, number of fiblets, first point and number of points of one streamline."""
+    rank, ids = streamline, fiblets.rank_to_id
+    if ids is not None:
+        found = np.flatnonzero(ids == streamline)
+        if not found.size:
+            return 0, 0, 0, 0  # without points
+        rank = int(found[0])
+    # Pages begin with fiblets of rising ranks; those of one rank lie in consecutive pages.
+    begins = fiblets.pages[:-1, 0]
+    first = max(int(np.searchsorted(begins, rank, side="left")) - 1, 0)
+    last = int(np.searchsorted(begins, rank, side="right")) - 1
+    at = first * PAGE
+    ranks = unpack("rank", fiblets.anchors[at : (last + 1) * PAGE]).astype(np.int64)
+    ranks += begins[first : last + 1].repeat(PAGE)[: len(ranks)]
+    mine = np.flatnonzero(ranks == rank) + at
+    if not mine.size:
+        raise IndexError(f"streamline {streamline} has no fiblets")  # a damaged file says so when it is verified
+    counts = unpack("last", fiblets.decoding[mine]).astype(np.int64) + 1
+    point = int(unpack("point", fiblets.decoding[mine[0]])) + int(fiblets.pages[mine[0] >> PAGE_BITS, 2])
+    return int(mine[0]), len(mine), point, int(counts.sum())
+
+
+def coded_rows(fiblets: FibletSet) -> Ints:
+    """Index among all points, in the order of the streamlines, of each point as coded: ``(n_points,)`` int64."""
+    places = StreamlineRanges.of(fiblets)
+    starts = np.cumsum(places.points) - places.points
+    order = np.argsort(places.point[places.points > 0], kind="stable")
+    filled = np.flatnonzero(places.points > 0)[order]
+    lengths = places.points[filled]
+    return np.arange(fiblets.n_points) + np.repeat(starts[filled] - (np.cumsum(lengths) - lengths), lengths)

@@ -1,0 +1,430 @@
+"""OpenGL functions that moderngl lacks, by ctypes, on the context that is current.
+
+>>> gl = GLExtras(ctx)                                            # doctest: +SKIP
+>>> codes = gl.texture_buffer(buffer, "r8ui")                     # doctest: +SKIP
+>>> codes.bind(3)                                                 # doctest: +SKIP
+>>> gl.set_sampler(program, "codes", 3)                           # doctest: +SKIP
+
+moderngl remembers which framebuffer is bound and nothing else that is touched here: it makes a texture unit active
+before every bind of its own. So bindings of framebuffers are put back, texture units are left as they are asked for.
+
+A loader's non-null pointer proves nothing: EGL and GLX hand out stubs for any name. Only what OpenGL 3.3 has, which
+is moderngl's own least version, is called without asking; all else names the version or extension that it needs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import moderngl
+
+from .errors import EngineError
+from .gl_loader import loader
+
+__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras"]
+
+_UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
+
+# Name: types of the arguments (none returns anything), and what is needed beyond OpenGL 3.3.
+_FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
+    "glActiveTexture": ((_UINT,), 330),
+    "glBindFramebuffer": ((_UINT, _UINT), 330),
+    "glBindTexture": ((_UINT, _UINT), 330),
+    "glBlitFramebuffer": ((*[_INT] * 8, _UINT, _UINT), 330),
+    "glClearBufferfv": ((_UINT, _INT, _POINTER), 330),
+    "glClearBufferuiv": ((_UINT, _INT, _POINTER), 330),
+    "glDeleteTextures": ((_INT, _POINTER), 330),
+    "glDrawMeshTasksEXT": ((_UINT, _UINT, _UINT), "GL_EXT_mesh_shader"),
+    "glFramebufferTexture2D": ((_UINT, _UINT, _UINT, _UINT, _INT), 330),
+    "glFramebufferTextureLayer": ((_UINT, _UINT, _UINT, _INT, _INT), 330),
+    "glGenTextures": ((_INT, _POINTER), 330),
+    "glGetFramebufferAttachmentParameteriv": ((_UINT, _UINT, _UINT, _POINTER), 330),
+    "glGetInteger64v": ((_UINT, _POINTER), 330),
+    "glTexBuffer": ((_UINT, _UINT, _UINT), 330),
+    "glTexImage2D": ((_UINT, _INT, _INT, _INT, _INT, _INT, _UINT, _UINT, _POINTER), 330),
+    "glTexParameteri": ((_UINT, _UINT, _INT), 330),
+    "glUniform1i": ((_INT, _INT), 330),
+    "glUseProgram": ((_UINT,), 330),
+}
+
+INTEGERS: dict[str, tuple[int, int | str]] = {
+    "GL_DRAW_FRAMEBUFFER_BINDING": (0x8CA6, 330),
+    "GL_READ_FRAMEBUFFER_BINDING": (0x8CAA, 330),
+    "GL_SAMPLES": (0x80A9, 330),
+    "GL_MAX_TEXTURE_BUFFER_SIZE": (0x8C2B, 330),
+    "GL_MAX_TEXTURE_SIZE": (0x0D33, 330),
+    "GL_MAX_UNIFORM_BLOCK_SIZE": (0x8A30, 330),
+    "GL_MAX_GEOMETRY_OUTPUT_VERTICES": (0x8DE0, 330),
+    "GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS": (0x8DE1, 330),
+    "GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS": (0x8C29, 330),
+    "GL_MAX_GEOMETRY_SHADER_INVOCATIONS": (0x8E5A, 400),
+    "GL_MAX_PATCH_VERTICES": (0x8E7D, 400),
+    "GL_MAX_TESS_GEN_LEVEL": (0x8E7E, 400),
+    "GL_MAX_TESS_CONTROL_OUTPUT_COMPONENTS": (0x8E83, 400),
+    "GL_MAX_TESS_PATCH_COMPONENTS": (0x8E84, 400),
+    "GL_MAX_TESS_CONTROL_TOTAL_OUTPUT_COMPONENTS": (0x8E85, 400),
+    "GL_MAX_TESS_CONTROL_TEXTURE_IMAGE_UNITS": (0x8E81, 400),
+    "GL_MAX_TESS_EVALUATION_TEXTURE_IMAGE_UNITS": (0x8E82, 400),
+    "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": (0x90DE, 430),
+    "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE": (0x8262, 430),
+    "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS": (0x90EB, 430),
+    "GL_MAX_MESH_OUTPUT_VERTICES_NV": (0x9538, "GL_NV_mesh_shader"),
+    "GL_MAX_MESH_OUTPUT_PRIMITIVES_NV": (0x9539, "GL_NV_mesh_shader"),
+    "GL_MAX_MESH_TOTAL_MEMORY_SIZE_NV": (0x9536, "GL_NV_mesh_shader"),
+    "GL_MAX_MESH_WORK_GROUP_INVOCATIONS_NV": (0x95A2, "GL_NV_mesh_shader"),
+    "GL_MAX_TASK_TOTAL_MEMORY_SIZE_NV": (0x9537, "GL_NV_mesh_shader"),
+    "GL_MAX_TASK_OUTPUT_COUNT_NV": (0x953A, "GL_NV_mesh_shader"),
+    "GL_MAX_TASK_WORK_GROUP_INVOCATIONS_NV": (0x95A3, "GL_NV_mesh_shader"),
+    "GL_MAX_DRAW_MESH_TASKS_COUNT_NV": (0x953D, "GL_NV_mesh_shader"),
+    "GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX": (0x9049, "GL_NVX_gpu_memory_info"),
+    "GL_VBO_FREE_MEMORY_ATI": (0x87FB, "GL_ATI_meminfo"),
+    "GL_SUBGROUP_SIZE_KHR": (0x9532, "GL_KHR_shader_subgroup"),
+    "GL_SUBGROUP_SUPPORTED_STAGES_KHR": (0x9533, "GL_KHR_shader_subgroup"),
+    "GL_SUBGROUP_SUPPORTED_FEATURES_KHR": (0x9534, "GL_KHR_shader_subgroup"),
+}
+"""What :meth:`GLExtras.get_integer` knows: enum, and least version (330 is 3.3) or extension."""
+
+TEXEL_FORMATS: dict[str, tuple[int, int]] = {
+    "r8ui": (0x8232, 1),
+    "r16ui": (0x8234, 2),
+    "r32ui": (0x8236, 4),
+    "rg16ui": (0x823A, 4),
+    "rg32ui": (0x823C, 8),
+    "rgba16ui": (0x8D76, 8),
+    "rgba32ui": (0x8D70, 16),
+    "r32f": (0x822E, 4),
+    "rg32f": (0x8230, 8),
+    "rgba32f": (0x8814, 16),
+}
+"""Formats of buffer textures: internal format, and bytes of a texel."""
+
+# Of a moderngl texture, by dtype and components: internal format, format, type.
+_LEVEL_FORMATS: dict[tuple[str, int], tuple[int, int, int]] = {
+    ("f4", 1): (0x822E, 0x1903, 0x1406),
+    ("f4", 2): (0x8230, 0x8227, 0x1406),
+    ("f4", 4): (0x8814, 0x1908, 0x1406),
+    ("u4", 1): (0x8236, 0x8D94, 0x1405),
+    ("u4", 2): (0x823C, 0x8228, 0x1405),
+}
+
+_TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
+_BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
+_READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
+_COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
+_COLOR, _DEPTH = 0x1800, 0x1801
+
+
+class BufferTexture:
+    """A buffer that shaders read with ``texelFetch`` on a ``(u)samplerBuffer``.
+
+    Made by :meth:`GLExtras.texture_buffer`. It holds no copy: what is written to the buffer is what shaders read.
+    Release it before the buffer.
+
+    Attributes
+    ----------
+    internal_format : str
+        Of :data:`TEXEL_FORMATS`.
+    nbytes : int
+        Bytes that can be read: whole texels only.
+    texels : int
+    """
+
+    def __init__(self, gl: GLExtras, glo: int, buffer: moderngl.Buffer, internal_format: str) -> None:
+        self._gl = gl
+        self._glo = glo
+        self._buffer: moderngl.Buffer | None = buffer  # must outlive the texture
+        self.internal_format = internal_format
+        self.texels = buffer.size // TEXEL_FORMATS[internal_format][1]
+        self.nbytes = self.texels * TEXEL_FORMATS[internal_format][1]
+
+    @property
+    def glo(self) -> int:
+        """OpenGL's name of the texture; 0 once released."""
+        return self._glo
+
+    def bind(self, unit: int) -> None:
+        """Bind it to a texture unit, for a sampler whose value is that number.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`.
+        """
+        if not self._glo:
+            raise EngineError("this buffer texture has been released; make a new one")
+        self._gl.function("glActiveTexture")(_TEXTURE_0 + unit)
+        self._gl.function("glBindTexture")(_TEXTURE_BUFFER, self._glo)
+
+    def release(self) -> None:
+        """Delete the texture, not the buffer; twice is harmless. The context must be current."""
+        if self._glo:
+            self._gl.function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(self._glo)))
+            self._glo = 0
+            self._buffer = None
+
+
+class GLExtras:
+    """Functions of the context that is current, looked up when first needed.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Must be current in every call.
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._functions: dict[str, Callable[..., None]] = {}
+
+    def function(self, name: str) -> Callable[..., None]:
+        """Return an OpenGL function.
+
+        Parameters
+        ----------
+        name : str
+            One of those that this module declares.
+
+        Raises
+        ------
+        EngineError
+            If this OpenGL does not have it, or no context is current.
+        """
+        found = self._functions.get(name)
+        if found is None:
+            types, needs = _FUNCTIONS[name]
+            self._require(name, needs)
+            address = loader()(name)
+            if not address:
+                raise EngineError(f"this OpenGL ({self._ctx.info['GL_RENDERER']}) has no function {name}")
+            prototype = ctypes.CFUNCTYPE
+            if sys.platform == "win32":
+                prototype = ctypes.WINFUNCTYPE
+            found = self._functions[name] = prototype(None, *types)(address)
+        return found
+
+    def _require(self, what: str, needs: int | str) -> None:
+        code = self._ctx.version_code
+        if isinstance(needs, int) and code < needs:
+            raise EngineError(
+                f"{what} needs OpenGL {needs // 100}.{needs % 100 // 10}, found {code // 100}.{code % 100 // 10}"
+            )
+        if isinstance(needs, str) and needs not in self._ctx.extensions:
+            raise EngineError(f"{what} needs {needs}, which this OpenGL ({self._ctx.info['GL_RENDERER']}) lacks")
+
+    def get_integer(self, name: str) -> int:
+        """Return a limit or a state that ``ctx.info`` lacks.
+
+        Parameters
+        ----------
+        name : str
+            One of :data:`INTEGERS`, such as ``'GL_MAX_TEXTURE_BUFFER_SIZE'``.
+
+        Raises
+        ------
+        EngineError
+            If the name is unknown here, or this OpenGL is too old for it.
+        """
+        if name not in INTEGERS:
+            raise EngineError(f"{name} is not a known integer of OpenGL; known are {', '.join(sorted(INTEGERS))}")
+        enum, needs = INTEGERS[name]
+        self._require(name, needs)
+        values = (ctypes.c_int64 * 4)()  # GL_ATI_meminfo answers with four, of which the first is the sum
+        self.function("glGetInteger64v")(enum, values)
+        return values[0]
+
+    def texture_buffer(self, buffer: moderngl.Buffer, internal_format: str) -> BufferTexture:
+        """Make a buffer readable through a texture, which OpenGL 3.3 can and storage blocks (4.3) need not be there.
+
+        Parameters
+        ----------
+        buffer : moderngl.Buffer
+            Not copied.
+        internal_format : str
+            One of :data:`TEXEL_FORMATS`. Bytes past the last whole texel cannot be read.
+
+        Raises
+        ------
+        EngineError
+            If the format is unknown, or the buffer has more texels than this OpenGL reads, or none.
+        """
+        if internal_format not in TEXEL_FORMATS:
+            raise EngineError(f"{internal_format!r} is no format of buffer textures; use one of {list(TEXEL_FORMATS)}")
+        enum, size = TEXEL_FORMATS[internal_format]
+        texels, limit = buffer.size // size, self.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE")
+        if not 0 < texels <= limit:
+            raise EngineError(
+                f"a buffer of {buffer.size} bytes holds {texels} texels of {internal_format}; this OpenGL reads "
+                f"1 to {limit} through a texture: split the data into smaller buffers"
+            )
+        name = ctypes.c_uint(0)
+        self.function("glGenTextures")(1, ctypes.byref(name))
+        texture = BufferTexture(self, name.value, buffer, internal_format)
+        texture.bind(self._ctx.default_texture_unit)
+        self.function("glTexBuffer")(_TEXTURE_BUFFER, enum, buffer.glo)
+        return texture
+
+    def set_sampler(self, program: moderngl.Program | moderngl.ComputeShader, name: str, unit: int) -> None:
+        """Tell a program from which texture unit a sampler of its reads, once and for all draws.
+
+        moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
+
+        Parameters
+        ----------
+        program : moderngl.Program
+            Stays in use; moderngl uses its own before every draw.
+        name : str
+            Passed over if the linked program has no such uniform.
+        unit : int
+        """
+        uniform = program.get(name, None)
+        if isinstance(uniform, moderngl.Uniform):
+            self.function("glUseProgram")(program.glo)
+            self.function("glUniform1i")(uniform.location, unit)
+
+    def add_levels(self, texture: moderngl.Texture, levels: int) -> None:
+        """Give a texture storage for smaller levels, each half as wide and high (rounded down) as the one before.
+
+        moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
+        become 0 to ``levels - 1``.
+
+        Parameters
+        ----------
+        texture : moderngl.Texture
+            f4 of 1, 2 or 4 components, or u4 of 1 or 2.
+        levels : int
+            How many in all, the given one included.
+
+        Raises
+        ------
+        EngineError
+            If the texture's type is none of those.
+        """
+        kind = (texture.dtype, texture.components)
+        if kind not in _LEVEL_FORMATS:
+            raise EngineError(f"no levels for a texture of {kind}; use one of {list(_LEVEL_FORMATS)}")
+        texture.use(self._ctx.default_texture_unit)
+        for level in range(1, levels):
+            width, height = (max(1, side >> level) for side in texture.size)
+            internal, pixels, number = _LEVEL_FORMATS[kind]
+            self.function("glTexImage2D")(_TEXTURE_2D, level, internal, width, height, 0, pixels, number, None)
+        self.limit_levels(texture, 0, levels - 1)
+
+    def limit_levels(self, texture: moderngl.Texture, first: int, last: int) -> None:
+        """Say which levels of a texture shaders may read; ``texelFetch`` counts them from ``first``.
+
+        Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
+        """
+        texture.use(self._ctx.default_texture_unit)
+        self.function("glTexParameteri")(_TEXTURE_2D, _BASE_LEVEL, first)
+        self.function("glTexParameteri")(_TEXTURE_2D, _MAX_LEVEL, last)
+
+    @contextmanager
+    def framebuffers_kept(self) -> Iterator[None]:
+        """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did.
+
+        moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
+        ``ctx.detect_framebuffer`` is no way to learn what is bound: on VTK's framebuffers it leaves an OpenGL error.
+        """
+        draw = self.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
+        read = self.get_integer("GL_READ_FRAMEBUFFER_BINDING")
+        remembered = self._ctx.fbo, self._ctx.mglo.fbo
+        try:
+            yield
+        finally:
+            self._ctx.fbo, self._ctx.mglo.fbo = remembered
+            self.function("glBindFramebuffer")(_DRAW_FRAMEBUFFER, draw)
+            self.function("glBindFramebuffer")(_READ_FRAMEBUFFER, read)
+
+    def attach_level(
+        self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int, attachment: int | None = 0
+    ) -> None:
+        """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size.
+
+        One framebuffer per level, attached when the texture is made, spares the frame these calls.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            Not the window's. Its ``size`` stays that of level 0.
+        texture : moderngl.Texture
+        level : int
+        attachment : int or None
+            Which colour attachment; None for depth.
+        """
+        point = _DEPTH_ATTACHMENT if attachment is None else _COLOR_ATTACHMENT_0 + attachment
+        with self.framebuffers_kept():
+            self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
+            self.function("glFramebufferTexture2D")(_FRAMEBUFFER, point, _TEXTURE_2D, texture.glo, level)
+        width, height = (max(1, side >> level) for side in texture.size)
+        framebuffer.viewport = (0, 0, width, height)
+
+    def attach_layer(
+        self, framebuffer: moderngl.Framebuffer, texture: moderngl.TextureArray, layer: int, attachment: int = 0
+    ) -> None:
+        """Make a framebuffer draw into one layer of a texture, and set its viewport to the texture's size.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            Not the window's. Its ``size`` stays what it was.
+        texture : moderngl.TextureArray
+        layer : int
+        attachment : int
+            Which colour attachment; it must have one.
+        """
+        with self.framebuffers_kept():
+            self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
+            self.function("glFramebufferTextureLayer")(
+                _FRAMEBUFFER, _COLOR_ATTACHMENT_0 + attachment, texture.glo, 0, layer
+            )
+        framebuffer.viewport = (0, 0, texture.width, texture.height)
+
+    def clear_integers(self, framebuffer: moderngl.Framebuffer, values: Sequence[int], attachment: int = 0) -> None:
+        """Fill an unsigned integer attachment; moderngl's ``clear`` is for floats.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            Its colour mask and scissor apply, as for every clear; the viewport and the scissor stay in force.
+        values : sequence of int
+            1 to 4, of 32 bits.
+        attachment : int
+            Which colour attachment.
+        """
+        padded = (ctypes.c_uint * 4)(*values)
+        with self.framebuffers_kept():
+            framebuffer.use()  # with its draw buffers, colour mask and scissor, whatever was in force
+            self.function("glClearBufferuiv")(_COLOR, attachment, padded)
+
+    def fill(self, framebuffer: moderngl.Framebuffer, attachment: int, values: Sequence[float]) -> None:
+        """Fill one attachment of floats, inside the framebuffer's scissor, and leave it in use.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+        attachment : int
+            Which colour attachment.
+        values : sequence of float
+            1 to 4.
+        """
+        padded = (ctypes.c_float * 4)(*values)
+        framebuffer.use()
+        self.function("glClearBufferfv")(_COLOR, attachment, padded)
+
+    def clear_depth(self, framebuffer: moderngl.Framebuffer, depth: float = 1.0) -> None:
+        """Fill the depth attachment and nothing else; moderngl's ``clear`` takes the colours along.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            Its depth mask and scissor apply; the viewport and the scissor stay in force.
+        depth : float
+            0 to 1.
+        """
+        with self.framebuffers_kept():
+            framebuffer.use()
+            self.function("glClearBufferfv")(_DEPTH, 0, ctypes.byref(ctypes.c_float(depth)))

@@ -1,0 +1,121 @@
+"""Colours by value as textures: those of a place, and those of a step between two values."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ...volumes.options import LARGEST
+from ...volumes.steepness import KINKS, PARTS, allowed_bend, is_steep, largest_bend, typical_bend
+from ..bindings import VOLUMES
+
+if TYPE_CHECKING:
+    from ...volumes.options import RaycastOptions
+    from ...volumes.volume import RaycastVolume
+
+__all__ = ["TransferTextures"]
+
+SIZE = 1024
+"""Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
+
+
+
+class TransferTextures:
+    """The tables of one volume (``shaders/volumes/light.glsl``).
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    volume : RaycastVolume
+
+    Attributes
+    ----------
+    steep : bool
+        Whether stretches must be halved where they are steep, for one look-up a step would not do.
+    finer : bool
+        Whether steps are taken in parts where values bend.
+    """
+
+    def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
+        self._ctx, self._volume = ctx, volume
+        self._made_for: object = None
+        self._textures: dict[str, moderngl.Texture] = {}
+        self._numbers: dict[str, float | tuple[float, float]] = {}
+        self.steep = self.finer = False
+
+    def make(self, casting: RaycastOptions, step: float) -> None:
+        """Bring them up to date for steps of some mm."""
+        transfer = casting.transfer if casting.mode == "composite" else None
+        adaptive = casting.integrator == "adaptive"
+        beforehand = step if casting.integrator == "preintegrated" or adaptive else None
+        key = transfer, beforehand, adaptive, casting.low, casting.high
+        if self._made_for == key:
+            return
+        self.release()
+        if transfer is not None:
+            values = np.linspace(*transfer.clim, max(SIZE, len(transfer.table)))
+            medium = np.concatenate([transfer.colour(values), transfer.extinction(values)[:, None]], axis=1)
+            self._textures["colours"] = self._texture(medium[None])
+            self.steep = adaptive and is_steep(transfer, step, casting.low, casting.high, self._chord(casting))
+            self.finer = adaptive and not self.steep and self._bends_in(step) > KINKS * allowed_bend(transfer, step)
+            if beforehand is not None:
+                lengths = [beforehand, *([beforehand / PARTS] if self.finer else [])]
+                rows = [transfer.preintegrated(length).transpose(1, 0, 2) for length in lengths]
+                self._textures["segments"] = self._texture(np.concatenate(rows))
+            if self.finer:
+                ends = np.clip(transfer.opaque_range, -LARGEST, LARGEST).tolist()
+                self._numbers = {"allowed_bend": allowed_bend(transfer, step), "opaque_values": (ends[0], ends[1])}
+            if self.steep:
+                media, places = transfer.media()
+                self._numbers = {"places_per_entry": float(places), "opacity_unit": transfer.unit}
+                self._textures["media"] = self._texture(media)
+        self._made_for = key
+
+    def _chord(self, casting: RaycastOptions) -> float:
+        """Return how far values within a step typically are from its chord."""
+        return 0.25 * min(casting.step, 1.0) * self._typical_bend
+
+    def _bends_in(self, step: float) -> float:
+        """Return by how much, at the most, the change of values changes from one step to the next, across an edge."""
+        return step / float(self._volume.spacing.min()) * self._largest_bend
+
+    @cached_property
+    def _typical_bend(self) -> float:
+        return typical_bend(self._volume)
+
+    @cached_property
+    def _largest_bend(self) -> float:
+        return largest_bend(self._volume)
+
+    def _texture(self, rows: npt.NDArray[Any]) -> moderngl.Texture:
+        height, width = rows.shape[:2]
+        texture = self._ctx.texture((width, height), 4, np.ascontiguousarray(rows, "<f4"), dtype="f4")
+        texture.filter = moderngl.LINEAR, moderngl.LINEAR
+        texture.repeat_x = texture.repeat_y = False
+        return texture
+
+    def bind(self, program: moderngl.Program) -> None:
+        """Bind all, and tell a program where they are."""
+        for name, texture in self._textures.items():
+            if name in program:
+                texture.use(VOLUMES[name])
+                program[name] = VOLUMES[name]
+        for name, number in self._numbers.items():
+            if name in program:
+                program[name] = number
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Bytes by name."""
+        return {name: 16 * texture.width * texture.height for name, texture in self._textures.items()}
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        for texture in self._textures.values():
+            texture.release()
+        self._textures.clear()
+        self._made_for = None

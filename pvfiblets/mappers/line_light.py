@@ -1,0 +1,32 @@
+"""The light that falls on lines unless another is asked for, by which their colours stay what they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
+
+__all__ = ["LegendColours", "LineLight"]
+
+
+class LineLight(ShaderEffect):
+    """Illuminated lines (Zöckler 1996, Mallo 2005) with a floor: light shows shape and leaves colours true."""
+
+    features = frozenset({"line_light"})
+
+    def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
+        """Set what the lights of the scene add up to, and whether one of them stands in it."""
+        lights = draw.renderer.GetLights()
+        every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
+        on = [light for light in every if light.GetSwitch() and light.GetIntensity() > 0.0]
+        total = sum((light.GetIntensity() * np.array(light.GetDiffuseColor()) for light in on), np.zeros(3))
+        program.SetUniform3f("fibletLights", [float(channel) for channel in total])
+        program.SetUniformf("fibletStanding", float(any(light.LightTypeIsSceneLight() for light in on)))
+
+
+class LegendColours(ShaderEffect):
+    """Colours as they are, whatever the lights: those that a scalar bar or a legend explains."""
+
+    features = frozenset({"legend_colours"})

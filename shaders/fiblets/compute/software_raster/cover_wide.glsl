@@ -1,0 +1,52 @@
+// The pixels of a wide line's segment: all whose centre is at most half the width r from it: a capsule, whose round ends join
+// segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's, and
+// of that what lies beside the next segment is left out (fiblets/segments/joint.glsl).
+//
+// Algorithm: column by column of the longer axis, those rows that the capsule may reach; each pixel's distance decides.
+//
+// Symbols
+//   from, to     ends of the piece, the longer axis first
+//   foot, s      where on the piece a pixel is nearest to it, and the same within the piece
+//   away         from there to the pixel
+
+#include "fiblets/compute/software_raster/brush_planes.glsl"
+#include "fiblets/segments/joint.glsl"
+
+uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pvfiblets/engine/fiblets/pipelines/compute.py
+
+void cover(Segment segment) {
+    if (segment.index < share.x || segment.index >= share.y) return;
+    ClippedSegment piece = segment.piece;
+    BrushHeights heights = brush_heights(segment.from.local, segment.to.local, piece);
+    float r = half_line_width;
+    vec2 d = piece.b.xy - piece.a.xy;
+    peel_segment(piece.a.xy, piece.b.xy, r, segment.steps);
+    bool steep = abs(d.y) > abs(d.x);
+    vec2 from = steep ? piece.a.yx : piece.a.xy, to = steep ? piece.b.yx : piece.b.xy, size = steep ? viewport.yx : viewport;
+    vec2 run = to - from;
+    float inverse = 1.0 / max(dot(run, run), 1e-12);
+    vec2 onward = piece.cap || !goes_on(segment.index + 1u) ? vec2(0.0) : onward_at(piece.b, segment.ahead);
+    if (steep) onward = onward.yx;
+    vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
+    float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
+    float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
+    float behind = piece.start ? r : r * min(abs(slope), 1.0), least = piece.start ? -3.0e38 : 0.0;  // before the start
+    vec2 before = run.x < 0.0 ? vec2(r, behind) : vec2(behind, r);
+    int column0 = int(max(ceil(min(from.x, to.x) - before.x - 0.5), 0.0));
+    int column1 = int(min(floor(max(from.x, to.x) + before.y - 0.5), size.x - 1.0));
+    for (int column = column0; column <= column1; ++column) {
+        float x = float(column) + 0.5;
+        float y = from.y + slope * (clamp(x, min(from.x, to.x), max(from.x, to.x)) - from.x);
+        int row0 = int(max(ceil(y - reach - 0.5), 0.0)), row1 = int(min(floor(y + reach - 0.5), size.y - 1.0));
+        for (int row = row0; row <= row1; ++row) {
+            vec2 centre = vec2(x, float(row) + 0.5) - from;
+            float foot = dot(centre, run) * inverse;
+            precise float s = clamp(foot, 0.0, 1.0);
+            vec2 away = centre - s * run;
+            precise float z = piece.a.z + (piece.b.z - piece.a.z) * s;
+            bool covered = foot >= least && dot(away, away) <= r * r && !(foot > 1.0 && beyond_joint(onward, centre - run)) && brush_kept(heights, s, steep ? away.yx : away);
+            vec3 relief = vec3(clamp(dot(left, centre), -1.0, 1.0), 0.0, 0.0);
+            if (covered) put(Fragment(steep ? ivec2(row, column) : ivec2(column, row), z, s, relief), segment);
+        }
+    }
+}

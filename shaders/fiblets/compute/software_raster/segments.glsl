@@ -1,0 +1,86 @@
+// Draws one fiblet's polyline into pixels, segment by segment, without OpenGL's rasteriser.
+//
+// The including pass defines
+//   void plot(Fragment fragment)                                called for each pixel that a segment covers
+//   void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead)   called before the pixels of a segment, with its end,
+//                its run and that of the next one
+//   vec3 shown_normal(Hit hit)                                   of tubes, the normal that a pixel is given
+//
+// What covers a pixel is told by the file of cover() that is included:
+//   thin lines   fiblets/compute/software_raster/cover_thin.glsl: the pixels of fiblets/segments/thin_line_rule.glsl
+//   wide lines   fiblets/compute/software_raster/cover_wide.glsl: capsules in the window
+//   tubes        fiblets/compute/software_raster/cover_tube.glsl: where rays through pixels meet capsules in space
+//
+// At a plane of the caller's a thin line ends in the pixel of the cut. A wide line ends in a round brush, of which the
+// pixels are left out that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
+// and a line cut head-on shows the whole brush.
+//
+// Depth is interpolated in the window, where it is linear; everything else is corrected for perspective (along()).
+
+#include "fiblets/segments/polyline.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/peel.glsl"
+
+// A segment that is drawn.
+struct Segment {
+    uint index;      // within the fiblet
+    Vertex from;
+    Vertex to;
+    ClippedSegment piece;
+    float steps;     // from point to point that it stands for
+    vec3 ahead;      // the next one's run
+};
+
+// What a segment shows in a pixel.
+struct Fragment {
+    ivec2 pixel;
+    float z;         // window depth
+    float s;         // position along the segment's piece in the window
+    vec3 relief;     // with FEATURE_CROSS_LINE: the cross-line coordinate in x (wide lines), or the normal (tubes)
+};
+
+void plot(Fragment fragment, Segment segment);
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead);
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit);
+#endif
+
+// Plots a pixel, unless it does not lie behind the layers drawn so far. Whether the caller's region cuts it away is for
+// fiblets/compute/depth.comp to ask, and only of what would show: the later passes look for depths that were kept.
+void put(Fragment fragment, Segment segment) {
+    if (behind_layers(fragment.pixel, depth_key(fragment.z))) plot(fragment, segment);
+}
+
+// Where on the segment a pixel lies.
+float along(Fragment fragment, Segment segment) {
+    return along_segment(segment.from, segment.to, segment.piece, fragment.s);
+}
+
+#if FEATURE_TUBES
+#include "fiblets/compute/software_raster/cover_tube.glsl"
+#elif FEATURE_WIDE_LINES
+#include "fiblets/compute/software_raster/cover_wide.glsl"
+#else
+#include "fiblets/compute/software_raster/cover_thin.glsl"
+#endif
+
+// Draws fiblet f and the segment that joins it to the next.
+void draw_fiblet(uint f) {
+    begin_polyline(f);
+#if FEATURE_PEEL && FEATURE_WIDE_LINES
+    begin_peel(streamline_of(f), float(points_before(f)));
+#endif
+    Vertex from = vertex_of(walk_point);
+    next_point(1u);
+    for (uint i = 1u; i <= polyline.count; ++i) {
+        Vertex to = vertex_of(walk_point);
+        vec3 delta = walk_delta, ahead = walk_ahead(i);
+        bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
+        bool drawn = mask_segment(i - 1u, start, cap);
+        start_segment(i - 1u, to.local, delta, ahead);
+        ClippedSegment piece;
+        bool any_part = piece_of(from, to, start, cap, piece);
+        if (any_part && drawn) cover(Segment(i - 1u, from, to, piece, polyline.steps, ahead));
+        from = to;
+    }
+}

@@ -1,7 +1,0 @@
-// A fiblet is seen; see fiblets/raster/visible.vert.
-
-#version 430
-
-out uint mark;
-
-void main() { mark = 1u; }

@@ -1,0 +1,34 @@
+// The greatest value on a ray, or the first peak above a threshold.
+// Paper: Lesar 2015, section III.F, equation (9); local maxima after Sato et al. 1998.
+
+bool is_there(float value) { return value >= value_low && value <= value_high; }
+
+bool find_peak(Ray ray, float step, float start, out float hit, out float value) {
+    float t = start, best = -3e38;
+    hit = start;
+    while (t <= ray.last) {
+        float number, end = t + to_end_of_node(ray, t, best, number);
+        if (number <= best && end - t >= step) {
+#if FEATURE_VOLUME_LOCAL
+            if (best >= peak_threshold) break;      // nothing here is as high: the peak is over
+#endif
+            t += floor((end - t) / step) * step;
+            if (t > ray.last) break;
+        }
+        bool over = false;
+        do {
+            float v = value_at(at(ray, t));
+            if (is_there(v) && v > best) {
+                best = v;
+                hit = t;
+            }
+#if FEATURE_VOLUME_LOCAL
+            over = v < best && best >= peak_threshold;
+#endif
+            t += step;
+        } while (!over && t < end && t <= ray.last);
+        if (over) break;
+    }
+    value = best;
+    return best > -3e38;
+}
