@@ -8,12 +8,22 @@
 
 layout(points) in;
 
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_CLIPPING
+layout(line_strip, max_vertices = {{ cut_valued_line_vertices }}) out;
+const uint SHARE = {{ cut_valued_line_share }}u;
+#else
+layout(line_strip, max_vertices = {{ valued_line_vertices }}) out;
+const uint SHARE = {{ valued_line_share }}u;
+#endif
+#else
 #if FEATURE_CLIPPING
 layout(line_strip, max_vertices = {{ cut_line_vertices }}) out;
 const uint SHARE = {{ cut_line_share }}u;
 #else
 layout(line_strip, max_vertices = {{ line_vertices }}) out;
 const uint SHARE = {{ line_share }}u;
+#endif
 #endif
 
 #include "fiblets/raster/polyline.glsl"

@@ -16,13 +16,14 @@
 //   varying_part             1            1         0     where segments may be cut
 //   varying_from, _to        0            6         6     of wide lines, at planes of the caller's
 //   varying_values           2            2         2     with some per-point values
+//   varying_parts            1            0         0     where edges are asked for
 
 #ifndef EACH
 #define EACH
 #endif
 
 VARYING uvec4 varying_ids EACH;      // streamline; tangent; fiblet counted over all chunks; segment, its steps in bits 8 to 15,
-                                   // and whether the streamline starts here in bit 16
+                                   // and whether the streamline starts here in bit 16, ends in bit 17
 VARYING float varying_first EACH;    // index of the fiblet's first point within the streamline
 #if FEATURE_TUBES
 VARYING vec3 varying_from EACH;      // ends of the segment, local mm
@@ -38,6 +39,9 @@ VARYING float varying_ratio EACH;    // clip w at its start over that at its end
 #endif
 #if FEATURE_CLIPPING
 VARYING uint varying_part EACH;      // which part of the segment it is: start and end in 65535ths, rounded inwards
+#endif
+#if FEATURE_EDGES && !FEATURE_WIDE_LINES
+VARYING uint varying_parts EACH;     // where in their pixels its ends lie (fiblets/raster/edges.glsl)
 #endif
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
 VARYING vec3 varying_from EACH;      // the part's ends, local mm

@@ -2,6 +2,10 @@
 // over: itself, or with a mesh stage an element of an array.
 
 #include "fiblets/raster/clipped_segment.glsl"
+#if FEATURE_EDGES && !FEATURE_WIDE_LINES
+#include "fiblets/raster/thin.glsl"
+#include "fiblets/raster/edges.glsl"
+#endif
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
@@ -18,7 +22,7 @@ struct Varyings {
 };
 
 void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
-    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u);
+    uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u) | (piece.cap ? 0x20000u : 0u);
     TO(varying_ids) = uvec4(varyings.ids, varyings.owner, flags);
     TO(varying_first) = varyings.first;
 #if FEATURE_TUBES
@@ -33,6 +37,9 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
     TO(varying_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));
     TO(varying_depths) = vec2(piece.a.z, piece.b.z);
     TO(varying_ratio) = piece.a.w / piece.b.w;
+#if FEATURE_EDGES
+    TO(varying_parts) = packed_parts(piece);
+#endif
 #endif
 #if FEATURE_CLIPPING
     TO(varying_part) = uint(ceil(65535.0 * piece.t0)) | (uint(65535.0 * piece.t1) << 16u);

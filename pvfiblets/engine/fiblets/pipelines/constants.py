@@ -12,8 +12,8 @@ __all__ = ["CONSTANTS", "GROUP_WORDS", "MARK_WORDS", "SHARES", "TASK_FIBLETS", "
 GROUP_WORDS = 8
 MARK_WORDS = 15
 
-SHARES = {"line": 60, "cut_line": 30, "capsule": 12, "cut_capsule": 9}
-VERTICES = {"line": 61, "cut_line": 60, "capsule": 48, "cut_capsule": 36}
+SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "cut_capsule": 9}
+VERTICES = {"line": 61, "valued_line": 31, "cut_line": 60, "cut_valued_line": 40, "capsule": 48, "cut_capsule": 36}
 
 THREADS = 32
 """Of a mesh stage's work group: a warp, as the paper has it."""

@@ -3,16 +3,18 @@
 Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/geometry`` and ``shaders/raster``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/raster/varyings.glsl``, per-point values included:
+components of ``shaders/fiblets/raster/varyings.glsl``; wide lines with per-point values among them, or without:
 
-======================  ==========  ==============  ===========================================================
-drawn                   components  vertices        segments of a share
-======================  ==========  ==============  ===========================================================
-thin, uncut             16          1024 // 16: 64  60: all of them, by 61 vertices
-thin, may be cut        17          1024 // 17: 60  30: every segment may be a strip of its own
-wide                    20          1024 // 20: 51  12: four vertices each, 60 in five shares
-wide, caller's planes   26          1024 // 26: 39  9: four vertices each, 60 in seven shares
-======================  ==========  ==============  ===========================================================
+==============================  ==========  ==============  =======================================================
+drawn                           components  vertices        segments of a share
+==============================  ==========  ==============  =======================================================
+thin, uncut                     15          1024 // 15: 68  60: all of them, by 61 vertices
+thin, uncut, with values        17          1024 // 17: 60  30
+thin, may be cut                16          1024 // 16: 64  30: every segment may be a strip of its own
+thin, may be cut, with values   18          1024 // 18: 56  20
+wide                            21          1024 // 21: 48  12: four vertices each, 60 in five shares
+wide, caller's planes           27          1024 // 27: 37  9: four vertices each, 60 in seven shares
+==============================  ==========  ==============  =======================================================
 
 A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
 """
@@ -29,6 +31,10 @@ from .draw_request import DrawRequest
 from .textured import TexturedPipeline
 
 __all__ = ["GeometryPipeline"]
+
+
+_HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME"}
+"""Values that vertices carry; of a stored one fragments look up the codes."""
 
 
 class GeometryPipeline(TexturedPipeline):
@@ -50,5 +56,6 @@ class GeometryPipeline(TexturedPipeline):
         if request.wide:
             share = SHARES["cut_capsule" if request.planes else "capsule"]
         else:
-            share = SHARES["cut_line" if request.clipping else "line"]
+            valued = "valued_" if _HANDED_OVER.intersection(request.values) else ""
+            share = SHARES[f"cut_{valued}line" if request.clipping else f"{valued}line"]
         return -(-MAX_POINTS // share)
