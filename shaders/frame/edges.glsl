@@ -7,7 +7,7 @@
 //            * centre    | w                            w   pixels from that edge to the other one
 //     ------------------------------                    s   direction along the band: n turned to the left
 //
-// Bits, from the lowest: 11 the direction of n, as the way around a square (0 is +x, 512 +y); 11 e; 7 w; 3 where the band ends:
+// n may have any length. Bits, from the lowest: 11 the direction of n, as the way around a square (0 is +x, 512 +y); 11 e; 7 w; 3 where the band ends:
 // 0 nowhere, 1 to 3 up to s = -1/3, 0, 1/3, 4 to 6 from there on, 7 half a pixel to both sides, a dot. A word is never 0: w is
 // at least its least step.
 
@@ -17,8 +17,8 @@ const float WIDTH_STEPS = 32.0;     // of w, per pixel; its largest value stands
 
 uint packed_edges(vec2 n, float e, float w, uint end) {
     vec2 q = n / max(abs(n.x) + abs(n.y), 1e-30);
-    uint turn = uint(round((q.y >= 0.0 ? 1.0 - q.x : 3.0 + q.x) * 512.0)) & 2047u;
-    uint inside = uint(clamp(round((e + EDGE_LEAST) * EDGE_STEPS), 0.0, 2047.0));
-    uint across = uint(clamp(round(w * WIDTH_STEPS), 1.0, 127.0));
-    return turn | (inside << 11u) | (across << 22u) | (end << 29u);
+    int turn = int((q.y >= 0.0 ? 1.0 - q.x : 3.0 + q.x) * 512.0 + 0.5) & 2047;
+    int inside = int(clamp((e + EDGE_LEAST) * EDGE_STEPS + 0.5, 0.0, 2047.0));
+    int across = int(clamp(w * WIDTH_STEPS + 0.5, 1.0, 127.0));
+    return uint(turn | (inside << 11) | (across << 22)) | (end << 29u);
 }

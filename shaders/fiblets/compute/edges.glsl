@@ -18,7 +18,7 @@ void store_edges(ivec2 pixel, Segment segment) {
     word = capsule_edges(centre - piece.a.xy, piece.b.xy - piece.a.xy, viewport.z);
 #else
     ivec2 first = ivec2(pixel_of(piece.a)), last = ivec2(pixel_of(piece.b));
-    word = thin_edges(first, last, vec2(pixel - first), packed_parts(piece), piece.start, piece.cap);
+    word = thin_edges(first, last, vec2(pixel - first), parts_of(piece), piece.start, piece.cap);
 #endif
     imageStore(edges_image, pixel, uvec4(word));
 }

@@ -37,33 +37,30 @@ uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
 #endif
 
 #if !(FEATURE_TUBES || FEATURE_WIDE_LINES)
-// Where in their pixels the ends of a segment lie, each of the four in 8 bits.
-uint packed_parts(ClippedSegment piece) {
+// Where in their pixels the ends of a segment lie, as exact as the 8 bits that each is handed on in.
+vec4 parts_of(ClippedSegment piece) {
     vec4 at = vec4(in_picture(piece.a), in_picture(piece.b));
-    uvec4 parts = uvec4((at - floor(at)) * 256.0);
+    return floor((at - floor(at)) * 256.0) / 256.0;
+}
+
+uint packed_parts(ClippedSegment piece) {
+    uvec4 parts = uvec4(parts_of(piece) * 256.0);
     return parts.x | (parts.y << 8u) | (parts.z << 16u) | (parts.w << 24u);
 }
 
-// Ends that a picture's edge has cut off are none.
-bool within_picture(vec2 at) { return all(greaterThan(at, vec2(0.05))) && all(lessThan(at, viewport.xy - 0.05)); }
-
-// first, last: pixels of the segment's ends; at: this one, from the first; parts: as packed above.
-uint thin_edges(ivec2 first, ivec2 last, vec2 at, uint parts, bool start, bool cap) {
-    vec4 part = (vec4((uvec4(parts) >> uvec4(0u, 8u, 16u, 24u)) & 255u) + 0.5) / 256.0;
-    vec2 run = vec2(last - first), a = part.xy - 0.5 - at, b = part.zw - 0.5 + run - at, d = b - a;
-    float size = length(d);
-    vec2 along = size > 1e-3 ? d / size : vec2(1.0, 0.0), n = vec2(-along.y, along.x);
-    float side = -dot(n, a);
-    if (side < 0.0) n = -n;
-    bool begins = start && at == vec2(0.0) && within_picture(vec2(first) + part.xy);
-    bool ends = cap && at == run && within_picture(vec2(last) + part.zw);
-    uint end = 0u;
-    if (begins && ends) end = 7u;
-    else if (begins || ends) {
-        vec2 s = vec2(-n.y, n.x), stop = begins ? a : b;
-        bool up_to = (dot(s, along) > 0.0) == ends;
-        end = uint(2 + int(clamp(round(3.0 * dot(s, stop)), -1.0, 1.0))) + (up_to ? 0u : 3u);
-    }
-    return packed_edges(n, 0.5 - abs(side), 1.0, end);
+// first, last: pixels of the segment's ends; at: this one, from the first; parts: where in their pixels the ends lie. No branch: it
+// would cost as much as all the rest.
+uint thin_edges(ivec2 first, ivec2 last, vec2 at, vec4 parts, bool start, bool cap) {
+    vec2 run = vec2(last - first), a = parts.xy - 0.5 - at, d = run + parts.zw - parts.xy;
+    float square = dot(d, d), shrink = inversesqrt(max(square, 1e-6));
+    vec2 along = square > 1e-6 ? d : vec2(1.0, 0.0);
+    float left = (along.y * a.x - along.x * a.y) * shrink;      // of the axis the pixel lies
+    bool turned = left < 0.0, begins = start && at == vec2(0.0), ends = cap && at == run;
+    float stop = dot(along, begins ? a : a + d) * shrink;
+    uint third = uint(int(2.5 + clamp(turned ? 3.0 * stop : -3.0 * stop, -1.0, 1.0)));
+    uint end = begins && ends ? 7u : begins || ends ? (turned == ends ? third : third + 3u) : 0u;
+    return packed_edges(turned ? vec2(along.y, -along.x) : vec2(-along.y, along.x), 0.5 - abs(left), 1.0, end);
 }
+
+vec4 unpacked_parts(uint word) { return vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 255u) / 256.0; }
 #endif
