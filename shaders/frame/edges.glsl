@@ -22,3 +22,19 @@ uint packed_edges(vec2 n, float e, float w, uint end) {
     int across = int(clamp(w * WIDTH_STEPS + 0.5, 1.0, 127.0));
     return uint(turn | (inside << 11) | (across << 22)) | (end << 29u);
 }
+
+struct Edges {
+    vec2 n;         // unit vector
+    float e;
+    float w;
+    uint end;
+    float stop;     // where on s the band ends
+};
+
+Edges unpacked_edges(uint word) {
+    float turn = float(int(word & 2047u)) / 512.0, x = abs(turn - 2.0) - 1.0;
+    int width = int((word >> 22u) & 127u), end = int(word >> 29u);
+    return Edges(normalize(vec2(x, turn < 2.0 ? 1.0 - abs(x) : abs(x) - 1.0)),
+                 float(int((word >> 11u) & 2047u)) / EDGE_STEPS - EDGE_LEAST, width == 127 ? 128.0 : float(width) / WIDTH_STEPS,
+                 uint(end), float(end > 3 ? end - 5 : end - 2) / 3.0);
+}

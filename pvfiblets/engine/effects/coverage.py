@@ -13,13 +13,9 @@ from dataclasses import dataclass
 import moderngl
 
 from ..gbuffer import GBuffer
-from ..shaders import Programs
 from .picture import Attachment, PictureEffects
 
 __all__ = ["Coverage", "SmoothedLines"]
-
-REACH = 1.15
-"""Pixels along a line up to which it is taken to go straight on: least error on whole brains."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +48,6 @@ class Coverage(PictureEffects):
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx)
-        self._programs = Programs(ctx, {"reach": REACH})
 
     def smooth(
         self,
@@ -83,13 +78,12 @@ class Coverage(PictureEffects):
         if right <= left or top <= low:
             return
         size = width + 2, height + 2
-        self._texture("shown", size, 2, "u4")
-        self._texture("colours", size, 4, "f4" if colour.floats else "f1")
+        self._texture("shown", size, 4, "u4")
         features = ["PICTURE_SAMPLES"] if colour.samples else []
         uniforms = {"samples": colour.samples, "origin": (x, y)}
         outside = {"drawn": self._outside(colour, 4), "depths": self._outside(depth, 1)}
         with self._plain_state():
-            target = self._framebuffer(("shown", "colours"))
+            target = self._framebuffer(("shown",))
             target.viewport = (left, low, right - left + 2, top - low + 2)
             for index, lines in enumerate(drawn):
                 textures = {**outside, "keys": lines.buffer.depth, "edges": lines.buffer.edges}
@@ -98,8 +92,7 @@ class Coverage(PictureEffects):
             picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
             try:
                 picture.viewport = (x + left, y + low, right - left, top - low)
-                textures = {name: self._textures[name] for name in ("shown", "colours")}
-                self._pass("coverage", picture, textures, {"shift": (1 - x, 1 - y)})
+                self._pass("coverage", picture, {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)})
             finally:
                 picture.release()
 

@@ -7,7 +7,7 @@
 //   narrower      pixels by which lines are thinner than they were drawn
 //
 // A pixel shows a line where nothing is drawn before it. What is translucent leaves no depth: through it lines are seen.
-// Out: bits of the window depth | edges (frame/edges.glsl), 0 where there is no line; colour.
+// Out: bits of the window depth | edges (frame/edges.glsl), 0 where there is no line | colour, 4 x 8 bits.
 
 #version 430
 
@@ -28,8 +28,7 @@ uniform ivec2 origin;
 uniform float narrower;
 uniform bool first;
 
-layout(location = 0) out uvec2 shown;
-layout(location = 1) out vec4 colour;
+out uvec4 shown;
 
 const float MARGIN = 1.0 / 8388608.0;      // two units of a depth buffer of 24 bits: VTK rounds
 
@@ -42,8 +41,7 @@ uint thinned(uint word) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - 1;
-    shown = uvec2(0u);
-    colour = vec4(0.0);
+    shown = uvec4(0u);
     bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, textureSize(keys, 0)));
     uint key = inside ? texelFetch(keys, pixel, 0).r : 0xFFFFFFFFu;
     if (key == 0xFFFFFFFFu && !first) discard;
@@ -51,7 +49,7 @@ void main() {
 #if FEATURE_PICTURE_SAMPLES
     float depth = 1.0;
     for (int i = 0; i < samples; ++i) depth = min(depth, texelFetch(depths, pixel + origin, i).r);
-    colour = texelFetch(drawn, pixel + origin, 0);
+    vec4 colour = texelFetch(drawn, pixel + origin, 0);
     bool same = true;
     for (int i = 1; i < samples; ++i) same = same && texelFetch(drawn, pixel + origin, i) == colour;
     if (!same) {
@@ -61,10 +59,11 @@ void main() {
     }
 #else
     float depth = texelFetch(depths, pixel + origin, 0).r;
-    colour = texelFetch(drawn, pixel + origin, 0);
+    vec4 colour = texelFetch(drawn, pixel + origin, 0);
 #endif
     float z = float(key) / 4294967295.0;
     bool visible = key != 0xFFFFFFFFu && z <= depth + MARGIN;
     if (!visible && !first) discard;
-    shown = visible ? uvec2(floatBitsToUint(z), thinned(texelFetch(edges, pixel, 0).r)) : uvec2(floatBitsToUint(depth), 0u);
+    uint word = visible ? thinned(texelFetch(edges, pixel, 0).r) : 0u;
+    shown = uvec4(floatBitsToUint(visible ? z : depth), word, packUnorm4x8(colour), 0u);
 }
