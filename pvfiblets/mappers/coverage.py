@@ -10,7 +10,9 @@ from typing import Any
 
 from pvfiblets.engine.effects.coverage import Coverage, SmoothedLines
 from pvfiblets.engine.effects.picture import Attachment
+from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.scene import smoothers
+from pvfiblets.mappers.windows import weak
 
 __all__ = ["EdgeSmoothing"]
 
@@ -24,6 +26,7 @@ class EdgeSmoothing:
     """
 
     def __init__(self, renderer: Any) -> None:
+        self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
         smoothers[self._address] = self
@@ -47,7 +50,19 @@ class EdgeSmoothing:
     ) -> None:
         """Smooth the picture, once."""
         noted, self._noted = list(self._noted.values()), {}
-        effects.smooth(colour, depth, viewport, noted)
+        effects.smooth(colour, depth, viewport, noted, alike=not self._others())
+
+    def _others(self) -> bool:
+        """Say whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
+        renderer = self._renderer.Get()
+        props = renderer.GetViewProps()
+        for index in range(props.GetNumberOfItems()):
+            prop = props.GetItemAsObject(index)
+            flat = prop.IsA("vtkActor2D") or prop.IsA("vtkContextActor")
+            ours = prop.IsA("vtkActor") and isinstance(prop.GetMapper(), EngineMapper)
+            if prop.GetVisibility() and not (flat or ours):
+                return True
+        return False
 
     def release(self) -> None:
         """Have mappers leave edges alone; twice is harmless."""

@@ -55,6 +55,8 @@ class Coverage(PictureEffects):
         depth: Attachment,
         viewport: tuple[int, int, int, int],
         drawn: Sequence[SmoothedLines],
+        *,
+        alike: bool = False,
     ) -> None:
         """Smooth the edges of lines.
 
@@ -66,6 +68,8 @@ class Coverage(PictureEffects):
             x, y, width, height of the part of the attachments that counts.
         drawn : sequence of SmoothedLines
             Of every drawable in it.
+        alike : bool
+            Whether all samples of a pixel are the same, where it has several: then one of them is read.
 
         Raises
         ------
@@ -80,7 +84,7 @@ class Coverage(PictureEffects):
         size = width + 2, height + 2
         self._texture("shown", size, 4, "u4")
         features = ["PICTURE_SAMPLES"] if colour.samples else []
-        uniforms = {"samples": colour.samples, "origin": (x, y)}
+        uniforms = {"samples": 1 if alike else colour.samples, "origin": (x, y)}
         outside = {"drawn": self._outside(colour, 4), "depths": self._outside(depth, 1)}
         with self._plain_state():
             target = self._framebuffer(("shown",))
