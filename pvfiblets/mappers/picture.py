@@ -27,10 +27,14 @@ from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.tiles import Margin, margin_of, shifted
-from pvfiblets.mappers.windows import WindowContext, context_of, contexts_with, gl_viewport, weak
+from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 __all__ = ["DepthOfField", "Picture"]
 
+ANTIALIAS = ("off", "coverage")
+"""How edges of lines may be smoothed."""
+
+_COVERAGE = "coverage"
 _COLOUR, _DEPTH = 0x8CE0, 0x8D00
 _DRAW_FRAMEBUFFER, _TYPE, _NAME, _COMPONENTS = 0x8CA9, 0x8CD0, 0x8CD1, 0x8211
 _TEXTURE, _FLOAT = 0x1702, 0x1406
@@ -56,6 +60,7 @@ class Picture:
         self._prop: _PictureProp | None = None
         self._observers: list[int] = []
         self._overlay = Overlay()
+        self._smoothing: Any = None
         self._margin: Margin | None = None
         self._shift = 0, 0
         self._error: BaseException | None = None
@@ -89,6 +94,26 @@ class Picture:
         self._hang()
 
     @property
+    def antialias(self) -> str:
+        """How edges of lines are smoothed: ``'off'``, or ``'coverage'`` (`pvfiblets.mappers.coverage`)."""
+        return "off" if self._smoothing is None else "coverage"
+
+    @antialias.setter
+    def antialias(self, wanted: str) -> None:
+        if wanted not in ANTIALIAS:
+            raise ValueError(f"antialias is {wanted!r}; use one of {list(ANTIALIAS)}")
+        if wanted == self.antialias or self.renderer is None:
+            return
+        if wanted == "off":
+            self._smoothing.release()
+            self._smoothing = None
+        else:
+            from pvfiblets.mappers.coverage import EdgeSmoothing
+
+            self._smoothing = EdgeSmoothing(self.renderer)
+        self._hang()
+
+    @property
     def focal_distance(self) -> float | None:
         """Distance (mm) that was in focus in the last picture; None before the first, and without depth of field."""
         return self.focusing.distance if self._depth_of_field is not None else None
@@ -96,7 +121,7 @@ class Picture:
     @property
     def on(self) -> bool:
         """Whether anything is changed."""
-        return self._tone.changes or self._depth_of_field is not None
+        return self._tone.changes or self._depth_of_field is not None or self._smoothing is not None
 
     # In the renderer
 
@@ -134,6 +159,8 @@ class Picture:
 
     def release(self) -> None:
         """Leave the renderer and give everything on the GPU back; twice is harmless."""
+        if self._smoothing is not None:
+            self._smoothing.release()
         prop, self._prop = self._prop, None
         if prop is None:
             return
@@ -153,8 +180,10 @@ class Picture:
 
     def explain(self) -> dict[str, Any]:
         """Return what the effects cost: ``buffers``, name and bytes of what they keep on the GPU."""
-        kept = [] if self._prop is None else [c.slot(self._prop).renderer for c in contexts_with(self._prop)]
-        return {"buffers": [{"name": "picture", "bytes": effects.nbytes} for effects in kept if effects is not None]}
+        slots = [] if self._prop is None else [context.slot(self._prop) for context in contexts_with(self._prop)]
+        kept = [("picture", slot.renderer) for slot in slots]
+        kept += [(_COVERAGE, slot.effects[_COVERAGE][1]) for slot in slots if _COVERAGE in slot.effects]
+        return {"buffers": [{"name": name, "bytes": held.nbytes} for name, held in kept if held is not None]}
 
     # Drawing
 
@@ -164,6 +193,8 @@ class Picture:
         if renderer is None or self._prop is None:
             return
         self._first()
+        if self._smoothing is not None:
+            self._smoothing.begin()
         self._overlay.hold(renderer)
         if self._shift != (0, 0):
             return
@@ -206,13 +237,23 @@ class Picture:
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             return
+        wanted, smoothing = self._depth_of_field, self._smoothing
+        smooth = smoothing is not None and smoothing.pending
+        changed = wanted is not None or self._tone.changes
+        if not smooth and not changed:
+            return
         slot = context.slot(prop)
-        wanted = self._depth_of_field
         with context.foreign():
+            if smoothing is None and _COVERAGE in slot.effects:
+                slot.drop_effect(_COVERAGE)
+            colour = _attachment(context, _COLOUR)
+            if smooth:
+                smoothing.smooth(_smoother(context, slot), colour, _attachment(context, _DEPTH), viewport)
+            if not changed:
+                return
             if slot.renderer is None:
                 slot.renderer = PictureEffects(context.ctx)
             effects = slot.renderer
-            colour = _attachment(context, _COLOUR)
             if wanted is None:
                 effects.copy(colour, None, viewport)
                 effects.draw(colour, viewport, tone=self._tone)
@@ -266,6 +307,15 @@ class _Painter:
         if picture is not None:
             picture.stored(picture.paint)
         return True
+
+
+def _smoother(context: WindowContext, slot: Slot) -> Any:
+    """Return what smooths edges in a window, made when it is first needed."""
+    if _COVERAGE not in slot.effects:
+        from pvfiblets.engine.effects.coverage import Coverage
+
+        slot.effects[_COVERAGE] = Coverage, Coverage(context.ctx)
+    return slot.effects[_COVERAGE][1]
 
 
 def _attachment(context: WindowContext, point: int) -> Attachment:

@@ -24,7 +24,7 @@ from .tone import Tone
 
 __all__ = ["Attachment", "PictureEffects"]
 
-_BYTES = {"f1": 1, "f4": 4}
+_BYTES = {"f1": 1, "f4": 4, "u4": 4}
 
 
 @dataclass(frozen=True)
