@@ -13,6 +13,9 @@ from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
 
 Matrix = npt.NDArray[np.float64]
 
+smoothers: dict[str, Any] = {}
+"""What smooths the edges of lines, by the address of its vtkRenderer: `pvfiblets.mappers.coverage.EdgeSmoothing`."""
+
 USUAL_DPI = 72
 """Dots per inch of a vtkRenderWindow that nobody has changed."""
 
@@ -99,6 +102,16 @@ class Frame:
         left, lower = np.clip(place.min(axis=0) - pad, -1.0, 1.0)
         right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
         return float(left), float(lower), float(right), float(upper)
+
+    def pixel_rectangle(
+        self, bounds: Sequence[float], slack: float, margin: float
+    ) -> tuple[int, int, int, int]:
+        """Return the same as x, y, width, height in whole pixels of the viewport."""
+        left, lower, right, upper = self.rectangle(bounds, slack, margin)
+        width, height = self.viewport[2:]
+        x, y = int((left + 1.0) / 2.0 * width), int((lower + 1.0) / 2.0 * height)
+        x_end, y_end = (min(int((end + 1.0) / 2.0 * side) + 1, side) for end, side in ((right, width), (upper, height)))
+        return x, y, max(x_end - x, 0), max(y_end - y, 0)
 
     def region_in_data(self, region: Any) -> Any:
         """Return a `pvfiblets.regions.Region` of world coordinates in data coordinates; None stays None."""

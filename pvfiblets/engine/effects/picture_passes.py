@@ -15,7 +15,7 @@ from ..shaders import Programs
 
 __all__ = ["Attachment", "PicturePasses", "bytes_of"]
 
-_BYTES = {"f1": 1, "f4": 4}
+_BYTES = {"f1": 1, "f4": 4, "u4": 4}
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,85 @@
+"""Smooth edges of the lines that a renderer shows: `pvfiblets.engine.effects.coverage` in VTK's own picture.
+
+Mappers of lines ask `pvfiblets.mappers.scene.smoothers` whether edges are wanted, and note what they have drawn; when
+the picture is complete, it is smoothed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pvfiblets.engine.effects.coverage import Coverage, SmoothedLines
+from pvfiblets.engine.effects.picture import Attachment
+from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.scene import smoothers
+from pvfiblets.mappers.windows import weak
+
+__all__ = ["EdgeSmoothing"]
+
+
+class EdgeSmoothing:
+    """What is smoothed in one renderer's picture, while this exists and `release` has not been called.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+    """
+
+    def __init__(self, renderer: Any) -> None:
+        self._renderer = weak(renderer)
+        self._address: str = renderer.GetAddressAsString("")
+        self._noted: dict[str, SmoothedLines] = {}
+        self._sample = False
+        smoothers[self._address] = self
+
+    def begin(self, *, sample: bool = False) -> None:
+        """Forget what was drawn: another picture begins.
+
+        Parameters
+        ----------
+        sample : bool
+            Whether it is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not smoothed;
+            but a line that is drawn wider than it is, because it is thinner than a pixel, is there only where it covers
+            a pixel's middle.
+        """
+        self._noted.clear()
+        self._sample = sample
+
+    def wants(self, narrower: float) -> bool:
+        """Say whether edges are to be known of lines that are thinner by some pixels than they are drawn."""
+        return narrower > 0.0 or not self._sample
+
+    def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:
+        """Remember what a mapper has drawn for this picture, and in which part of it that may be."""
+        if buffer.edges is not None:
+            self._noted[mapper.GetAddressAsString("")] = SmoothedLines(buffer, narrower, rectangle)
+
+    @property
+    def pending(self) -> bool:
+        """Whether there is anything to smooth."""
+        return bool(self._noted)
+
+    def smooth(
+        self, effects: Coverage, colour: Attachment, depth: Attachment, viewport: tuple[int, int, int, int]
+    ) -> None:
+        """Smooth the picture, once."""
+        noted, self._noted = list(self._noted.values()), {}
+        effects.smooth(colour, depth, viewport, noted, alike=not self._others(), point=self._sample)
+
+    def _others(self) -> bool:
+        """Say whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
+        renderer: Any = self._renderer.Get()
+        props = renderer.GetViewProps()
+        for index in range(props.GetNumberOfItems()):
+            prop = props.GetItemAsObject(index)
+            flat = prop.IsA("vtkActor2D") or prop.IsA("vtkContextActor")
+            ours = prop.IsA("vtkActor") and isinstance(prop.GetMapper(), EngineMapper)
+            if prop.GetVisibility() and not (flat or ours):
+                return True
+        return False
+
+    def release(self) -> None:
+        """Have mappers leave edges alone; twice is harmless."""
+        self._noted.clear()
+        if smoothers.get(self._address) is self:
+            del smoothers[self._address]
