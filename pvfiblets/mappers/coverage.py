@@ -40,16 +40,21 @@ class EdgeSmoothing:
         if buffer.edges is not None:
             self._noted[mapper.GetAddressAsString("")] = SmoothedLines(buffer, narrower, rectangle)
 
-    @property
-    def pending(self) -> bool:
-        """Whether there is anything to smooth."""
-        return bool(self._noted)
+    def pending(self, thin: bool = False) -> bool:
+        """Say whether there is anything to smooth; with `thin`, lines that are thinner than a pixel."""
+        return any(lines.narrower > 0.0 or not thin for lines in self._noted.values())
 
     def smooth(
-        self, effects: Coverage, colour: Attachment, depth: Attachment, viewport: tuple[int, int, int, int]
+        self,
+        effects: Coverage,
+        colour: Attachment,
+        depth: Attachment,
+        viewport: tuple[int, int, int, int],
+        thin: bool = False,
     ) -> None:
-        """Smooth the picture, once."""
-        noted, self._noted = list(self._noted.values()), {}
+        """Smooth the picture, once; with `thin`, lines that are thinner than a pixel only."""
+        noted = [lines for lines in self._noted.values() if lines.narrower > 0.0 or not thin]
+        self._noted = {}
         effects.smooth(colour, depth, viewport, noted, alike=not self._others())
 
     def _others(self) -> bool:

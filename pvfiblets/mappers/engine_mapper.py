@@ -30,6 +30,7 @@ from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, smoothers, world_planes
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
+from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
@@ -292,6 +293,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, self._narrower(pixel_scale(renderer, viewport)), rectangle)
+        if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
+            return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)

@@ -166,6 +166,18 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
+def in_motion(renderer: vtkRenderer) -> bool:
+    """Whether the window wants pictures at the rate of interaction.
+
+    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
+    """
+    window = renderer.GetRenderWindow()
+    interactor = window.GetInteractor()
+    still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
+    return bool(window.GetDesiredUpdateRate() > still)
+
+
 def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
     """Yield every renderer that holds a prop, directly or inside an assembly."""
     for index in range(prop.GetNumberOfConsumers()):
