@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -87,7 +88,9 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     @line_width.setter
     def line_width(self, pixels: float) -> None:
-        self._line_width = FibletStyle(line_width=float(pixels)).line_width
+        if not (math.isfinite(pixels) and pixels > 0.0):
+            raise ValueError(f"line_width is {pixels}; give a finite number of pixels above 0")
+        self._line_width = float(pixels)
         self._actor_modified()
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
