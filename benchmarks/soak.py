@@ -15,6 +15,7 @@ import argparse
 import ctypes
 import gc
 import json
+import os
 import sys
 import time
 from collections import Counter
@@ -30,6 +31,8 @@ from soak_acts import WEIGHTS, Data
 from pvfiblets.engine.gl_loader import loader
 from pvfiblets.mappers import windows
 from pvfiblets.report.machine import about
+
+os.environ.setdefault("PVFIBLETS_ANTIALIAS", "off")  # an act of its own: as the default it would be most of the time
 
 MOST_ACTORS = 4
 OURS = (moderngl.Buffer, moderngl.ComputeShader, moderngl.Framebuffer, moderngl.Program, moderngl.Query,

@@ -206,6 +206,12 @@ def screenshot(soak: Any, rng: np.random.Generator) -> str:
     return f"screenshot {image.shape}"
 
 
+def antialias(soak: Any, rng: np.random.Generator) -> str:
+    value = [4, "coverage", "off"][int(rng.integers(0, 3))]
+    soak.window(rng).plotter.picture.antialias = value
+    return f"antialias {value}"
+
+
 def widget(soak: Any, rng: np.random.Generator) -> str | None:
     window = soak.window(rng)
     found = window.of("add_fiblets")
@@ -479,5 +485,6 @@ def _one(rng: np.random.Generator, values: Any) -> Any:
 WEIGHTS: dict[Act, float] = {
     add_fiblets: 1.5, add_tubes: 1, add_halo_lines: 1, add_halo_points: 0.7, add_volume: 1, add_mesh: 0.7,
     remove: 4, clear: 0.3, resize: 2, second_window: 0.8, turn: 3, zoom: 2, picture: 1.5, passes: 1.2,
-    background: 0.3, screenshot: 0.5, widget: 0.8, style: 9, clip: 2, choose: 2, select: 2, pick: 1, explain: 0.4,
+    background: 0.3, screenshot: 0.5, antialias: 0.4, widget: 0.8, style: 9, clip: 2, choose: 2,
+    select: 2, pick: 1, explain: 0.4,
 }  # fmt: skip

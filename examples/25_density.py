@@ -39,9 +39,9 @@ def main(folder: Path) -> None:
 
     # Light adds up along rays: what is dense shines.
     plotter.subplot(0, 0)
-    top = float(np.percentile(counts.values[counts.values > 0], 99.5))
+    top = float(np.percentile(counts.values[counts.values > 0], 98))
     plotter.add_raycast_volume(
-        counts, cmap="inferno", clim=(0, top), opacity=[0, 0.02, 0.1, 0.4, 0.8], opacity_unit_distance=4 * VOXEL,
+        counts, cmap="inferno", clim=(0, top), opacity=[0, 0.06, 0.2, 0.5, 0.8], opacity_unit_distance=4 * VOXEL,
         scalar_bar_args={**bar, "title": "streamlines per voxel"},
     )  # fmt: skip
 

@@ -171,8 +171,9 @@ def make_parser() -> argparse.ArgumentParser:
         description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
     )
     report.add_argument(
-        "--only", nargs="+", metavar="STUDY", help="codec, decode, culling, tubes, volumes, halos, features, stability"
-    )
+        "--only", nargs="+", metavar="STUDY",
+        help="codec, decode, culling, tubes, volumes, halos, features, antialias, stability",
+    )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",
         help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
@@ -262,6 +263,7 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
         "least 20%%)",
     )
+    _antialias(parser)
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
     add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
     add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
@@ -298,6 +300,27 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--opacity", type=float, default=1.0, metavar="SHARE", help="0 to 1 (default: %(default)s)")
     parser.add_argument("--background", default="black", metavar="COLOR", help="behind it all (default: %(default)s)")
     parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
+    _antialias(parser)
+
+
+def _antialias(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--antialias",
+        type=antialias,
+        metavar="HOW",
+        help="of edges: off, coverage, refined (16 samples a pixel where nothing moves) or a number of samples "
+        "(default: refined, or what the environment variable PVFIBLETS_ANTIALIAS says)",
+    )
+
+
+def antialias(text: str) -> str | int:
+    """Parse how edges are smoothed."""
+    from pvfiblets.antialias import check_antialias
+
+    try:
+        return check_antialias("it", int(text) if text.isdecimal() else text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def positive(text: str) -> float:

@@ -62,10 +62,13 @@ def fill(
     opacity: float,
     background: str,
     no_lighting: bool,
+    antialias: str | int | None = None,
 ) -> None:
     """Put files into a plotter's scene and point the camera."""
     from pvfiblets.plotting.viewpoints import point_camera
 
+    if antialias is not None:
+        plotter.picture.antialias = antialias
     plotter.set_background(background)
     text = "black" if sum(plotter.background_color.float_rgb) > 1.5 else "white"
     for path in paths:

@@ -21,6 +21,9 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+# Pictures of tests are exact, and drawn once: of one sample a pixel, in processes that they start, too.
+os.environ["PVFIBLETS_ANTIALIAS"] = "off"
+
 NO_DATA = "real data is not on this machine"
 
 SIZES = {"value": 1, "pair": 2}

@@ -189,6 +189,8 @@ def test_an_unknown_array_lists_those_that_exist(tractogram, tmp_path, capsys):
         ["screenshot", "a.trk", "-o", "a.png", "--size", "big"],
         ["screenshot", "a.trk", "-o", "a.png", "--size", "0x5"],
         ["screenshot", "a.trk", "-o", "a.png", "--view", "sideways"],
+        ["screenshot", "a.trk", "-o", "a.png", "--antialias", "much"],
+        ["serve", "--antialias", "1"],
         ["demo", "--streamlines", "0"],
     ],
 )
@@ -245,6 +247,16 @@ def test_a_screenshot_with_a_scalar_bar_and_with_two_files(tractogram, compresse
     assert main([*arguments, "--cmap", "plasma", "--clim", "20", "150", "--line-width", "2", "--size", "400x300"]) == 0
     colours = np.unique(np.asarray(Image.open(picture).convert("RGB")).reshape(-1, 3), axis=0)
     assert len(colours) > 100
+
+
+def test_screenshots_are_refined_as_they_are_told(tractogram, tmp_path):
+    colours = []
+    for how in ("off", "2", "refined"):
+        picture = tmp_path / f"{how}.png"
+        arguments = ["screenshot", str(tractogram[0]), "-o", str(picture), "--size", "90x60", "--color", "white"]
+        assert main([*arguments, "--no-lighting", "--antialias", how]) == 0
+        colours.append(len(np.unique(np.asarray(Image.open(picture).convert("L")))))
+    assert colours == [2, 3, 17]
 
 
 def test_show_says_that_there_is_no_display(tractogram, capsys, monkeypatch):

@@ -24,6 +24,7 @@ __all__ = ["compilation_noticed", "kernel", "parallel_kernel", "sources_digest"]
 
 logger = logging.getLogger("pvfiblets.codec")
 NOTICED = 1.0  # seconds, after which one wonders
+_DISPATCHERS: list[Any] = []
 HOME = Path(__file__).resolve().parent
 
 
@@ -49,6 +50,7 @@ def _compiled(function: Any, parallel: bool) -> Any:
     # would have to be raised out of a parallel loop.
     dispatcher = numba.njit(function, error_model="numpy", parallel=parallel)
     dispatcher._cache = _KeyedBySources(function)  # noqa: SLF001 - numba offers no public way to key its cache
+    _DISPATCHERS.append(dispatcher)
     return dispatcher
 
 
@@ -64,12 +66,30 @@ def parallel_kernel(function: Any) -> Any:
 
 @contextmanager
 def compilation_noticed(what: str) -> Iterator[None]:
-    """Log a warning if what is done within takes more than a second: kernels that nobody has used here before."""
-    told = "compiling %s for this machine; this happens once, and takes up to a minute"
-    timer = threading.Timer(NOTICED, logger.warning, (told, what))
-    timer.daemon = True
-    timer.start()
+    """Log a warning if kernels are compiled within, which takes more than a second: nobody has used them here before.
+
+    Parameters
+    ----------
+    what : str
+        Which kernels, for people.
+    """
+    done, before = threading.Event(), _compilations()
+
+    def watch() -> None:
+        while not done.wait(NOTICED):
+            if _compilations() > before:
+                logger.warning("compiling %s for this machine; this happens once, and takes up to a minute", what)
+                return
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
     try:
         yield
     finally:
-        timer.cancel()
+        done.set()
+        watcher.join()
+
+
+def _compilations() -> int:
+    """How many kernels were not found compiled on disk so far."""
+    return sum(sum(dispatcher.stats.cache_misses.values()) for dispatcher in _DISPATCHERS)

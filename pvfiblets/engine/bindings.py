@@ -184,7 +184,10 @@ ANSWER_STORAGE = _storage("answers about fiblets", answers=STORAGE["visibility_b
 ITEM_STORAGE = _storage("items", seen=0, listed=1, counts=2, commands=3)
 
 IMAGES = Scope(
-    "images of the G-buffer", {"depth": 0, "owner": 1, "ids": 2, "position": 3, "across": 4}, first=0, last=7
+    "images of the G-buffer",
+    {"depth": 0, "owner": 1, "ids": 2, "position": 3, "across": 4, "edges": 5},
+    first=0,
+    last=7,
 )
 
 BLOCKS = Scope(

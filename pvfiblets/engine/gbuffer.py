@@ -12,13 +12,14 @@ texture        format    content
                          over half the width, in -1..1; positive to the left of the tangent on the screen
   of tubes     r32ui     their surface's unit normal, packed as the tangent is
   of halos     r16f      1 where a line shows, 0 where its halo does, between at the edge between them
+``edges``      r32ui     only if asked for: where the edges of what the pixel shows run (``shaders/frame/edges.glsl``)
 ``colours``    rgba8     only of spline tubes and lines with halos whose points have colours, and of volumes' light
 =============  ========  ======================================================================================
 
 Of volumes that rays are cast through ``position`` holds the place along the ray, mm, and the value there, of surfaces
 ``ids`` a tangent and ``across`` a normal as of tubes, and ``colours`` light that is not multiplied by its opacity.
 
-``ids``, ``position`` and ``across`` are undefined where ``depth`` is empty.
+``ids``, ``position``, ``across`` and ``edges`` are undefined where ``depth`` is empty.
 
 A float32 has room for fractions up to point 2^23 of a streamline, and for whole points up to 2^24, which is 1.7 km at
 0.1 mm. Beyond, places are rounded to every second point, from 2^25 on to every fourth, and so on.
@@ -59,8 +60,8 @@ class GBuffer:
     depth, ids, position : moderngl.Texture
     owner : moderngl.Texture
         r32ui, the engine's own: index of the fiblet that each pixel belongs to; of volumes, of the voxel.
-    across, colours : moderngl.Texture or None
-        See :meth:`want_relief` and :meth:`want_colours`.
+    across, edges, colours : moderngl.Texture or None
+        See :meth:`want_relief`, :meth:`want_edges` and :meth:`want_colours`.
     generation : int
         Counts redraws; a reader that saw this number has seen this picture.
     """
@@ -80,6 +81,7 @@ class GBuffer:
         self.ids = self._texture(ctx, 2, "u4")
         self.position = self._texture(ctx, 2, "f4")
         self.across: moderngl.Texture | None = None
+        self.edges: moderngl.Texture | None = None
         self.colours: moderngl.Texture | None = None
         self._relief: str | None = None
 
@@ -109,6 +111,21 @@ class GBuffer:
         self.across = None if relief is None else self._texture(ctx, 1, RELIEF[relief])
         self._relief = relief
 
+    def want_edges(self, ctx: moderngl.Context, wanted: bool) -> None:
+        """Have the texture ``edges``, or not.
+
+        Raises
+        ------
+        EngineError
+            If memory does not suffice; then everything is given back.
+        """
+        if wanted and self.edges is None:
+            self.edges = self._texture(ctx, 1, "u4")
+        elif not wanted and self.edges is not None:
+            self._textures.remove(self.edges)
+            self.edges.release()
+            self.edges = None
+
     def want_colours(self, ctx: moderngl.Context) -> None:
         """Have the texture ``colours``.
 
@@ -130,11 +147,12 @@ class GBuffer:
         """Bytes of GPU memory."""
         relief = 0 if self._relief is None else int(RELIEF[self._relief][1])
         colours = 0 if self.colours is None else 4
-        return self.size[0] * self.size[1] * (24 + relief + colours)
+        edges = 0 if self.edges is None else 4
+        return self.size[0] * self.size[1] * (24 + relief + edges + colours)
 
     def release(self) -> None:
         """Give the textures back; twice is harmless."""
         for texture in self._textures:
             texture.release()
         self._textures.clear()
-        self.across = self.colours = self._relief = None
+        self.across = self.edges = self.colours = self._relief = None

@@ -36,6 +36,8 @@ class HitTarget:
         Whether the G-buffer has colours.
     relief : str
         What its ``across`` holds.
+    edges : {None, 'hits', 'attributes'}
+        Whether it has ``edges``, and which pass writes them.
 
     Attributes
     ----------
@@ -55,7 +57,13 @@ class HitTarget:
     """
 
     def __init__(
-        self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], coloured: bool, relief: str = "normal"
+        self,
+        ctx: moderngl.Context,
+        gl: GLExtras,
+        size: tuple[int, int],
+        coloured: bool,
+        relief: str = "normal",
+        edges: str | None = None,
     ) -> None:
         self.size, self.coloured = size, coloured
         self._ctx, self._gl = ctx, gl
@@ -65,17 +73,20 @@ class HitTarget:
             self.buffer.want_relief(ctx, relief)
             if coloured:
                 self.buffer.want_colours(ctx)
+            self.buffer.want_edges(ctx, edges is not None)
+            written = [] if self.buffer.edges is None else [self.buffer.edges]
             self.hits = ctx.texture(size, 2, dtype="u4")
             self._things.append(self.hits)
             self.hits.filter = moderngl.NEAREST, moderngl.NEAREST
             self.depths = depth_texture(ctx, gl, size)
             self._things.append(self.depths)
-            self.hits_buffer = ctx.framebuffer([self.hits], self.depths)
+            self.hits_buffer = ctx.framebuffer([self.hits, *(written if edges == "hits" else [])], self.depths)
             self._things.append(self.hits_buffer)
             kept = self.buffer
             self.keys = ctx.framebuffer([kept.depth])
             self._things.append(self.keys)
             shown = [kept.depth, kept.owner, kept.ids, kept.position, kept.across, kept.colours]
+            shown += written if edges == "attributes" else []
             self.attributes = ctx.framebuffer([texture for texture in shown if texture is not None], self.depths)
             self._things.append(self.attributes)
             self.attributes.depth_mask = False
@@ -120,6 +131,9 @@ class HitDrawable(Drawable[AnyStyle]):
     RELIEF: ClassVar[str] = "normal"
     """What ``GBuffer.across`` holds."""
 
+    EDGES: ClassVar[str] = "attributes"
+    """Which pass writes ``GBuffer.edges``, if asked for: ``'hits'`` or ``'attributes'``."""
+
     SAMPLERS: ClassVar[Mapping[str, int]]
     """Texture units of the data, by the names of their samplers."""
 
@@ -136,10 +150,12 @@ class HitDrawable(Drawable[AnyStyle]):
         if culling is not None and n >= LEAST_SEGMENTS and supports_listing(self._ctx):
             self._listing = self._keep(Listing(self._ctx, self._gl, self._programs, n_items, **how))
 
-    def _hit_target(self, size: tuple[int, int], *, coloured: bool) -> HitTarget:
+    def _hit_target(self, size: tuple[int, int], *, coloured: bool, edges: bool) -> HitTarget:
         """Return what the next picture is drawn into."""
-        key = size, coloured
-        return self._fitting("gbuffer", key, lambda: HitTarget(self._ctx, self._gl, size, coloured, self.RELIEF))
+        writer = self.EDGES if edges else None
+        key = size, coloured, writer
+        ctx, gl = self._ctx, self._gl
+        return self._fitting("gbuffer", key, lambda: HitTarget(ctx, gl, size, coloured, self.RELIEF, writer))
 
     def _draw_hits(
         self,

@@ -61,6 +61,7 @@ FEATURES: dict[str, str] = {
     "PEEL": "what lies behind an earlier layer",
     "TUBES": "lines of a width in millimetres, with a surface",
     "CROSS_LINE": "where across a wide line a pixel lies",
+    "EDGES": "where the edges run of what a pixel shows",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",

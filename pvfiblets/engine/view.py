@@ -87,9 +87,13 @@ class Style:
     ----------
     values : str or VolumeSource, optional
         The value to write beside each pixel, of those that the drawable has. None costs nothing.
+    edges : bool
+        Whether to write where the edges run of what each pixel shows (``GBuffer.edges``), for smoothing them. Volumes
+        have none.
     """
 
     values: str | VolumeSource | None = field(default=None, kw_only=True)
+    edges: bool = field(default=False, kw_only=True)
 
     @property
     def half_width(self) -> float:

@@ -28,12 +28,16 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, world_planes
+from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, smoothers, world_planes
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
+from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
 VTK_SURFACE = 2
+
+SMOOTHED_BESIDE = 3.0
+"""Pixels beside lines that may take a share of them."""
 
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
@@ -69,6 +73,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     """
 
     _NAME: ClassVar[str]
+
+    # Whether the engine knows where the edges run of what each pixel shows.
+    _HAS_EDGES: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -262,6 +269,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
         )
         style = self._whole_style(renderer, viewport)
+        smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
+        if smoother is not None:
+            style = replace(style, edges=True)
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
@@ -279,6 +289,12 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
+        if smoother is not None:
+            slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
+            rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
+            smoother.note(self, buffer, self._narrower(pixel_scale(renderer, viewport)), rectangle)
+        if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
+            return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
@@ -299,6 +315,10 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> Style:
         """Return the style without values; a width is as many pixels times ``pixel_scale`` wide."""
         raise NotImplementedError
+
+    def _narrower(self, pixel_scale: float) -> float:  # noqa: ARG002
+        """Return the pixels by which lines are thinner than they are drawn."""
+        return 0.0
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style, with the values that the colours need and what effects want."""

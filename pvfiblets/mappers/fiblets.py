@@ -30,7 +30,8 @@ class FibletMapper(CutMapper[EngineOptions]):
     colouring : Colouring, optional
         By orientation when left out.
     line_width : float, default 1.0
-        Pixels of the window, at least 1.
+        Pixels of the window, above 0. Lines thinner than a pixel are drawn a pixel wide, and fainter where edges are
+        smoothed (`pvfiblets.mappers.coverage`).
     options : EngineOptions, optional
         Pipeline and culling; the defaults suit every machine.
     renderer_factory : callable, optional
@@ -45,6 +46,7 @@ class FibletMapper(CutMapper[EngineOptions]):
     """
 
     _NAME = "FibletMapper"
+    _HAS_EDGES = True
 
     def __init__(
         self,
@@ -95,6 +97,9 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
         return FibletStyle(line_width=max(1.0, self._line_width * pixel_scale), min_width=max(1.0, pixel_scale))
+
+    def _narrower(self, pixel_scale: float) -> float:
+        return 0.0 if self._thickness > 0.0 else max(1.0 - self._line_width * pixel_scale, 0.0)
 
     @property
     def filtering(self) -> Any:

@@ -136,6 +136,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     """
 
     _NAME = "HaloMapper"
+    _HAS_EDGES = True
 
     def __init__(
         self,

@@ -107,7 +107,9 @@ class Focusing:
             return True
         return abs(self.distance - self._aim) <= SETTLED * self._aim
 
-    def focus(self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Projection) -> Focus:
+    def focus(
+        self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Projection, *, held: bool = False
+    ) -> Focus:
         """Return what the lens is set to for a picture that has just been copied.
 
         Parameters
@@ -119,13 +121,15 @@ class Focusing:
             Have the copy, with depths.
         lens : Projection
             Of the picture.
+        held : bool
+            Whether a focus that follows stays where it was in the last picture.
         """
         viewport = (0, 0, *lens.size)
         samples = samples_per_pixel(renderer, viewport)
         place = wanted.focal_distance
-        if isinstance(place, str):
+        if isinstance(place, str) and not held:
             self._follow(_seen_at(place, renderer, effects, lens, samples), wanted.smooth)
-        elif place is not None:
+        elif place is not None and not isinstance(place, str):
             self.distance = float(place)
         if place is None or self.distance is None:  # nothing has been seen there so far
             self.distance = float(renderer.GetActiveCamera().GetDistance())

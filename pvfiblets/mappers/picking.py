@@ -15,6 +15,7 @@ import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 
+from pvfiblets.mappers.shifted_cameras import with_exact_depths
 from pvfiblets.mappers.windows import WindowContext, contexts_with
 
 EMPTY = 0xFFFFFFFF
@@ -306,7 +307,7 @@ def _nearest(seen: Sequence[tuple[Shown, Layer]], box: tuple[int, int, int, int]
 
 def _hidden(shown: Shown, pixels: npt.NDArray[np.float64], depths: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """(n,) bool: pixels in which VTK's last frame shows something nearer than the fiblets."""
-    window = shown.context.window
+    window = with_exact_depths(shown.context.window)
     at = np.floor(pixels + 0.5).astype(np.int64)
     nothing: npt.NDArray[np.bool_] = np.zeros(len(at), np.bool_)
     if not len(at):

@@ -1,39 +1,47 @@
-"""Effects on the whole picture of a renderer: depth of field and tones, behind scalar bars and texts.
+"""Effects on the whole picture of a renderer: depth of field, tones, refinement, behind scalar bars and texts.
 
 VTK draws what is opaque, translucent, volumetric, and at last what lies over all of these: scalar bars, texts. Each of
-them a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first, a
-``vtkContextActor``, which draws in the last of these turns only, and calls Python there: that is when the picture is
-complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are read from the
-textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as they are.
+them a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
+frame, a ``vtkContextActor``, which draws in the last of these turns only, and calls Python there: that is when the
+picture is complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are
+read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
+they are.
+
+Refinement (`pvfiblets.mappers.refinement`) takes the picture as the effects leave it. `refine` draws one more frame of
+all the pictures of a window, `finish` all that are left. Whoever reads a window's picture gets the finished one: all do
+that with ``vtkWindowToImageFilter``, PyVista's ``screenshot`` and ``image`` too. It gives each renderer a copy of its
+camera before, and VTK tells of that (``ActiveCameraEvent``). Where an interactor must not render
+(``EnableRenderOff``), the window is a server's, whose pictures follow the camera: it calls `refine` itself.
 
 While nothing is changed, none of this exists.
 """
 
 from __future__ import annotations
 
-import ctypes
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
-from vtkmodules.vtkPythonContext2D import vtkPythonItem
-from vtkmodules.vtkRenderingContext2D import vtkContextActor
-from vtkmodules.vtkRenderingContextOpenGL2 import vtkOpenGLContextActor  # noqa: F401  what VTK makes of the former
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
-from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
-from pvfiblets.mappers.tiles import Margin, margin_of, shifted
-from pvfiblets.mappers.windows import WindowContext, context_of, contexts_with, gl_viewport, weak
+from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
+from pvfiblets.mappers.refinement import Refinement
+from pvfiblets.mappers.scene import in_motion
+from pvfiblets.mappers.scene_state import scene_state
+from pvfiblets.mappers.shifted_cameras import shifted
+from pvfiblets.mappers.tiles import Margin, margin_of
+from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
-__all__ = ["DepthOfField", "Picture"]
+__all__ = ["DepthOfField", "Picture", "finish", "refine"]
 
-_COLOUR, _DEPTH = 0x8CE0, 0x8D00
-_DRAW_FRAMEBUFFER, _TYPE, _NAME, _COMPONENTS = 0x8CA9, 0x8CD0, 0x8CD1, 0x8211
-_TEXTURE, _FLOAT = 0x1702, 0x1406
+_COVERAGE = "coverage"
+_EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
+
+_pictures: weakref.WeakSet[Picture] = weakref.WeakSet()
 
 
 class Picture:
@@ -47,19 +55,29 @@ class Picture:
     -----
     An exception while drawing cannot pass through VTK: it is stored, the picture stays as it was drawn, and
     `raise_pending` raises it.
+
+    Attributes
+    ----------
+    drawn : callable or None
+        Called after each frame of a picture that is refined.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
         self._renderer = weak(renderer)
         self._tone = Tone()
         self._depth_of_field: DepthOfField | None = None
-        self._prop: _PictureProp | None = None
+        self._prop: PictureProp | None = None
         self._observers: list[int] = []
         self._overlay = Overlay()
+        self._smoothing: Any = None
         self._margin: Margin | None = None
         self._shift = 0, 0
+        self._inside = False
+        self._refinement: Refinement | None = None
         self._error: BaseException | None = None
         self.focusing = Focusing()
+        self.drawn: Callable[[], None] | None = None
+        _pictures.add(self)
 
     @property
     def renderer(self) -> Any:
@@ -89,14 +107,55 @@ class Picture:
         self._hang()
 
     @property
+    def smoothing(self) -> bool:
+        """Whether edges of lines are smoothed in plain frames (`pvfiblets.mappers.coverage`)."""
+        return self._smoothing is not None
+
+    @smoothing.setter
+    def smoothing(self, wanted: bool) -> None:
+        if wanted == self.smoothing or self.renderer is None:
+            return
+        if not wanted:
+            self._smoothing.release()
+            self._smoothing = None
+        else:
+            from pvfiblets.mappers.coverage import EdgeSmoothing
+
+            self._smoothing = EdgeSmoothing(self.renderer)
+        self._hang()
+
+    @property
+    def refinement(self) -> Refinement | None:
+        """Samples of the picture at rest; None for one."""
+        return self._refinement
+
+    @refinement.setter
+    def refinement(self, wanted: Refinement | None) -> None:
+        self._refinement = wanted
+        self._hang()
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the scene is as it was drawn last, and its picture wants more samples."""
+        renderer = self.renderer
+        if self._refinement is None or renderer is None or renderer.GetRenderWindow() is None:
+            return False
+        return self._refinement.unfinished(self._state(renderer))
+
+    @property
     def focal_distance(self) -> float | None:
         """Distance (mm) that was in focus in the last picture; None before the first, and without depth of field."""
         return self.focusing.distance if self._depth_of_field is not None else None
 
     @property
+    def has_effects(self) -> bool:
+        """Whether colours or focus are changed."""
+        return self._tone.changes or self._depth_of_field is not None
+
+    @property
     def on(self) -> bool:
         """Whether anything is changed."""
-        return self._tone.changes or self._depth_of_field is not None
+        return self.has_effects or self._refinement is not None or self._smoothing is not None
 
     # In the renderer
 
@@ -106,34 +165,36 @@ class Picture:
         if renderer is None:
             return
         if self.on and self._prop is None:
-            self._prop = _PictureProp()
+            self._prop = PictureProp()
             self._prop.hang(self)
             reference = weakref.ref(self)
 
             def call(_caller: Any, event: str) -> None:
                 picture = reference()
                 if picture is not None:
-                    picture.stored(picture.start if event == "StartEvent" else picture.end)
+                    steps = picture.start, picture.end, picture.captured
+                    picture.stored(steps[_EVENTS.index(event)])
 
-            self._observers = [renderer.AddObserver(event, call) for event in ("StartEvent", "EndEvent")]
-            self._first()
+            self._observers = [renderer.AddObserver(event, call) for event in _EVENTS]
+            self._prop.AddConsumer(renderer)
         elif not self.on:
             self.release()
+        if self._refinement is not None:
+            self._refinement.forget()
         renderer.Modified()
 
-    def _first(self) -> None:
-        """Have the prop be the first of the renderer's, though others were added or all removed."""
+    def _insert(self) -> None:
+        """Have the prop be the first of the renderer's, as long as it draws: users' lists of actors lack it."""
         props = self.renderer.GetViewProps()
-        if props.GetNumberOfItems() and props.GetItemAsObject(0) is self._prop:
-            return
-        if not self.renderer.HasViewProp(self._prop):
-            self.renderer.AddViewProp(self._prop)
-        if props.GetNumberOfItems() > 1:  # or there would be none to insert it before
-            props.RemoveItem(self._prop)
+        if props.GetNumberOfItems() == 0:
+            props.AddItem(self._prop)  # there is none to insert it before
+        elif props.GetItemAsObject(0) is not self._prop:
             props.InsertItem(-1, self._prop)
 
     def release(self) -> None:
         """Leave the renderer and give everything on the GPU back; twice is harmless."""
+        if self._smoothing is not None:
+            self._smoothing.release()
         prop, self._prop = self._prop, None
         if prop is None:
             return
@@ -141,7 +202,8 @@ class Picture:
         if renderer is not None:
             for observer in self._observers:
                 renderer.RemoveObserver(observer)
-            renderer.RemoveViewProp(prop)
+            prop.RemoveConsumer(renderer)
+            renderer.GetViewProps().RemoveItem(prop)
         for context in contexts_with(prop):
             context.release(prop)
 
@@ -153,8 +215,10 @@ class Picture:
 
     def explain(self) -> dict[str, Any]:
         """Return what the effects cost: ``buffers``, name and bytes of what they keep on the GPU."""
-        kept = [] if self._prop is None else [c.slot(self._prop).renderer for c in contexts_with(self._prop)]
-        return {"buffers": [{"name": "picture", "bytes": effects.nbytes} for effects in kept if effects is not None]}
+        slots = [] if self._prop is None else [c.slot(self._prop) for c in contexts_with(self._prop)]
+        kept = [("picture", slot.renderer) for slot in slots if slot.renderer is not None]
+        kept += [(name, sums) for slot in slots for name, (_, sums) in slot.effects.items()]
+        return {"buffers": [{"name": name, "bytes": effects.nbytes} for name, effects in kept]}
 
     # Drawing
 
@@ -163,32 +227,88 @@ class Picture:
         renderer = self.renderer
         if renderer is None or self._prop is None:
             return
-        self._first()
-        self._overlay.hold(renderer)
-        if self._shift != (0, 0):
+        if renderer.GetSelector() is not None:
             return
-        self._margin = None
-        if self._depth_of_field is not None and renderer.GetSelector() is None:
-            reach = int(self._depth_of_field.max_blur * renderer.GetRenderWindow().GetTileScale()[1]) + 1
-            self._margin = margin_of(renderer, reach)
-        if self._margin is not None:
-            self._draw_around(renderer, self._margin)
+        if self._smoothing is not None:
+            self._smoothing.begin()
+        self._overlay.hold(renderer)
+        if self._inside:
+            return
+        refinement = self._refinement
+        if refinement is not None and tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
+            refinement.start(renderer, self._state(renderer))
+        elif refinement is not None and _refinable(renderer) and _starts_empty(renderer):
+            self._insert()
+            for _ in refinement.other_tile_frames(renderer):
+                self._draw_around(renderer)
+                self._draw_inside(renderer)
+            self._overlay.hold(renderer)
+        if self.has_effects or self._smoothing is not None or (refinement is not None and not refinement.idle):
+            self._insert()
+        self._draw_around(renderer)
 
-    def _draw_around(self, renderer: Any, margin: Margin) -> None:
-        """Copy what lies around a tile; the tile itself is drawn after that."""
+    def _draw_around(self, renderer: Any) -> None:
+        """Copy what lies around a tile, if effects look there; the tile itself is drawn after that."""
+        self._margin = None
+        if self._depth_of_field is None:
+            return
+        reach = int(self._depth_of_field.max_blur * renderer.GetRenderWindow().GetTileScale()[1]) + 1
+        self._margin = margin_of(renderer, reach)
+        if self._margin is None:
+            return
         try:
-            for shift in margin.shifts():
+            for shift in self._margin.shifts():
                 self._shift = shift
-                with shifted(renderer.GetActiveCamera(), margin.size, shift):
-                    renderer.Render()
+                with shifted(renderer.GetActiveCamera(), self._margin.size, shift):
+                    self._draw_inside(renderer)
         finally:
             self._shift = 0, 0
+
+    def _draw_inside(self, renderer: Any) -> None:
+        """Draw another frame of the renderer inside of the one that it is about to draw."""
+        self._inside = True
+        try:
+            renderer.Render()
+        finally:
+            self._inside = False
 
     def end(self) -> None:
         """Draw what has been put off; called when the renderer has drawn."""
         renderer = self.renderer
-        if renderer is not None:
-            self._overlay.let_go(renderer)
+        if renderer is None:
+            return
+        if renderer.GetSelector() is not None:
+            return
+        self._overlay.let_go(renderer)
+        if self._inside:
+            return
+        renderer.GetViewProps().RemoveItem(self._prop)
+        refinement = self._refinement
+        if refinement is None:
+            return
+        if tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
+            refinement.end(renderer, self._state(renderer))
+            if self.drawn is not None:
+                self.drawn()
+
+    def _state(self, renderer: Any) -> Hashable:
+        """Return what the picture is made of; None while it changes from frame to frame, or cannot be refined."""
+        if not _refinable(renderer) or in_motion(renderer) or not self.focusing.settled:
+            return None
+        interactor = renderer.GetRenderWindow().GetInteractor()
+        follows = self._depth_of_field is not None and self._depth_of_field.focal_distance == "cursor"
+        mouse = tuple(interactor.GetEventPosition()) if follows and interactor is not None else None
+        return scene_state(renderer), mouse
+
+    def captured(self) -> None:
+        """Finish the picture; called when the renderer has another camera: a copy, if somebody reads pictures."""
+        renderer = self.renderer
+        window = None if renderer is None else renderer.GetRenderWindow()
+        if self._refinement is None or window is None or window.CheckInRenderStatus():
+            return
+        interactor = window.GetInteractor()
+        if interactor is None or interactor.GetEnableRender():
+            finish(window)
 
     def stored(self, step: Callable[[], None]) -> None:
         """Take a step of a frame; what it raises, VTK would swallow: see `raise_pending`."""
@@ -206,86 +326,96 @@ class Picture:
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             return
-        slot = context.slot(prop)
-        wanted = self._depth_of_field
+        slot, refinement = context.slot(prop), self._refinement
         with context.foreign():
-            if slot.renderer is None:
-                slot.renderer = PictureEffects(context.ctx)
-            effects = slot.renderer
-            colour = _attachment(context, _COLOUR)
-            if wanted is None:
-                effects.copy(colour, None, viewport)
-                effects.draw(colour, viewport, tone=self._tone)
-                return
-            depth, margin = _attachment(context, _DEPTH), self._margin
-            if margin is None or margin.size != viewport[2:]:
-                effects.copy(colour, depth, viewport)
-            else:
-                effects.copy(colour, depth, viewport, size=margin.padded, corner=margin.corner(self._shift))
-            if self._shift != (0, 0):
-                return
-            lens = lens_of(renderer, viewport[2:])
-            focus = self.focusing.focus(wanted, renderer, effects, lens)
-            effects.draw(colour, viewport, tone=self._tone, focus=focus, lens=lens)
+            if self._smoothing is None and _COVERAGE in slot.effects:
+                slot.drop_effect(_COVERAGE)
+            colour = attachment(context, COLOUR)
+            if self._smoothing is not None:
+                # The mean of samples smooths edges by itself. But each draws lines a pixel wide that are to be thinner.
+                thin = refinement is not None and not refinement.plain
+                if self._smoothing.pending(thin):
+                    self._smoothing.smooth(_smoother(context, slot), colour, attachment(context, DEPTH), viewport, thin)
+            if self.has_effects:
+                self._paint_effects(context, slot, colour, viewport)
+            if refinement is not None and self._shift == (0, 0) and not refinement.idle:
+                refinement.paint(context.ctx, slot, colour, viewport)
+        if refinement is not None and self._shift == (0, 0):
+            refinement.put_back()
+
+    def _paint_effects(
+        self, context: WindowContext, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]
+    ) -> None:
+        """Change colours and focus; of what lies beside a tile, take a copy."""
+        renderer, wanted = self.renderer, self._depth_of_field
+        if slot.renderer is None:
+            slot.renderer = PictureEffects(context.ctx)
+        effects = slot.renderer
+        if wanted is None:
+            effects.copy(colour, None, viewport)
+            effects.draw(colour, viewport, tone=self._tone)
+            return
+        depth, margin = attachment(context, DEPTH), self._margin
+        if margin is None or margin.size != viewport[2:]:
+            effects.copy(colour, depth, viewport)
+        else:
+            effects.copy(colour, depth, viewport, size=margin.padded, corner=margin.corner(self._shift))
+        if self._shift != (0, 0):
+            return
+        lens = lens_of(renderer, viewport[2:])
+        held = self._refinement is not None and not self._refinement.plain
+        focus = self.focusing.focus(wanted, renderer, effects, lens, held=held)
+        effects.draw(colour, viewport, tone=self._tone, focus=focus, lens=lens)
 
 
-class _PictureProp(vtkContextActor):
-    """The prop that calls Python when VTK comes to what lies over the picture."""
+def _smoother(context: WindowContext, slot: Slot) -> Any:
+    """Return what smooths edges in a window, made when it is first needed."""
+    if _COVERAGE not in slot.effects:
+        from pvfiblets.engine.effects.coverage import Coverage
 
-    def hang(self, picture: Picture) -> None:
-        """Call a picture, which is not kept alive."""
-        self.SetPickable(False)
-        self.SetUseBounds(False)
-        self._item = vtkPythonItem()
-        self._item.SetPythonObject(_Painter(picture))
-        self.GetScene().AddItem(self._item)
-
-    @property
-    def actor(self) -> vtkContextActor:
-        """What a `WindowContext` asks for, to see whether it is still shown."""
-        return self
-
-    def HasOpaqueGeometry(self) -> int:  # noqa: N802  VTK's name
-        """Return 0: it leaves no depth that could hide anything."""
-        return 0
+        slot.effects[_COVERAGE] = Coverage, Coverage(context.ctx)
+    return slot.effects[_COVERAGE][1]
 
 
-class _Painter:
-    """What VTK calls."""
+def refine(window: Any) -> bool:
+    """Draw one more frame of the pictures of a window that want more samples; nothing if none does.
 
-    def __init__(self, picture: Picture) -> None:
-        self._picture = weakref.ref(picture)
+    Parameters
+    ----------
+    window : vtkRenderWindow
 
-    def Initialize(self, _item: Any) -> bool:  # noqa: N802  VTK's name
-        """Be told of its item."""
-        return True
-
-    def Paint(self, _item: Any, _context: Any) -> bool:  # noqa: N802  VTK's name
-        """Be called when it is time to draw."""
-        picture = self._picture()
-        if picture is not None:
-            picture.stored(picture.paint)
-        return True
-
-
-def _attachment(context: WindowContext, point: int) -> Attachment:
-    """Return colour or depth of the framebuffer that VTK draws into.
-
-    Raises
-    ------
-    RuntimeError
-        It is no texture.
+    Returns
+    -------
+    bool
+        Whether one of them wants another.
     """
-    gl = GLExtras(context.ctx)
-    values = []
-    if gl.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") != 0:
-        for what in (_TYPE, _NAME, _COMPONENTS):
-            value = ctypes.c_int(0)
-            gl.function("glGetFramebufferAttachmentParameteriv")(_DRAW_FRAMEBUFFER, point, what, ctypes.byref(value))
-            values.append(value.value)
-    if not values or values[0] != _TEXTURE:
-        raise RuntimeError(
-            "effects on the picture need VTK to draw into textures, which it does not here; "
-            "remove the render passes that were added to the renderer"
-        )
-    return Attachment(values[1], gl.get_integer("GL_SAMPLES"), values[2] == _FLOAT)
+    wanting = _unfinished(window)
+    for picture in wanting:
+        picture.refinement.due = True
+    if wanting:
+        window.Render()
+    return bool(_unfinished(window))
+
+
+def finish(window: Any) -> None:
+    """Draw all frames that the pictures of a window want."""
+    while refine(window):
+        pass
+
+
+def _unfinished(window: Any) -> list[Any]:
+    address = window.GetAddressAsString("")
+    shown = [picture for picture in _pictures if picture.unfinished]
+    return [picture for picture in shown if picture.renderer.GetRenderWindow().GetAddressAsString("") == address]
+
+
+def _refinable(renderer: Any) -> bool:
+    """Say whether a picture has a camera that can be shifted, and one of them."""
+    camera = renderer.GetActiveCamera()
+    fixed = camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseOffAxisProjection()
+    return not fixed and not renderer.GetRenderWindow().GetStereoRender()
+
+
+def _starts_empty(renderer: Any) -> bool:
+    """Say whether a renderer that draws once more begins with its background."""
+    return renderer.GetLayer() == 0 and renderer.GetErase() and not renderer.GetPreserveColorBuffer()

@@ -13,6 +13,9 @@ from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
 
 Matrix = npt.NDArray[np.float64]
 
+smoothers: dict[str, Any] = {}
+"""What smooths the edges of lines, by the address of its vtkRenderer: `pvfiblets.mappers.coverage.EdgeSmoothing`."""
+
 USUAL_DPI = 72
 """Dots per inch of a vtkRenderWindow that nobody has changed."""
 
@@ -100,6 +103,16 @@ class Frame:
         right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
         return float(left), float(lower), float(right), float(upper)
 
+    def pixel_rectangle(
+        self, bounds: Sequence[float], slack: float, margin: float
+    ) -> tuple[int, int, int, int]:
+        """Return the same as x, y, width, height in whole pixels of the viewport."""
+        left, lower, right, upper = self.rectangle(bounds, slack, margin)
+        width, height = self.viewport[2:]
+        x, y = int((left + 1.0) / 2.0 * width), int((lower + 1.0) / 2.0 * height)
+        x_end, y_end = (min(int((end + 1.0) / 2.0 * side) + 1, side) for end, side in ((right, width), (upper, height)))
+        return x, y, max(x_end - x, 0), max(y_end - y, 0)
+
     def region_in_data(self, region: Any) -> Any:
         """Return a `pvfiblets.regions.Region` of world coordinates in data coordinates; None stays None."""
         return None if region is None else region.moved(np.linalg.inv(self.model))
@@ -151,6 +164,18 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     drawn, shown = max(zip(viewport[2:], (width[0], height[0]), strict=True))
     # A pixel more or less is rounding, and must not make thin lines wide.
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
+
+
+def in_motion(renderer: vtkRenderer) -> bool:
+    """Whether the window wants pictures at the rate of interaction.
+
+    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
+    """
+    window = renderer.GetRenderWindow()
+    interactor = window.GetInteractor()
+    still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
+    return bool(window.GetDesiredUpdateRate() > still)
 
 
 def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:

@@ -7,12 +7,10 @@ renderer, with its camera's window shifted.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Margin", "margin_of", "shifted"]
+__all__ = ["Margin", "margin_of"]
 
 
 @dataclass(frozen=True)
@@ -84,14 +82,3 @@ def margin_of(renderer: Any, reach: int) -> Margin | None:
         high.append(min(most, max(behind, 0)))
     margin = Margin(size, (low[0], low[1]), (high[0], high[1]))
     return margin if margin.shifts() else None
-
-
-@contextmanager
-def shifted(camera: Any, size: tuple[int, int], shift: tuple[int, int]) -> Iterator[None]:
-    """Have a camera show what lies beside its window: shifted by some pixels of a picture of that size."""
-    kept = camera.GetWindowCenter()
-    camera.SetWindowCenter(*(at + 2.0 * by / side for at, by, side in zip(kept, shift, size, strict=True)))
-    try:
-        yield
-    finally:
-        camera.SetWindowCenter(*kept)

@@ -98,6 +98,7 @@ class TubeMapper(EngineMapper[TubeOptions]):
     """
 
     _NAME = "TubeMapper"
+    _HAS_EDGES = True
 
     def __init__(
         self,

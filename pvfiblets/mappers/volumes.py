@@ -21,7 +21,7 @@ from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import PixelHit, nearest_pixel
-from pvfiblets.mappers.scene import others_opaque
+from pvfiblets.mappers.scene import in_motion, others_opaque
 from pvfiblets.mappers.windows import Slot, WindowContext
 
 if TYPE_CHECKING:
@@ -209,21 +209,9 @@ class VolumeMapper(CutMapper[Options]):
         from pvfiblets.engine.volumes import VolumeStyle
 
         casting = self._casting
-        if self.coarser is not None and _in_motion(renderer):
+        if self.coarser is not None and in_motion(renderer):
             casting = self.coarser.of(casting)
         return VolumeStyle(casting=casting)
-
-
-def _in_motion(renderer: vtkRenderer) -> bool:
-    """Whether the window wants pictures at the rate of interaction.
-
-    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
-    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
-    """
-    window = renderer.GetRenderWindow()
-    interactor = window.GetInteractor()
-    still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
-    return bool(window.GetDesiredUpdateRate() > still)
 
 
 def _plain(casting: RaycastOptions) -> Colouring:

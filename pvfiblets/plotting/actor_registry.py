@@ -11,10 +11,12 @@ from __future__ import annotations
 import weakref
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import pyvista as pv
 
+from pvfiblets.antialias import default_antialias
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
@@ -204,12 +206,21 @@ class ActorRegistry(Generic[A]):
             self._renderers[address] = (renderer, tag)
         # Registered current here, since `clear_on_render_callbacks` drops what others registered.
         self._plotter.add_on_render_callback(self._raise_pending)
+        self._smooth(renderer)
 
     def _release_removed(self, *_: Any) -> None:
         """Give back the GPU memory of actors that are in none of the plotter's renderers."""
         for actor in self:
             if not any(renderer.HasViewProp(actor) for renderer, _ in self._renderers.values()):
                 self._forget(actor)
+                for followed, _tag in self._renderers.values():
+                    self._smooth(followed)
+
+    def _smooth(self, renderer: Any) -> None:
+        """Have edges smoothed, by default, in what shows an actor of ours; nothing is loaded where they are not."""
+        if default_antialias() != "off":
+            import_module("pvfiblets.plotting.picture_component")  # Qt's plotters know what is imported only
+            self._plotter.picture.follow(renderer)
 
     def _forget(self, actor: A) -> None:
         self._actors.remove(actor)

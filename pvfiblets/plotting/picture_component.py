@@ -6,16 +6,21 @@ PyVista finds this module by an entry point and imports it when a plotter is fir
 from __future__ import annotations
 
 import weakref
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
 from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
-from pvfiblets.mappers.picture import DepthOfField, Picture
-from pvfiblets.plotting.setting_places import Place
-from pvfiblets.plotting.settings import Setting
+from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.picture import DepthOfField, Picture, refine
+from pvfiblets.mappers.refinement import Refinement
+from pvfiblets.plotting.pacing import Pacer
+from pvfiblets.plotting.setting_places import OWN, Place
+from pvfiblets.plotting.settings import Setting, number
 
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
@@ -36,13 +41,18 @@ class _ToneMapping(Place):
         actor._set_tone(**{setting.field: value})  # noqa: SLF001
 
 
+def _seconds(name: str, value: Any) -> float | None:
+    """Return a limit of time; None for none."""
+    return None if value is None else number(name, value, 0.0, None, "seconds")
+
+
 @pv.register_plotter_component("picture")
 class PictureComponent:
-    """Depth of field, tone mapping, brightness, contrast and gamma of all that the active renderer shows.
+    """Smooth edges, depth of field, tone mapping, brightness, contrast and gamma of what the active renderer shows.
 
     They work on the finished picture of any actors, fiblets, tubes, halos, volumes and meshes alike, and leave scalar
-    bars, texts and other things that lie over it as they are. Each is off, and costs nothing, until it is set; it may
-    be set at any time, and takes effect at the next render. Subplots have settings of their own: choose one with
+    bars, texts and other things that lie over it as they are. Each effect is off, and costs nothing, until it is set;
+    it may be set at any time, and takes effect at the next render. Subplots have settings of their own: choose one with
     :meth:`pyvista.Plotter.subplot`.
 
     Parameters
@@ -59,14 +69,72 @@ class PictureComponent:
     >>> pl.picture.gamma = 1.2
     """
 
-    __slots__ = ("__weakref__", "_pictures", "_plotter", "_tags")
+    __slots__ = ("__weakref__", "_antialias", "_pacer", "_pictures", "_plotter", "_seconds", "_tags")
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter = weakref.proxy(plotter)
         self._pictures: dict[str, Picture] = {}
         self._tags: list[int] = []
+        self._antialias: dict[str, str | int] = {}
+        self._seconds: dict[str, float | None] = {}
+        self._pacer = Pacer(plotter, self.refine, self._unfinished)
 
     # Settings
+
+    antialias: Setting[str | int] = Setting(
+        "refined",
+        """How edges are smoothed.
+
+        ``"off"``: not at all. ``"coverage"``: by the share of each pixel that lines and tubes cover; a picture is drawn
+        once. ``"refined"``, the default where the renderer shows something of this package: as soon as nothing moves or
+        changes, 16 pictures are drawn whose pixels lie a part of a pixel apart, and their mean is shown; after that
+        nothing is drawn. Screenshots, and frames of movies, are the finished picture. Meanwhile, and while something
+        moves, ``"coverage"``. A number from 2 to 256: so many pictures.
+
+        Everything in the scene is refined, meshes too, and every effect; picking, depths and ids are those of the
+        picture without it. A still picture takes as many times longer as it has samples: `antialias_seconds` limits
+        that. The environment variable ``PVFIBLETS_ANTIALIAS`` names another default.
+        """,
+        kind="str | int",
+        where=OWN,
+        check=check_antialias,
+    )
+    antialias_seconds: Setting[float | None] = Setting(
+        None,
+        """Seconds for which the samples of a still picture may be drawn, or ``None``, the default, for no limit.
+
+        As many as then are there make the picture, one at least. With a limit, pictures of slow scenes differ from
+        machine to machine.
+        """,
+        kind="float | None",
+        where=OWN,
+        check=_seconds,
+    )
+
+    @property
+    def samples(self) -> int:
+        """Pictures that the one that was drawn last is the mean of: 1 unless ``antialias`` has refined it."""
+        refinement = self._picture().refinement
+        return 1 if refinement is None else max(refinement.taken, 1)
+
+    def refine(self) -> bool:
+        """Draw one more sample of the plotter's resting pictures.
+
+        Windows on a screen, notebooks and pages do it by themselves, screenshots draw all that are left. It is for
+        event loops of other kinds, which call it while nothing happens.
+
+        Returns
+        -------
+        bool
+            Whether another one is wanted. If none was, nothing has been drawn.
+        """
+        window = self._plotter.render_window
+        return window is not None and refine(window)
+
+    def pace_by_hand(self) -> None:
+        """Draw no samples by itself from now on: somebody calls :meth:`refine`."""
+        self._pacer.by_hand = True
+        self._pacer.release()
 
     @property
     def depth_of_field(self) -> dict[str, Any] | bool:
@@ -132,7 +200,7 @@ class PictureComponent:
     )
 
     def reset(self) -> None:
-        """Show the active renderer as it is drawn: all effects off."""
+        """Show the active renderer as it is drawn: all effects off. Edges stay as smooth as they are."""
         picture = self._picture()
         picture.depth_of_field, picture.tone = None, Tone()
         self._keep()
@@ -141,6 +209,76 @@ class PictureComponent:
         """Return what the effects on the active renderer keep on the GPU: ``buffers``, name and bytes of each."""
         return self._picture().explain()
 
+    # Smooth edges
+
+    def follow(self, renderer: Any) -> None:
+        """Be told that a renderer shows something of this package, or does so no more."""
+        self._refine_as_set(renderer)
+
+    def _read_antialias(self) -> str | int:
+        return self._antialias.get(self._plotter.renderer.GetAddressAsString(""), default_antialias())
+
+    def _write_antialias(self, value: str | int) -> None:
+        renderer = self._plotter.renderer
+        self._antialias[renderer.GetAddressAsString("")] = value
+        self._refine_as_set(renderer)
+
+    def _read_antialias_seconds(self) -> float | None:
+        return self._seconds.get(self._plotter.renderer.GetAddressAsString(""))
+
+    def _write_antialias_seconds(self, value: float | None) -> None:
+        renderer = self._plotter.renderer
+        self._seconds[renderer.GetAddressAsString("")] = value
+        self._refine_as_set(renderer)
+
+    def _refine_as_set(self, renderer: Any) -> None:
+        """Have a renderer's picture refined as it was set; by default, if something of this package is in it."""
+        address = renderer.GetAddressAsString("")
+        value = self._antialias.get(address)
+        if value is None:
+            value = default_antialias() if _shows_ours(renderer) else "off"
+        samples, seconds = samples_of(value), self._seconds.get(address)
+        if value == "off" and address not in self._pictures:
+            return
+        picture = self._picture(renderer)
+        if picture.smoothing != (value != "off"):
+            picture.smoothing = value != "off"
+            self._keep()
+        wanted = None if samples == 1 else Refinement(samples, seconds)
+        if wanted is None and picture.refinement is None:
+            return
+        if wanted is not None and picture.refinement is not None and wanted.same_as(picture.refinement):
+            return
+        if wanted is not None:
+            wanted.seen = self._seen
+        picture.refinement = wanted
+        picture.drawn = self._drawn
+        self._keep()
+
+    @contextmanager
+    def sampled_once(self) -> Iterator[None]:
+        """Have pictures drawn with one sample a pixel meanwhile."""
+        refined = [(picture, picture.refinement) for picture in self._pictures.values() if picture.refinement]
+        for picture, _ in refined:
+            picture.refinement = None
+        try:
+            yield
+        finally:
+            for picture, refinement in refined:
+                picture.refinement = refinement
+
+    def _unfinished(self) -> tuple[bool, int]:
+        """Say whether samples are wanted, and how many the picture has that has most."""
+        pictures = [picture for picture in self._pictures.values() if picture.unfinished]
+        return bool(pictures), max((picture.refinement.taken for picture in pictures if picture.refinement), default=0)
+
+    def _drawn(self) -> None:
+        """Be told that a renderer has drawn a frame."""
+        self._pacer.frame_drawn()
+
+    def _seen(self) -> bool:
+        return self._pacer.seen
+
     def _set_tone(self, **changes: Any) -> None:
         picture = self._picture()
         picture.tone = replace(picture.tone, **changes)
@@ -148,9 +286,9 @@ class PictureComponent:
 
     # Life cycle
 
-    def _picture(self) -> Picture:
-        """Return the active renderer's."""
-        renderer = self._plotter.renderer
+    def _picture(self, renderer: Any = None) -> Picture:
+        """Return a renderer's, by default the active one's."""
+        renderer = self._plotter.renderer if renderer is None else renderer
         address = renderer.GetAddressAsString("")
         picture = self._pictures.get(address)
         if picture is None or picture.renderer is None:
@@ -221,9 +359,17 @@ class PictureComponent:
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""
         self._ignore()
+        self._pacer.release()
         for picture in self._pictures.values():
             picture.release()
         self._pictures.clear()
+
+
+def _shows_ours(renderer: Any) -> bool:
+    """Say whether an actor in a renderer is drawn by an engine of this package."""
+    props = renderer.GetViewProps()
+    actors = [props.GetItemAsObject(index) for index in range(props.GetNumberOfItems())]
+    return any(isinstance(actor.GetMapper(), EngineMapper) for actor in actors if hasattr(actor, "GetMapper"))
 
 
 def _wanted(picture: Picture) -> Any:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+import sys
+from contextlib import AbstractContextManager, nullcontext
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -50,7 +52,8 @@ class Printing:
             half as bright as white, without dithering. The file is a ``.png``, ``.tif`` or ``.bmp``.
         supersampling : int, default: 1
             Draw so many times larger along each side, and let each pixel be the mean: greys at
-            edges. With ``one_bit`` the mean decides.
+            edges. With ``one_bit`` the mean decides. By default ``plotter.picture.antialias`` says
+            how edges are smoothed.
         window_size : (int, int), optional
             Width and height of the window while the picture is taken.
         dpi : float, optional
@@ -87,9 +90,9 @@ class Printing:
         if dpi is not None and not (_is_number(dpi) and dpi > 0.0):
             raise ValueError(f"dpi is {dpi!r}; give pixels per inch, a number above 0")
         target = _target(filename, one_bit)
-        image: npt.NDArray[Any] = _flat(
-            _averaged(_taken(self._plotter, scale * supersampling, window_size), supersampling)
-        )
+        with _sampled_once(self._plotter) if supersampling > 1 else nullcontext():
+            taken = _taken(self._plotter, scale * supersampling, window_size)
+        image: npt.NDArray[Any] = _flat(_averaged(taken, supersampling))
         if one_bit:
             image = _brightness(image) >= _HALF
         if target is not None:
@@ -98,6 +101,14 @@ class Printing:
             written: dict[str, Any] = {} if dpi is None else {"dpi": (float(dpi), float(dpi))}
             Image.fromarray(image).save(target, format="PNG" if isinstance(target, BytesIO) else None, **written)
         return image if return_img else None
+
+
+def _sampled_once(plotter: Any) -> AbstractContextManager[None]:
+    """Return what keeps a plotter's pictures from being refined meanwhile."""
+    if "pvfiblets.plotting.picture_component" not in sys.modules:
+        return nullcontext()
+    kept: AbstractContextManager[None] = plotter.picture.sampled_once()
+    return kept
 
 
 def _taken(plotter: Any, scale: int, window_size: tuple[int, int] | None) -> npt.NDArray[np.uint8]:

@@ -127,6 +127,7 @@ class Window:
         from pvfiblets.mappers.windows import borrowed_context
 
         self.plotter = pv.Plotter(off_screen=True, window_size=list(size))
+        self.plotter.picture.antialias = "off"
         self.actor: Any = self.plotter.add_fiblets(fiblets)
         self.plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         self.plotter.camera.zoom(1.4)

@@ -24,6 +24,7 @@ MODULES = {
     "volumes": "pvfiblets.report.volumes",
     "halos": "pvfiblets.report.halos",
     "features": "pvfiblets.report.features",
+    "antialias": "pvfiblets.report.antialias",
     "stability": "pvfiblets.report.stability.study",
 }
 

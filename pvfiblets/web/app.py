@@ -59,6 +59,8 @@ class Explorer(TrameApp):
         self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640))
         self.plotter.set_background("black")
         self.plotter.enable_trackball_style()
+        if options.antialias is not None:
+            self.plotter.picture.antialias = options.antialias
         given = [*options.files, *options.volume, *options.mesh]
         self.scene = Scene(self.plotter, self.confined.root, allowed=[Path(path) for path in given])
         self.history = History(self.scene)

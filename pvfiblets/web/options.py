@@ -43,6 +43,8 @@ class Options:
         The greatest size of an uploaded file, in bytes.
     codec : str
         How pictures travel: 'jpeg', 'png' or 'webp'.
+    antialias : str, int or None
+        As of ``plotter.picture``; None for the default.
     memory : int or None
         Bytes that a session may have; ``None``: no limit.
     origins : list of str
@@ -66,6 +68,7 @@ class Options:
     timeout: float = 300.0
     upload: int = 2048 * MEBIBYTE
     codec: str = "jpeg"
+    antialias: str | int | None = None
     memory: int | None = None
     origins: list[str] = field(default_factory=list)
     connections: int = 1000

@@ -3,7 +3,8 @@
 Nothing is drawn and nothing is sent while nothing changes. While the pointer drags, frames are coded at a low quality,
 and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
 fewer pixels meanwhile, which the browser enlarges. As soon as the pointer rests, the whole picture comes at full
-quality; where it had all its pixels, without drawing again.
+quality; where it had all its pixels, without drawing again. If nothing happens then, the samples of the refined picture
+(``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
 SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
 REDUCED = 0.5  # of the width and the height of these
+HEARD = 0.002  # seconds between samples, in which events are heard
 BRISK = 0.25 * SLOW  # of a reduced frame; if less, all pixels can be drawn
 
 
@@ -99,6 +101,7 @@ class PictureStream:
         self._grab.ReadFrontBufferOff()
         self._grab.ShouldRerenderOff()
         self._grab.SetInputBufferTypeToRGB()
+        plotter.picture.pace_by_hand()
         plotter.show(auto_close=False, interactive=False)  # until then plotter.render() does nothing
         plotter.iren.interactor.EnableRenderOff()  # frames are drawn here, not by every event
 
@@ -199,8 +202,11 @@ class PictureStream:
         return time.monotonic() - self._moved < REST
 
     def picture(self) -> bytes:
-        """Return the view as PNG, drawn now."""
-        return encode(self._draw(), "png", 100)
+        """Return the view as PNG, drawn now and finished."""
+        self._draw()
+        while self._plotter.picture.refine():
+            pass
+        return encode(self._read(), "png", 100)
 
     @property
     def milliseconds(self) -> float | None:
@@ -239,7 +245,25 @@ class PictureStream:
                     await self._send(pixels, self.still_quality)
             if moving:
                 self._moving_at = self._next()
+            if not self._wanted.is_set() and self._drawn_at == 1.0:
+                await self._refine()
             await asyncio.sleep(max(0.0, FASTEST - (time.monotonic() - started)))
+
+    async def _refine(self) -> None:
+        """Draw the samples of the picture at rest and send it, unless something happens meanwhile."""
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._wanted.wait(), REST)
+        picture = self._plotter.picture
+        before = picture.samples
+        try:
+            while not self._wanted.is_set() and picture.refine():
+                await asyncio.sleep(HEARD)
+        except Exception as error:
+            logger.exception("refining failed")
+            self._failed(error)
+            return
+        if not self._wanted.is_set() and picture.samples != before:
+            await self._send(self._read(), self.still_quality)
 
     async def _rests(self) -> bool:
         """Wait until the camera is at rest; ``False`` as soon as another frame is wanted."""
@@ -286,19 +310,24 @@ class PictureStream:
             )
 
     def _draw(self, share: float = 1.0) -> NDArray[np.uint8]:
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-
         if share != self._drawn_at:
             self._resize(share)
         started = time.perf_counter()
         self._plotter.render()
+        pixels = self._read()
+        self.frames += 1
+        self.times.append(time.perf_counter() - started)
+        return pixels
+
+    def _read(self) -> NDArray[np.uint8]:
+        """Return the picture that has been drawn."""
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+
         self._grab.Modified()
         self._grab.Update()
         image = self._grab.GetOutput()
         width, height, _ = image.GetDimensions()
         pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)
-        self.frames += 1
-        self.times.append(time.perf_counter() - started)
         return np.ascontiguousarray(pixels[::-1, :, :3])
 
     async def _send(self, pixels: NDArray[np.uint8], quality: int) -> None:

@@ -24,6 +24,10 @@
 #include "halos/varyings.glsl"
 
 layout(location = 0) out uvec2 shown;
+#if FEATURE_EDGES
+#include "frame/edges.glsl"
+layout(location = 1) out uint edges;
+#endif
 
 float displacement(float x) {
 #if FEATURE_HALO_BENT
@@ -77,6 +81,12 @@ void main() {
     if (!(r <= m)) discard;
     float edge = share * m;
     bool line = r <= edge;
+#if FEATURE_EDGES
+    // A line lies between its edges, a halo between the line's and its own.
+    float pixels = reach.y * over_w, away = length(from_start);
+    vec2 outwards = away > 1e-4 ? from_start / away : vec2(1.0, 0.0);
+    edges = packed_edges(outwards, ((line ? edge : m) - r) * pixels, (line ? 2.0 * edge : m - edge) * pixels, 0u);
+#endif
     float d = line ? 0.0 : halo_displacement * displacement(r);
     float back = d * (halo_depth_per_mm + halo_depth_swing / (w * (w + halo_w_per_mm * d)));
     // A halo beyond the far plane is there. Of what is equally deep lines lie before halos, and segments before the ends of

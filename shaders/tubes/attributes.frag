@@ -14,6 +14,10 @@
 #include "tubes/ray.glsl"
 #include "codec/layout.glsl"
 #include "frame/tangent.glsl"
+#if FEATURE_EDGES
+#include "frame/pixel_derivative.glsl"
+#include "frame/edges.glsl"
+#endif
 
 uniform usampler2D hits;
 #if FEATURE_TUBE_VALUES
@@ -30,6 +34,11 @@ layout(location = 3) out vec2 out_position;
 layout(location = 4) out uint out_normal;
 #if FEATURE_TUBE_COLOURS
 layout(location = 5) out vec4 out_colour;
+#endif
+#if FEATURE_EDGES && FEATURE_TUBE_COLOURS
+layout(location = 6) out uint out_edges;
+#elif FEATURE_EDGES
+layout(location = 5) out uint out_edges;
 #endif
 
 float inside(vec4 p0, vec4 p1, vec4 p2, vec3 at, float t) {
@@ -99,7 +108,19 @@ void main() {
         float r = length(out_of);
         if (r > 0.0) normal = out_of / r;
         if (kind == 2u) normal = -normal;                          // the wall from inside
+#if FEATURE_EDGES
+        // The silhouette is where the ray passes the axis as far away as the sphere is wide.
+        float passed = length(beside);
+        vec3 outwards = passed > 1e-4 * p.w ? beside / passed : normalize(tube_ray_x);
+        vec2 way = vec2(dot(window_gradient(0), outwards), dot(window_gradient(1), outwards))
+                 - gl_FragCoord.xy * dot(window_gradient(3), outwards);
+        float pixels = length(way), per_size = pixels * s.size / max(ray.depth.y + l * ray.rise.y, 1e-30);
+        out_edges = packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (p.w - passed) * per_size, 2.0 * p.w * per_size, 0u);
+#endif
     }
+#if FEATURE_EDGES
+    else out_edges = packed_edges(vec2(1.0, 0.0), 4.0, 8.0, 0u);      // within a cut
+#endif
     out_depth = key_along(ray, s, seen, l);
     out_owner = hit.x;
     out_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));

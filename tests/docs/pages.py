@@ -56,6 +56,14 @@ pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
     "docs/reference/commands.md": BRAIN + """
 pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
 """,
+    "docs/density.md": BRAIN + """
+import nibabel, numpy as np
+pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
+pvfiblets.compress_file("brain.trx", "brain.fiblets")
+affine = np.array([[6.0, 1, 0, -80], [-1, 6, 0, -90], [0, 0, 6, -50], [0, 0, 0, 1]])
+nibabel.save(nibabel.Nifti1Image(np.zeros((28, 32, 24), np.int16), affine), "T1.nii.gz")
+np.savetxt("sift2.txt", np.linspace(0, 2, 400))
+""",
     "docs/effects.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",

@@ -250,6 +250,15 @@ CHANGED = {
         buffers="picture",
         modules="plotting.picture_component",
     ),
+    "picture: refined": What(
+        ran="effects/picture/copy.frag, effects/picture/mean.frag",
+        features="PICTURE_SAMPLES",
+        buffers="refinement",
+        modules="plotting.picture_component",
+    ),
+    "picture: refined, moving": What(
+        modules="plotting.picture_component",
+    ),
     "picture: tone": What(
         ran="effects/picture/copy.frag, effects/picture/tone.frag",
         features="PICTURE_SAMPLES, TONE_ACES",

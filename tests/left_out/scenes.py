@@ -196,6 +196,8 @@ SCENES = {
     "pipeline: geometry": made("brain", pipeline="geometry"),
     "pipeline: tessellation": made("brain", pipeline="tessellation"),
     "picture: depth of field": set_picture("depth_of_field", True),
+    "picture: refined": set_picture("antialias", 4),
+    "picture: refined, moving": set_picture("antialias", 4),
     "picture: tone": set_picture("tone", True),
     "spline tubes": made("tubes"),
     "spline tubes: values": made("tubes", scalars="flow"),
@@ -235,6 +237,14 @@ def vtk_plane(origin):
     return plane
 
 
+def frame(plotter, name: str) -> None:
+    """Draw a frame of a moving camera; of what is done at rest, look at the picture."""
+    plotter.camera.azimuth += 1.0
+    plotter.render()
+    if name == "picture: refined":
+        plotter.screenshot(None)
+
+
 def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
     """Draw a scene and say what it is made of."""
     sys.path.insert(0, str(Path(__file__).parent))
@@ -248,11 +258,9 @@ def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
     for _ in steps:
         pass
     for _ in range(3):
-        plotter.camera.azimuth += 1.0
-        plotter.render()
+        frame(plotter, name)
     watch.forget()
-    plotter.camera.azimuth += 1.0
-    plotter.render()
+    frame(plotter, name)
     loaded = set(sys.modules) - before - {"watch"}
     found = {
         "modules": sorted(name for name in loaded if name.startswith("pvfiblets")),

@@ -224,7 +224,7 @@ def test_errors_of_a_draw_are_raised_by_what_rendered(plotter, monkeypatch):
     plotter.add_mesh(pv.Sphere())
     plotter.picture.gamma = 2.0
     plotter.show(auto_close=False)
-    monkeypatch.setattr("pvfiblets.mappers.picture._COLOUR", 0x8CE7)
+    monkeypatch.setattr("pvfiblets.mappers.picture.COLOUR", 0x8CE7)
     with pytest.raises(RuntimeError, match="draw into textures"):
         plotter.render()
 

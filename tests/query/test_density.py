@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.codec.jit import compilation_noticed
 from pvfiblets.query import density as room
 from pvfiblets.query import density_sources, voxel_grid
 from pvfiblets.query.density_map import DensityMap
@@ -436,15 +435,18 @@ def test_damaged_images_are_told(tmp_path):
         pf.density(LINES, like=path)
 
 
-def test_long_compilation_is_told_once(caplog, monkeypatch):
+def test_compilation_is_told_and_waiting_is_not(caplog, monkeypatch):
     from pvfiblets.codec import jit
 
-    monkeypatch.setattr(jit, "NOTICED", 0.05)
-    with caplog.at_level(logging.WARNING), compilation_noticed("the kernels"):
-        pass
+    monkeypatch.setattr(jit, "NOTICED", 0.02)
+    with caplog.at_level(logging.WARNING), jit.compilation_noticed("the kernels"):
+        time.sleep(0.2)
     assert not caplog.records
-    with caplog.at_level(logging.WARNING), compilation_noticed("the kernels"):
-        time.sleep(0.3)
+    monkeypatch.setattr(jit._KeyedBySources, "load_overload", lambda *_: None)  # nothing was ever compiled
+    monkeypatch.setattr(jit._KeyedBySources, "save_overload", lambda *_: None)
+    with caplog.at_level(logging.WARNING), jit.compilation_noticed("the kernels"):
+        assert jit.kernel(lambda x: x + 1)(2) == 3
+        time.sleep(0.2)
     assert [record.getMessage() for record in caplog.records] == [
         "compiling the kernels for this machine; this happens once, and takes up to a minute"
     ]

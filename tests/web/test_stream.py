@@ -197,3 +197,99 @@ def test_fewer_pixels_zoom_as_far_as_fingers_do(plotter):
         stream._draw(share)
     assert plotter.camera.distance == pytest.approx(before / 0.6, rel=0.03)  # an end moves nothing
     assert np.linalg.norm(np.array(plotter.camera.focal_point)) < 0.01 * before
+
+
+def rest(stream, streamer):
+    """Ask for one picture, and wait as long as a finished one takes."""
+
+    async def run():
+        stream.set_streamer(streamer)
+        stream.request()
+        async with asyncio.timeout(30):
+            while not streamer.sizes:
+                await asyncio.sleep(0.002)
+            await asyncio.sleep(2 * REST)
+            while stream._plotter.picture._unfinished()[0]:
+                await asyncio.sleep(0.01)
+        await asyncio.sleep(2 * REST)
+        await stream.close()
+
+    asyncio.run(run())
+
+
+@pytest.fixture
+def refined(plotter, monkeypatch):
+    """A plotter with fiblets whose default is that of users, and a list that grows with its frames."""
+    monkeypatch.delenv("PVFIBLETS_ANTIALIAS")
+    plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
+    frames = []
+    plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(1))
+    return plotter, frames
+
+
+def test_at_rest_the_refined_picture_is_sent_and_nothing_after_it(refined):
+    plotter, frames = refined
+    stream, streamer = PictureStream(plotter, "view"), Streamer()
+    sent = []
+    streamer.push_content = lambda name, meta, content: (sent.append(content), streamer.sizes.append(meta))
+    plotter.camera.Azimuth(10.0)
+    frames.clear()
+    rest(stream, streamer)
+    assert stream.sent == 2
+    assert stream.frames == 1
+    assert len(frames) == 17
+    first, last = (np.asarray(Image.open(io.BytesIO(content)).convert("L")).astype(int) for content in sent)
+    assert plotter.picture.samples == 16
+    assert np.abs(np.diff(last)).max() < np.abs(np.diff(first)).max()  # no line of one pixel any more
+
+
+def test_an_event_stops_refining_and_it_begins_anew(refined):
+    plotter, _ = refined
+    stream, streamer = PictureStream(plotter, "view"), Streamer()
+    refine, steps = plotter.picture.refine, []
+
+    def once():
+        steps.append(plotter.picture.samples)
+        if len(steps) == 5:
+            plotter.camera.Azimuth(10.0)
+            stream.request()
+            return True
+        return refine()
+
+    stream._plotter = Stand(plotter, once)
+    plotter.camera.Azimuth(10.0)
+    rest(stream, streamer)
+    assert steps[:6] == [1, 1, 2, 3, 4, 1]
+    assert stream.frames == 2
+    assert stream.sent == 3
+    assert plotter.picture.samples == 16
+
+
+class Stand:
+    """A plotter of which one method is another's."""
+
+    def __init__(self, plotter, refine):
+        self._plotter, self._refine = plotter, refine
+
+    def __getattr__(self, name):
+        return getattr(self._plotter, name)
+
+    @property
+    def picture(self):
+        return Picture(self._plotter.picture, self._refine)
+
+
+class Picture:
+    def __init__(self, picture, refine):
+        self._picture, self.refine = picture, refine
+
+    def __getattr__(self, name):
+        return getattr(self._picture, name)
+
+
+def test_the_picture_that_is_saved_is_finished(refined):
+    plotter, _ = refined
+    stream = PictureStream(plotter, "view")
+    saved = np.asarray(Image.open(io.BytesIO(stream.picture())))
+    assert plotter.picture.samples == 16
+    assert np.array_equal(saved[..., :3], np.asarray(plotter.screenshot(None)))

@@ -6,47 +6,18 @@ made of are textures of a framebuffer that is not the engine's, known by their O
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
-
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import FIRST_UNIT
-from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
+from .picture_passes import Attachment, PicturePasses, bytes_of
 from .projection import Projection
 from .tone import Tone
 
 __all__ = ["Attachment", "PictureEffects"]
 
-_BYTES = {"f1": 1, "f4": 4}
-
-
-@dataclass(frozen=True)
-class Attachment:
-    """A texture of somebody else's framebuffer.
-
-    Attributes
-    ----------
-    name : int
-        OpenGL's.
-    samples : int
-        Per pixel; 0 for a plain texture.
-    floats : bool
-        Whether its colours are floats, not bytes.
-    """
-
-    name: int
-    samples: int
-    floats: bool = False
-
-
-class PictureEffects:
+class PictureEffects(PicturePasses):
     """What changes pictures in one context.
 
     Parameters
@@ -56,11 +27,7 @@ class PictureEffects:
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
-        self._gl = GLExtras(ctx)
-        self._programs = Programs(ctx, {"steps": float(STEPS), "tile": TILE})
-        self._textures: dict[str, moderngl.Texture] = {}
-        self._framebuffers: dict[tuple[str, ...], moderngl.Framebuffer] = {}
+        super().__init__(ctx, {"steps": float(STEPS), "tile": TILE})
         self._areas: tuple[float, moderngl.Texture] | None = None
         self._corner = 0, 0
 
@@ -184,34 +151,6 @@ class PictureEffects:
         self._pass("reach", self._framebuffer(("reaches",)), {"tiles": tiles, "lights": lights}, around)
         return {"colours": colours, "blurs": blurs, "reaches": reaches}
 
-    # Textures, programs, state
-
-    def _plain_state(self) -> Any:
-        """Return what keeps the framebuffers that are bound; what is drawn meanwhile is neither mixed nor tested."""
-        self._ctx.scissor = None
-        self._ctx.enable_only(moderngl.NOTHING)
-        return self._gl.framebuffers_kept()
-
-    def _outside(self, attachment: Attachment, components: int, size: tuple[int, int] = (1, 1)) -> moderngl.Texture:
-        """Return somebody else's texture as one of moderngl's, which never deletes it."""
-        dtype = "f4" if attachment.floats else "f1"
-        return self._ctx.external_texture(attachment.name, size, components, attachment.samples, dtype)
-
-    def _texture(self, name: str, size: tuple[int, int], components: int, dtype: str) -> moderngl.Texture:
-        """Return a texture, made anew for another size or kind."""
-        old = self._textures.get(name)
-        if old is not None and (old.size, old.dtype) == (size, dtype):
-            return old
-        if old is not None:
-            self._drop(name)
-        try:
-            texture = self._ctx.texture(size, components, dtype=dtype)
-        except moderngl.Error as error:
-            raise EngineError(f"no memory for an effect on a picture of {size[0]} x {size[1]} pixels") from error
-        texture.filter = moderngl.NEAREST, moderngl.NEAREST
-        self._textures[name] = texture
-        return texture
-
     def _forget_depths(self) -> None:
         """Give back what only depth of field needs."""
         for name in set(self._textures) - {"colours"}:
@@ -219,18 +158,6 @@ class PictureEffects:
         if self._areas is not None:
             self._areas[1].release()
             self._areas = None
-
-    def _drop(self, name: str) -> None:
-        for names in [names for names in self._framebuffers if name in names]:
-            self._framebuffers.pop(names).release()
-        self._textures.pop(name).release()
-
-    def _framebuffer(self, names: tuple[str, ...]) -> moderngl.Framebuffer:
-        """Return what draws into textures."""
-        if names not in self._framebuffers:
-            with self._gl.framebuffers_kept():
-                self._framebuffers[names] = self._ctx.framebuffer([self._textures[name] for name in names])
-        return self._framebuffers[names]
 
     def _disc_areas(self, widest: float) -> moderngl.Texture:
         if self._areas is None or self._areas[0] != widest:
@@ -242,35 +169,15 @@ class PictureEffects:
             self._areas = widest, texture
         return self._areas[1]
 
-    def _pass(
-        self,
-        name: str,
-        target: moderngl.Framebuffer,
-        textures: Mapping[str, Any],
-        uniforms: Mapping[str, Any],
-        features: Iterable[str] = (),
-    ) -> None:
-        """Run a fragment stage of ``shaders/effects/picture`` on every pixel of a target's viewport."""
-        program, array = self._programs.screen(f"effects/picture/{name}.frag", features)
-        for unit, (sampler, texture) in enumerate(textures.items(), start=FIRST_UNIT):
-            if sampler in program:
-                texture.use(unit)
-                program[sampler] = unit
-        for uniform, value in uniforms.items():
-            if uniform in program:
-                program[uniform] = value
-        target.use()
-        array.render(moderngl.TRIANGLES, vertices=3)
-
     @property
     def nbytes(self) -> int:
         """Bytes of textures on the GPU."""
-        kept = [*self._textures.values(), *([self._areas[1]] if self._areas else [])]
-        return sum(t.width * t.height * t.components * _BYTES[t.dtype] for t in kept)
+        if self._areas is None:
+            return super().nbytes
+        areas = self._areas[1]
+        return super().nbytes + areas.width * areas.height * bytes_of(areas)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         self._forget_depths()
-        for name in list(self._textures):
-            self._drop(name)
-        self._programs.release()
+        super().release()

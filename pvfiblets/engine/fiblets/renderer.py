@@ -128,6 +128,7 @@ class FibletRenderer(Drawable[FibletStyle]):
         target = self._fitting("gbuffer", view.size, lambda: GBuffer(self._ctx, view.size))
         try:
             target.want_relief(self._ctx, style.relief)
+            target.want_edges(self._ctx, style.edges)
         except EngineError:
             self._drop_target("gbuffer")  # its textures are given back
             raise
@@ -222,6 +223,7 @@ class FibletRenderer(Drawable[FibletStyle]):
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
             across=("CROSS_LINE",) if style.relief is not None else (),
+            edges=("EDGES",) if style.edges else (),
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:

@@ -92,6 +92,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     STYLE = HaloDrawStyle
     SAMPLERS = HALOS
     RELIEF = "ink"
+    EDGES = "hits"
 
     def __init__(
         self, ctx: moderngl.Context, drawn: HaloLines | HaloPoints, *, culling: str | None = "two-phase"
@@ -121,7 +122,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
         vertices.show_mask(look.n_tapered, look.t_tapered)
-        target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS")
+        target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
         planes, beside = self._blocks.write(view, look, self._n)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
@@ -130,6 +131,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             "HALO_BENT": look.displacement != "linear",
             "HALO_CUT": (beside or planes) and not self._kind,
             "CLIP_PLANES": planes,
+            "EDGES": style.edges,
         }
         features = [*self._kind, *(name for name, on in wanted.items() if on)]
         vertices.bind()

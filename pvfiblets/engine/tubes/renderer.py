@@ -102,7 +102,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
 
     def _draw(self, view: View, style: TubeStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         reads = self._nodes.show(self._attribute(style))
-        target = self._hit_target(view.size, coloured=reads == "TUBE_COLOURS")
+        target = self._hit_target(view.size, coloured=reads == "TUBE_COLOURS", edges=style.edges)
         cut = self._blocks.write(
             view,
             reach=self._inside.reach,
@@ -123,7 +123,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             shown=target.buffer.owner,
             listing=self._listing,
         )
-        features = [*common, *([reads] if reads else [])]
+        features = [*common, *([reads] if reads else []), *(["EDGES"] if style.edges else [])]
         hits = [("hits", target.hits, TUBES["hits"])]
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer

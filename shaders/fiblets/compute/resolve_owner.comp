@@ -23,6 +23,7 @@ layout(r32ui, binding = {{ image_owner }}) coherent uniform uimage2D owner_image
 layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;
 layout(rg32f, binding = {{ image_position }}) writeonly uniform image2D position_image;
 #include "fiblets/compute/store_across.glsl"
+#include "fiblets/compute/edges.glsl"
 
 uint owner;
 bool kept;
@@ -39,6 +40,7 @@ void plot(Fragment fragment, Segment segment) {
     imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
     imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
     store_relief(pixel, fragment.relief);
+    store_edges(pixel, segment);
 }
 
 void main() {

@@ -13,6 +13,12 @@
 
 #if FEATURE_TUBES
 #include "fiblets/segments/line_tube.glsl"
+#endif
+#if FEATURE_EDGES
+#include "fiblets/segments/edges.glsl"
+#endif
+
+#if FEATURE_TUBES
 #if FEATURE_CROSS_LINE
 #include "frame/tangent.glsl"
 #endif
@@ -30,6 +36,9 @@ void main() {
 #endif
 #if FEATURE_CROSS_LINE
     out_across = packed_direction(smooth_normal(hit, tangent_between(varying_tangents(), hit.t)));
+#endif
+#if FEATURE_EDGES
+    out_edges = tube_edges(body, c0, c1, gl_FragCoord.xy, hit);
 #endif
     shade(hit.t, 1.0, hit.z);
 }
@@ -62,6 +71,9 @@ void main() {
     precise float depth = varying_start.z + (varying_end.z - varying_start.z) * s;
 #if FEATURE_CROSS_LINE
     out_across = clamp(dot(vec2(-run.y, run.x), centre) / (half_line_width * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
+#endif
+#if FEATURE_EDGES
+    out_edges = capsule_edges(centre, run, half_line_width);
 #endif
     shade(s, varying_start.w / varying_end.w, depth);
 }

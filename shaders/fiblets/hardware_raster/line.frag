@@ -7,10 +7,18 @@
 #endif
 
 #include "fiblets/hardware_raster/shade.glsl"
+#if FEATURE_EDGES
+#include "fiblets/segments/thin_line_rule.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/edges.glsl"
+#endif
 
 void main() {
     ivec2 p = ivec2(varying_cells.x & 0xFFFFu, varying_cells.x >> 16u), q = ivec2(varying_cells.y & 0xFFFFu, varying_cells.y >> 16u);
     vec2 run = vec2(q - p), at = floor(gl_FragCoord.xy) - vec2(p);
+#if FEATURE_EDGES
+    out_edges = thin_edges(p, q, at, unpacked_parts(varying_parts), (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u);
+#endif
     if (at == run) {  // drawn only where the line ends
         shade(1.0, varying_ratio, varying_depths.y);
         return;

@@ -29,6 +29,12 @@ layout(location = 4) out uint out_across;
 layout(location = 4) out float out_across;
 #endif
 
+#if FEATURE_EDGES && FEATURE_CROSS_LINE
+layout(location = 5) out uint out_edges;
+#elif FEATURE_EDGES
+layout(location = 4) out uint out_edges;
+#endif
+
 #if FEATURE_SECOND_ROUND
 uniform usampler2D first_round;  // depth key and owner
 #endif

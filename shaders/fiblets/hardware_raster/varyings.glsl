@@ -18,6 +18,7 @@
 //   varying_part             1            1         0     where segments may be cut
 //   varying_from, _to        0            6         6     of wide lines, at planes of the caller's
 //   varying_values           2            2         2     with some per-point values
+//   varying_parts            1            0         0     where edges are asked for
 
 #ifndef EACH
 #define EACH
@@ -42,6 +43,9 @@ VARYING float varying_ratio EACH;    // clip w at its start over that at its end
 #endif
 #if FEATURE_CLIPPING
 VARYING uint varying_part EACH;      // which part of the segment it is: start and end in 65535ths, rounded inwards
+#endif
+#if FEATURE_EDGES && !FEATURE_WIDE_LINES
+VARYING uint varying_parts EACH;     // where in their pixels its ends lie (fiblets/segments/edges.glsl)
 #endif
 #if FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
 VARYING vec3 varying_from EACH;      // the part's ends, local mm

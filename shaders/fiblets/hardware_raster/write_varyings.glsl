@@ -3,6 +3,10 @@
 
 #include "fiblets/segments/clipped_segment.glsl"
 #include "fiblets/segments/joint.glsl"
+#if FEATURE_EDGES && !FEATURE_WIDE_LINES
+#include "fiblets/hardware_raster/thin.glsl"
+#include "fiblets/segments/edges.glsl"
+#endif
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
@@ -38,6 +42,9 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
     TO(varying_cells) = uvec2(p.x | (p.y << 16u), q.x | (q.y << 16u));
     TO(varying_depths) = vec2(piece.a.z, piece.b.z);
     TO(varying_ratio) = piece.a.w / piece.b.w;
+#if FEATURE_EDGES
+    TO(varying_parts) = packed_parts(piece);
+#endif
 #endif
 #if FEATURE_CLIPPING
     TO(varying_part) = uint(ceil(65535.0 * piece.t0)) | (uint(65535.0 * piece.t1) << 16u);

@@ -23,13 +23,15 @@
 #include "frame/project.glsl"
 
 // The pixel that holds a point of the window; one on the right or upper edge belongs to the last pixel.
-vec2 pixel_of(vec4 window) {
+vec2 in_picture(vec4 window) {
 #if FEATURE_CLIPPING
-    return floor(clamp(window.xy, vec2(0.0), viewport - 0.01));
+    return clamp(window.xy, vec2(0.0), viewport - 0.01);
 #else
-    return floor(window.xy);
+    return window.xy;
 #endif
 }
+
+vec2 pixel_of(vec4 window) { return floor(in_picture(window)); }
 
 struct Cells {
     ivec2 first;

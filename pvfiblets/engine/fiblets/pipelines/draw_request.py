@@ -49,8 +49,8 @@ class DrawRequest:
         Tests what earlier depth hides.
     kept : Visibility
         The caller's filter and region.
-    tubes, across : tuple of str
-        ``TUBES`` and ``CROSS_LINE``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
+    tubes, across, edges : tuple of str
+        ``TUBES``, ``CROSS_LINE`` and ``EDGES``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
     peel : Peel, optional
         Layers behind which the picture begins.
     """
@@ -69,6 +69,7 @@ class DrawRequest:
     kept: Visibility
     tubes: tuple[str, ...] = ()
     across: tuple[str, ...] = ()
+    edges: tuple[str, ...] = ()
     peel: Peel | None = None
 
     @property
@@ -76,6 +77,11 @@ class DrawRequest:
         """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
         wide = ("WIDE_LINES",) if self.line_width > 1.0 or self.tubes else ()
         return (*wide, *self.tubes, *self.across)
+
+    @property
+    def extra(self) -> tuple[str, ...]:
+        """What else drawing programs write; nothing of layers behind others."""
+        return () if self.peel is not None else self.edges
 
     @property
     def peeling(self) -> tuple[str, ...]:
@@ -90,7 +96,7 @@ class DrawRequest:
     @property
     def classes(self) -> list[tuple[int, tuple[str, ...]]]:
         """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
-        common = (*self.decoding, *self.values, *self.wide, *self.peeling)
+        common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling)
         classes = [(0, common)]
         if self.clipping:
             classes.append((1, (*common, *self.detail, "CLIPPING")))

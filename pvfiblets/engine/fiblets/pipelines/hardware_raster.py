@@ -66,8 +66,8 @@ class RasterTarget:
     Attributes
     ----------
     target : GBuffer
-    across : moderngl.Texture or None
-        As the G-buffer had it when this was made.
+    across, edges : moderngl.Texture or None
+        As the G-buffer had them when this was made.
     first, second : moderngl.Framebuffer
         For the two rounds; the same without two rounds.
     kept : moderngl.Texture or None
@@ -79,10 +79,9 @@ class RasterTarget:
         self._gl = gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
         self.kept: moderngl.Texture | None = None
-        self.across = target.across
+        self.across, self.edges = target.across, target.edges
         colours = [target.depth, target.owner, target.ids, target.position]
-        if target.across is not None:
-            colours.append(target.across)
+        colours += [texture for texture in (target.across, target.edges) if texture is not None]
         try:
             self.depth = self._keep(depth_texture(ctx, gl, target.size))
             self.first = self.second = self._keep(ctx.framebuffer(colours, self.depth))
@@ -267,6 +266,7 @@ class RasterPipeline(abc.ABC):
     def _attach(self, target: GBuffer, two_rounds: bool) -> RasterTarget:
         held = self._target
         same = held is not None and held.target is target and held.across is target.across
+        same = same and held is not None and held.edges is target.edges
         if held is None or not same or (held.kept is not None) != two_rounds:
             if held is not None:
                 held.release()
@@ -310,6 +310,7 @@ class RasterPipeline(abc.ABC):
             *request.decoding,
             *request.values,
             *request.wide,
+            *request.extra,
             *request.detail,
             *clipping,
             *request.planes,

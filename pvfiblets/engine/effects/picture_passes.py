@@ -1,0 +1,130 @@
+"""What is done to a picture that somebody else drew: passes over every pixel of textures of a framebuffer of theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+
+from ..bindings import FIRST_UNIT
+from ..errors import EngineError
+from ..moderngl_extras import GLExtras
+from ..shaders import Programs
+
+__all__ = ["Attachment", "PicturePasses", "bytes_of"]
+
+_BYTES = {"f1": 1, "f4": 4, "u4": 4}
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """A texture of somebody else's framebuffer.
+
+    Attributes
+    ----------
+    name : int
+        OpenGL's.
+    samples : int
+        Per pixel; 0 for a plain texture.
+    floats : bool
+        Whether its colours are floats, not bytes.
+    """
+
+    name: int
+    samples: int
+    floats: bool = False
+
+
+class PicturePasses:
+    """Programs, textures and framebuffers of passes over a picture.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Current, as for every method. Nothing is made on it until a picture is changed.
+    constants : mapping
+        Values of ``{{ name }}`` in the shaders.
+    """
+
+    def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
+        self._ctx = ctx
+        self._gl = GLExtras(ctx)
+        self._programs = Programs(ctx, constants)
+        self._textures: dict[str, moderngl.Texture] = {}
+        self._framebuffers: dict[tuple[str, ...], moderngl.Framebuffer] = {}
+
+    def _plain_state(self) -> Any:
+        """Return what keeps the framebuffers that are bound; what is drawn meanwhile is neither mixed nor tested."""
+        self._ctx.scissor = None
+        self._ctx.enable_only(moderngl.NOTHING)
+        return self._gl.framebuffers_kept()
+
+    def _outside(self, attachment: Attachment, components: int, size: tuple[int, int] = (1, 1)) -> moderngl.Texture:
+        """Return somebody else's texture as one of moderngl's, which never deletes it."""
+        dtype = "f4" if attachment.floats else "f1"
+        return self._ctx.external_texture(attachment.name, size, components, attachment.samples, dtype)
+
+    def _texture(self, name: str, size: tuple[int, int], components: int, dtype: str) -> moderngl.Texture:
+        """Return a texture, made anew for another size or kind."""
+        old = self._textures.get(name)
+        if old is not None and (old.size, old.dtype) == (size, dtype):
+            return old
+        if old is not None:
+            self._drop(name)
+        try:
+            texture = self._ctx.texture(size, components, dtype=dtype)
+        except moderngl.Error as error:
+            raise EngineError(f"no memory for an effect on a picture of {size[0]} x {size[1]} pixels") from error
+        texture.filter = moderngl.NEAREST, moderngl.NEAREST
+        self._textures[name] = texture
+        return texture
+
+    def _drop(self, name: str) -> None:
+        for names in [names for names in self._framebuffers if name in names]:
+            self._framebuffers.pop(names).release()
+        self._textures.pop(name).release()
+
+    def _framebuffer(self, names: tuple[str, ...]) -> moderngl.Framebuffer:
+        """Return what draws into textures."""
+        if names not in self._framebuffers:
+            with self._gl.framebuffers_kept():
+                self._framebuffers[names] = self._ctx.framebuffer([self._textures[name] for name in names])
+        return self._framebuffers[names]
+
+    def _pass(
+        self,
+        name: str,
+        target: moderngl.Framebuffer,
+        textures: Mapping[str, Any],
+        uniforms: Mapping[str, Any],
+        features: Iterable[str] = (),
+    ) -> None:
+        """Run a fragment stage of ``shaders/effects/picture`` on every pixel of a target's viewport."""
+        program, array = self._programs.screen(f"effects/picture/{name}.frag", features)
+        for unit, (sampler, texture) in enumerate(textures.items(), start=FIRST_UNIT):
+            if sampler in program:
+                texture.use(unit)
+                program[sampler] = unit
+        for uniform, value in uniforms.items():
+            if uniform in program:
+                program[uniform] = value
+        target.use()
+        array.render(moderngl.TRIANGLES, vertices=3)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of textures on the GPU."""
+        return sum(texture.width * texture.height * bytes_of(texture) for texture in self._textures.values())
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for name in list(self._textures):
+            self._drop(name)
+        self._programs.release()
+
+
+def bytes_of(texture: moderngl.Texture) -> int:
+    """Return bytes of a texel."""
+    return texture.components * _BYTES[texture.dtype]

@@ -1,0 +1,210 @@
+"""Progressive refinement: while nothing changes, a renderer's picture becomes the mean of many samples a pixel.
+
+Each sample is a picture of its own, whose camera's window is shifted by a part of a pixel
+(`pvfiblets.engine.effects.sample_positions`); so all that is drawn is sampled, VTK's own actors too, after all effects
+on the picture and before what lies over it. A frame is one of three:
+
+- *plain*: of the camera as it is. The first after each change, and all while the camera moves.
+- *sample*: of the shifted camera, added to those before. The first is asked for (`Refinement.due`); after it any frame
+  is one, until there are enough.
+- *mean*: of the camera as it is, in whose place the mean of the samples is shown.
+
+The last frame is of the camera as it is: the last sample, or a frame of the mean after it. So G-buffers and depths are
+in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
+
+A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Hashable, Iterator
+from enum import Enum, auto
+from typing import Any
+
+from pvfiblets.engine.effects.accumulation import Accumulation
+from pvfiblets.engine.effects.picture_passes import Attachment
+from pvfiblets.engine.effects.sample_positions import sample_positions
+from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, shift
+from pvfiblets.mappers.windows import Slot
+
+__all__ = ["SHOWN_FROM", "Refinement"]
+
+MIDDLE = (0.0, 0.0)
+
+SHOWN_FROM = 4
+"""Samples whose mean is better than one plain picture: where each frame is seen, that is shown until then."""
+
+_WHOLE, _TILE = "refinement", "refinement of a tile"
+
+
+class _Frame(Enum):
+    PLAIN = auto()
+    SAMPLE = auto()
+    MEAN = auto()
+    ADDED = auto()  # a sample of a tile, not shown
+
+
+class Refinement:
+    """The samples of one renderer's picture.
+
+    Parameters
+    ----------
+    samples : int
+        How many of a pixel.
+    seconds : float, optional
+        How long they may be drawn for; there are fewer if that is over.
+
+    Attributes
+    ----------
+    due : bool
+        Whether the next frame is to be the first sample, if nothing has changed.
+    seen : callable
+        Says whether somebody looks at each frame, not at the last only.
+    """
+
+    def __init__(self, samples: int, seconds: float | None = None) -> None:
+        self.positions = sample_positions(samples)
+        self.seconds = seconds
+        self.due = False
+        self.seen: Callable[[], bool] = lambda: False
+        self._frame = _Frame.PLAIN
+        self._name = _WHOLE
+        self._state: Hashable = None
+        self._left: list[tuple[float, float]] = []
+        self._taken = 0
+        self._spent = self._begun = 0.0
+        self._changed = True
+        self._exact = True
+        self._painted = False
+        self._back: Callable[[], None] | None = None
+
+    def same_as(self, other: Refinement) -> bool:
+        """Say whether another one makes the same pictures."""
+        return (self.positions, self.seconds) == (other.positions, other.seconds)
+
+    @property
+    def taken(self) -> int:
+        """Samples in the picture that was drawn last; 0 for a plain one."""
+        return 0 if self._frame is _Frame.PLAIN else self._taken
+
+    def unfinished(self, state: Hashable) -> bool:
+        """Say whether more frames are wanted of a state, of which one has been drawn."""
+        return state is not None and state == self._state and (bool(self._left) or not self._exact)
+
+    def forget(self) -> None:
+        """Begin anew with the next frame."""
+        self._state = None
+
+    # Steps of a frame
+
+    def start(self, renderer: Any, state: Hashable) -> None:
+        """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+        state : hashable
+            What the picture is made of; None if it changes from frame to frame.
+        """
+        due, self.due = self.due, False
+        self._name, self._painted, self._begun = _WHOLE, False, time.perf_counter()
+        self._changed = state is None or state != self._state
+        self._frame = _Frame.PLAIN
+        if self._changed:
+            self._taken, self._spent = 0, 0.0
+            # What changes whenever a sample is to be drawn never comes to rest.
+            self._left = [] if due or state is None else list(self.positions)
+            return
+        if self.seconds is not None and self._spent >= self.seconds and self._taken:
+            self._left = []
+        if self._left and (due or self._taken) and not exact_wanted(renderer):
+            self._frame = _Frame.SAMPLE
+            self._shift(renderer, self._left[0])
+        elif self._taken >= (SHOWN_FROM if self._left else 1):
+            self._frame = _Frame.MEAN
+
+    def other_tile_frames(self, renderer: Any) -> Iterator[None]:
+        """Yield for each sample of a tile but that which the renderer is about to draw, with the camera shifted."""
+        self._name, self._painted = _TILE, False
+        last = int(self.positions[-1] == MIDDLE)
+        for position in self.positions[: len(self.positions) - last]:
+            self._frame = _Frame.ADDED
+            self._shift(renderer, position)
+            try:
+                yield
+            finally:
+                self.put_back()
+        self._frame = _Frame.SAMPLE if last else _Frame.MEAN
+
+    def _shift(self, renderer: Any, position: tuple[float, float]) -> None:
+        width, height, x, y = [0], [0], [0], [0]
+        renderer.GetTiledSizeAndOrigin(width, height, x, y)
+        self._back = shift(renderer.GetActiveCamera(), (width[0], height[0]), position)
+
+    def put_back(self) -> None:
+        """Put the camera back: what lies over the picture is drawn where it belongs."""
+        back, self._back = self._back, None
+        if back is not None:
+            back()
+
+    @property
+    def plain(self) -> bool:
+        """Whether the frame is the picture, not one of many or behind their mean."""
+        return self._frame is _Frame.PLAIN
+
+    @property
+    def idle(self) -> bool:
+        """Whether the frame stays as it is drawn, and nothing of it is taken."""
+        return self._frame is _Frame.PLAIN and not (self._changed and self._left and self.seen())
+
+    def paint(self, ctx: Any, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]) -> None:
+        """Take the picture that has been drawn, and draw what is to be seen instead.
+
+        Parameters
+        ----------
+        ctx : moderngl.Context
+        slot : Slot
+            Keeps the sums.
+        colour : Attachment
+            What the picture was drawn into.
+        viewport : tuple of 4 ints
+        """
+        if self._name == _WHOLE and _TILE in slot.effects:
+            slot.drop_effect(_TILE)
+        if self._name not in slot.effects:
+            slot.effects[self._name] = Accumulation, Accumulation(ctx)
+        sums: Accumulation = slot.effects[self._name][1]
+        if self._frame is _Frame.PLAIN:
+            sums.keep(colour, viewport)
+            return
+        if self._frame is not _Frame.MEAN:
+            if not (self._painted if self._name == _TILE else self._taken):
+                sums.restart()
+            sums.add(colour, viewport)
+            self._painted = True
+        if self._frame is _Frame.SAMPLE and sums.kept and sums.samples < min(SHOWN_FROM, len(self.positions)):
+            sums.show_kept(colour, viewport)
+        elif self._frame is not _Frame.ADDED and sums.samples:  # none are left in a window that has been made anew
+            sums.show(colour, viewport)
+            sums.forget_kept()
+
+    def end(self, renderer: Any, state: Hashable) -> None:
+        """Note what has been drawn.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+        state : hashable
+            What the picture is made of, now that drawing may have changed it.
+        """
+        self.put_back()
+        self._exact = True
+        if self._frame is _Frame.SAMPLE and self._name == _WHOLE:
+            self._exact = self._left[0] == MIDDLE
+            # A sample that nothing came of will not come another time.
+            self._left = self._left[1:] if self._painted else []
+            self._taken += self._painted
+            self._spent += time.perf_counter() - self._begun
+        note_depths(renderer, exact=self._exact)
+        self._state = state

@@ -1,0 +1,75 @@
+"""What a renderer's picture is made of, as one value: as long as it stays the same, so does the picture.
+
+VTK counts changes (``GetMTime``), and draws data anew by that count alone; so what is changed without being counted is
+not in the next picture either. What lies over the picture, scalar bars and texts, is no part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from typing import Any
+
+__all__ = ["scene_state"]
+
+_SETTINGS = (
+    "GetAmbient", "GetAutomaticLightCreation", "GetBackground", "GetBackground2", "GetBackgroundAlpha", "GetDraw",
+    "GetErase", "GetGradientBackground", "GetLayer", "GetLightFollowCamera", "GetMaximumNumberOfPeels",
+    "GetOcclusionRatio", "GetPreserveColorBuffer", "GetPreserveDepthBuffer", "GetTexturedBackground",
+    "GetTwoSidedLighting", "GetUseDepthPeeling", "GetUseDepthPeelingForVolumes", "GetUseFXAA",
+    "GetUseHiddenLineRemoval", "GetUseImageBasedLighting", "GetUseOIT", "GetUseShadows", "GetUseSSAO", "GetViewport",
+)  # fmt: skip
+_PARTS = ("GetBackgroundTexture", "GetEnvironmentTexture", "GetPass", "GetRightBackgroundTexture", "GetSSAOKernelSize")
+_OVER = ("vtkActor2D", "vtkContextActor")
+"""Classes of what is drawn over the picture."""
+
+
+def scene_state(renderer: Any) -> Hashable:
+    """Return what a renderer would draw now; equal values mean equal pictures.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        In a window, with a camera that is not shifted (`pvfiblets.mappers.shifted_cameras`).
+    """
+    window = renderer.GetRenderWindow()
+    return (
+        tuple(window.GetSize()),
+        (window.GetMultiSamples(), window.GetDPI()),
+        _camera_state(renderer),
+        tuple(_of(renderer, name) for name in _SETTINGS),
+        tuple(_counted(_of(renderer, name)) for name in _PARTS),
+        tuple(_counted(light) for light in _items(renderer.GetLights())),
+        tuple(state for prop in _items(renderer.GetViewProps()) for state in _prop_states(prop)),
+    )
+
+
+def _camera_state(renderer: Any) -> Hashable:
+    """Return matrices: a camera's own count goes up when it is shifted and put back."""
+    camera = renderer.GetActiveCamera()
+    view = camera.GetModelViewTransformMatrix()
+    projection = camera.GetProjectionTransformMatrix(renderer.GetTiledAspectRatio(), -1.0, 1.0)
+    return tuple(matrix.GetElement(row, k) for matrix in (view, projection) for row in range(4) for k in range(4))
+
+
+def _prop_states(prop: Any) -> Iterator[Hashable]:
+    if any(prop.IsA(kind) for kind in _OVER):
+        return
+    yield prop.GetAddressAsString(""), prop.GetRedrawMTime()
+    parts = prop.GetParts() if hasattr(prop, "GetParts") else None
+    for part in () if parts is None else _items(parts):
+        yield from _prop_states(part)
+
+
+def _of(renderer: Any, name: str) -> Any:
+    """Return what a method says; None where this VTK has no such."""
+    method = getattr(renderer, name, None)
+    return None if method is None else method()
+
+
+def _counted(part: Any) -> Hashable:
+    return (part.GetAddressAsString(""), part.GetMTime()) if hasattr(part, "GetMTime") else part
+
+
+def _items(collection: Any) -> Iterator[Any]:
+    for index in range(collection.GetNumberOfItems()):
+        yield collection.GetItemAsObject(index)

@@ -1,0 +1,87 @@
+"""Cameras whose window is shifted for a moment: by a part of a pixel for a sample, by many to look beside a tile.
+
+What is drawn meanwhile is not what a user points at: a mapper does not remember it as its last picture, and who reads
+the depths of a window asks for them by `with_exact_depths`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+__all__ = ["exact_wanted", "is_shifted", "note_depths", "shift", "shifted", "with_exact_depths"]
+
+_cameras: set[str] = set()
+_renderers: set[str] = set()
+_exact: set[str] = set()
+
+
+def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callable[[], None]:
+    """Have a camera show what lies some pixels beside its window.
+
+    Parameters
+    ----------
+    camera : vtkCamera
+    size : tuple of 2 ints
+        Of the picture, or of the renderer's part of it, in those pixels.
+    by : tuple of 2 floats
+        To the right and up.
+
+    Returns
+    -------
+    callable
+        Puts the camera back; twice is harmless.
+    """
+    kept, address = camera.GetWindowCenter(), camera.GetAddressAsString("")
+    first = address not in _cameras
+    camera.SetWindowCenter(*(at + 2.0 * part / side for at, part, side in zip(kept, by, size, strict=True)))
+    if any(by):
+        _cameras.add(address)
+    left = [kept]
+
+    def back() -> None:
+        if left:
+            camera.SetWindowCenter(*left.pop())
+            if first:
+                _cameras.discard(address)
+
+    return back
+
+
+@contextmanager
+def shifted(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Iterator[None]:
+    """Do something with a camera that is shifted: see `shift`."""
+    back = shift(camera, size, by)
+    try:
+        yield
+    finally:
+        back()
+
+
+def is_shifted(camera: Any) -> bool:
+    """Say whether a camera is shifted now."""
+    return camera.GetAddressAsString("") in _cameras
+
+
+def note_depths(renderer: Any, *, exact: bool) -> None:
+    """Note whether the depths that a renderer has left in its window are those of its camera unshifted."""
+    (_renderers.discard if exact else _renderers.add)(renderer.GetAddressAsString(""))
+
+
+def with_exact_depths(window: Any) -> Any:
+    """Return a window once its depths are those of cameras unshifted: drawn again if they are not."""
+    found = window.GetRenderers()
+    shown = {found.GetItemAsObject(index).GetAddressAsString("") for index in range(found.GetNumberOfItems())}
+    if shown & _renderers:
+        _exact.update(shown)
+        try:
+            window.Render()
+        finally:
+            _exact.difference_update(shown)
+    return window
+
+
+def exact_wanted(renderer: Any) -> bool:
+    """Say whether a renderer is asked for depths of its camera unshifted."""
+    return renderer.GetAddressAsString("") in _exact

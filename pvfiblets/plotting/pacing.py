@@ -1,0 +1,146 @@
+"""When the samples of a resting picture are drawn: one at a time, between the events of whoever looks at it."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+__all__ = ["REST", "Pacer"]
+
+REST = 0.15
+"""Seconds without a frame after which a picture is at rest."""
+
+PAUSE = 1
+"""Milliseconds between samples, in which events of mouse and keys are heard."""
+
+EARLY = 0.002  # seconds that a timer may come before its time
+
+
+class Pacer:
+    """Has the pictures of a plotter refined while nothing happens.
+
+    A window with an event loop is asked for a timer of one shot after each frame: of `REST` after a plain one, of
+    `PAUSE` after a sample. A window whose interactor must not
+    render is a server's, such as a notebook's: there the steps are taken by the ``asyncio`` loop that is running, and
+    in the end the plotter renders once more, for those that send its pictures.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+    step : callable
+        Draws a sample; says whether another one is wanted.
+    wanted : callable
+        Says whether one is, and how many have been taken.
+
+    Attributes
+    ----------
+    by_hand : bool
+        Whether somebody else calls for the samples.
+    """
+
+    def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]) -> None:
+        self._plotter = weakref.proxy(plotter)
+        self._step, self._wanted = step, wanted
+        self.by_hand = False
+        self._timer: int | None = None
+        self._due = 0.0
+        self._tag: int | None = None
+        self._call: Any = None
+
+    @property
+    def seen(self) -> bool:
+        """Whether every frame is seen by somebody: that of a window on a screen."""
+        interactor = self._interactor()
+        window = None if interactor is None else interactor.GetRenderWindow()
+        return bool(window is not None and not window.GetOffScreenRendering() and interactor.GetInitialized())
+
+    def frame_drawn(self) -> None:
+        """Ask to be called again; a frame has been drawn, by ourselves or by others."""
+        interactor = self._interactor()
+        if self.by_hand or interactor is None:
+            return
+        wanted, taken = self._wanted()
+        if not wanted:
+            return
+        wait = PAUSE / 1000.0 if taken else REST
+        if not interactor.GetEnableRender():
+            self._ask_loop(wait)
+        elif self.seen:
+            self._ask_timer(interactor, wait)
+
+    def _interactor(self) -> Any:
+        return getattr(self._plotter.iren, "interactor", None)
+
+    # Timers of a window
+
+    def _ask_timer(self, interactor: Any, wait: float) -> None:
+        self._stop_timer(interactor)
+        if self._tag is None:
+            self._tag = interactor.AddObserver("TimerEvent", _weakly(self._heard))
+        self._due = time.monotonic() + wait
+        # PyVista calls what `add_timer_event` was given at every timer's event: its own are those to wait for.
+        theirs = getattr(self._plotter.iren, "_timer", None)
+        if theirs is None or theirs.step + 1 >= theirs.max_steps:
+            self._timer = interactor.CreateOneShotTimer(max(round(1000.0 * wait), 1))
+
+    def _stop_timer(self, interactor: Any) -> None:
+        timer, self._timer = self._timer, None
+        if timer is not None:  # of one shot or not: some toolkits repeat every timer until it is destroyed
+            interactor.DestroyTimer(timer)
+
+    def _heard(self) -> None:
+        interactor = self._interactor()
+        if interactor is None or not self._due or time.monotonic() < self._due - EARLY:
+            return
+        self._due = 0.0
+        self._stop_timer(interactor)
+        style = interactor.GetInteractorStyle()
+        if style is not None and hasattr(style, "GetState") and style.GetState() != 0:
+            return  # the mouse turns something: a frame will come of it
+        self._step()
+
+    # A server's loop
+
+    def _ask_loop(self, wait: float) -> None:
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:
+            return
+        self._stop_call()
+        self._call = loop.call_later(wait, _weakly(self._called))
+
+    def _stop_call(self) -> None:
+        call, self._call = self._call, None
+        if call is not None:
+            call.cancel()
+
+    def _called(self) -> None:
+        self._call = None
+        if self._wanted()[0] and not self._step():
+            self._plotter.render()
+
+    def release(self) -> None:
+        """Ask for nothing any more; twice is harmless."""
+        interactor = self._interactor()
+        self._due = 0.0
+        self._stop_call()
+        if interactor is not None:
+            self._stop_timer(interactor)
+            if self._tag is not None:
+                interactor.RemoveObserver(self._tag)
+        self._tag = None
+
+
+def _weakly(method: Callable[[], None]) -> Callable[..., None]:
+    """Return what calls a method as long as its object lives, whatever it is called with."""
+    reference = weakref.WeakMethod(method)
+
+    def call(*_: Any) -> None:
+        alive = reference()
+        if alive is not None:
+            alive()
+
+    return call

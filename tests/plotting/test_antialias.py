@@ -1,0 +1,572 @@
+"""Pictures at rest are the mean of many samples a pixel: of what, when, and what stays exact."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+
+from pvfiblets.antialias import VARIABLE
+from pvfiblets.engine.effects.sample_positions import sample_positions
+from pvfiblets.mappers import windows
+from pvfiblets.mappers.shifted_cameras import shifted
+
+SIZE = (150, 110)
+
+
+@pytest.fixture(autouse=True)
+def _real_default(monkeypatch):
+    monkeypatch.delenv(VARIABLE)
+
+
+def fill(plotter, **more):
+    """Show slanted lines, a mesh's slanted edges and something translucent, without light."""
+    t = np.linspace(0.0, 1.0, 20)[:, None]
+    lines = [np.array([-30.0, -20 + 5 * k, 0.0]) + t * np.array([60.0, 17 + k, 4.0]) for k in range(4)]
+    actor = plotter.add_fiblets(lines, color="yellow", lighting=False, line_width=2, **more)
+    plotter.add_mesh(pv.Cone(center=(0, -14, -9), height=30, radius=8), color="red", lighting=False)
+    plotter.add_mesh(pv.Disc(center=(9, 9, 5), inner=0, outer=11), color="blue", opacity=0.5, lighting=False)
+    plotter.camera_position = [(0, 0, 100), (0, 0, 0), (0, 1, 0)]
+    plotter.renderer.ResetCameraClippingRange()
+    return actor
+
+
+@pytest.fixture
+def scene():
+    """Return a plotter of such things, drawn once."""
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("black")
+    plotter.disable_anti_aliasing()
+    fill(plotter)
+    plotter.show(auto_close=False)
+    yield plotter
+    for context in windows._contexts.values():
+        context.window.MakeCurrent()
+        assert context.ctx.error == "GL_NO_ERROR"
+    plotter.close()
+    assert not any(context.alive for context in windows._contexts.values())
+
+
+def ours(plotter):
+    """Return the plotter's first actor of fiblets."""
+    return next(iter(plotter.fiblets))
+
+
+class Renders:
+    """Counts frames of a window."""
+
+    def __init__(self, plotter):
+        self.count = 0
+        plotter.render_window.AddObserver("EndEvent", self._count)
+
+    def _count(self, *_):
+        self.count += 1
+
+    def since(self):
+        count, self.count = self.count, 0
+        return count
+
+
+def shot(plotter, **how):
+    return np.asarray(plotter.screenshot(None, **how)).astype(int)
+
+
+def mean_of_pictures(plotter, n, *, renderer=None, size=SIZE, **how):
+    """Draw the pictures apart, with a camera that is moved by hand, and let NumPy say their mean."""
+    plotter.picture.antialias = "off"
+    camera = (renderer or plotter.renderer).GetActiveCamera()
+    total = 0.0
+    for position in sample_positions(n):
+        with shifted(camera, size, position):
+            plotter.render_window.Render()
+            total = total + shot(plotter, **how)
+    plotter.render()
+    return total / n
+
+
+@pytest.mark.parametrize(("value", "n"), [("refined", 16), (3, 3), (8, 8)])
+def test_the_picture_is_the_mean_of_pictures_drawn_apart(scene, value, n):
+    scene.picture.antialias = value
+    scene.render()
+    found = shot(scene)
+    assert scene.picture.samples == n
+    wanted = mean_of_pictures(scene, n)
+    assert np.abs(found - wanted).max() <= 1.0
+    plain = shot(scene)
+    red = (plain[..., 0] > 0) & (plain[..., 1] == 0)
+    assert set(np.unique(plain[red][:, 0])) == {255}
+    assert len(np.unique(found[red][:, 0])) > n // 3  # VTK's own edges
+    assert len(np.unique(found[..., 1])) >= n  # and the lines'
+
+
+def test_it_is_the_default_of_still_pictures_with_something_of_ours(scene):
+    assert scene.picture.antialias == "refined"
+    scene.camera.Azimuth(1.0)
+    renders = Renders(scene)
+    scene.render()
+    assert renders.since() == 1
+    finished = shot(scene)
+    assert renders.since() == 16
+    assert scene.picture.samples == 16
+    assert np.array_equal(shot(scene), finished)
+    assert renders.since() == 0
+    scene.render()  # VTK draws, as it was told
+    assert np.array_equal(shot(scene), finished)
+    assert renders.since() == 1
+
+
+def test_a_scene_of_other_things_only_is_left_alone(plotter):
+    plotter.add_mesh(pv.Cone(), color="red", lighting=False)
+    plotter.show(auto_close=False)
+    assert plotter.renderer.GetViewProps().GetNumberOfItems() == 1
+    assert len(np.unique(shot(plotter)[..., 0])) == 2
+    plotter.picture.antialias = 4  # unless it is asked for
+    plotter.render()
+    assert len(np.unique(shot(plotter)[..., 0])) == 5
+
+
+def test_nothing_is_refined_when_the_last_of_our_actors_has_gone(scene):
+    scene.add_spline_tubes([[(0, 0, 0), (1, 1, 1), (3, 0, 0)]], radius=1.0, name="tubes")
+    scene.remove_actor("tubes")
+    assert scene.picture._picture().refinement is not None
+    scene.remove_actor(ours(scene))
+    assert scene.picture._picture().refinement is None
+    assert scene.renderer.GetViewProps().GetNumberOfItems() == 2
+    fill(scene)
+    assert scene.picture._picture().refinement is not None
+
+
+def test_any_change_begins_anew(scene):
+    renders = Renders(scene)
+    changes = [
+        lambda: scene.camera.Azimuth(2.0),
+        lambda: setattr(ours(scene), "color", "lime"),
+        lambda: setattr(ours(scene), "line_width", 3),
+        lambda: setattr(ours(scene).prop, "opacity", 0.7),
+        lambda: ours(scene).select([1]),
+        lambda: ours(scene).criterion("length", (0.0, 63.0)),
+        lambda: setattr(list(scene.renderer.actors.values())[1], "visibility", False),
+        lambda: scene.add_mesh(pv.Cube(), color="white", render=False),
+        lambda: scene.set_background("gray"),
+        lambda: setattr(scene.picture, "gamma", 1.5),
+        lambda: setattr(scene, "window_size", (130, 120)),
+        lambda: scene.enable_parallel_projection(),
+    ]
+    before = shot(scene)
+    for change in changes:
+        renders.since()
+        change()
+        scene.render()
+        renders.since()
+        after = shot(scene)
+        assert (renders.since(), scene.picture.samples) == (16, 16)
+        assert not np.array_equal(before, after)
+        before = after
+    for change in (lambda: scene.add_light(pv.Light()), lambda: scene.enable_depth_peeling()):
+        change()
+        scene.render()
+        renders.since()
+        shot(scene)
+        assert (renders.since(), scene.picture.samples) == (16, 16)
+
+
+def test_what_is_not_drawn_yet_is_not_in_the_picture(scene):
+    """PyVista's screenshot is of the last frame; samples of another scene must not be mixed with it."""
+    scene.picture.refine()
+    before = shot(scene)
+    ours(scene).color = "lime"
+    assert np.array_equal(shot(scene), before)
+    assert not scene.picture.refine()
+
+
+def test_steps_can_be_taken_by_hand_and_end(scene):
+    scene.camera.Azimuth(1.0)
+    scene.render()
+    renders = Renders(scene)
+    wanted = [scene.picture.refine() for _ in range(18)]
+    assert wanted == [True] * 15 + [False] * 3
+    assert renders.since() == 16
+    assert scene.picture.samples == 16
+    stepped = shot(scene)
+    assert renders.since() == 0
+    scene.camera.Azimuth(1e-9)
+    scene.render()
+    assert np.abs(shot(scene) - stepped).max() <= 1
+
+
+def test_a_limit_of_time_leaves_one_sample_at_least(scene):
+    scene.picture.antialias_seconds = 0.0
+    scene.render()
+    renders = Renders(scene)
+    shot(scene)
+    assert renders.since() == 2  # the second, of the camera as it is, shows the mean
+    assert scene.picture.samples == 1
+    scene.picture.antialias_seconds = None
+    scene.render()
+    shot(scene)
+    assert scene.picture.samples == 16
+
+
+def test_picks_and_depths_are_exact_at_any_time(scene):
+    def seen():
+        data = vtkFloatArray()
+        picked = [ours(scene).pick_at(x, y) for x in range(10, 140, 9) for y in range(10, 100, 4)]
+        inside = ours(scene).pick_box((10, 10, 140, 100))
+        scene.render_window.GetZbufferData(0, 0, SIZE[0] - 1, SIZE[1] - 1, data)
+        return picked, inside, vtk_to_numpy(data).copy()
+
+    def same(one, other):
+        assert str(one[:2]) == str(other[:2])
+        assert np.array_equal(one[2], other[2])
+
+    scene.picture.antialias = "off"
+    scene.render()
+    plain = seen()
+    assert any(one is not None for one in plain[0])
+    scene.picture.antialias = 8
+    scene.render()
+    same(seen(), plain)
+    for _ in range(3):
+        scene.picture.refine()
+    assert str(seen()[:2]) == str(plain[:2])
+    shot(scene)
+    same(seen(), plain)
+    scene.picture.antialias = 3  # no sample is the pixel's middle
+    scene.render()
+    shot(scene)
+    same(seen(), plain)
+
+
+def test_subplots_are_refined_each_by_itself():
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=(2 * SIZE[0], SIZE[1]))
+    plotter.disable_anti_aliasing()
+    for column in range(2):
+        plotter.subplot(0, column)
+        fill(plotter)
+        plotter.picture.antialias = 4
+    plotter.show(auto_close=False)
+    plotter.camera.Azimuth(7.0)
+    plotter.render()
+    assert plotter.picture.samples == 1
+    plotter.subplot(0, 0)
+    assert plotter.picture.samples == 4
+    both = shot(plotter)
+    one = mean_of_pictures(plotter, 4)
+    assert np.abs(both - one)[:, : SIZE[0]].max() <= 1.0
+    plotter.subplot(0, 1)
+    other = mean_of_pictures(plotter, 4)
+    assert np.abs(both - other)[:, SIZE[0] :].max() <= 1.0
+    plotter.close()
+
+
+def moved_in_tiles(renderer, position):
+    """Have a renderer's camera moved by a part of a pixel in each tile; returns what undoes it.
+
+    VTK gives each tile a window centre of its own, in halves of the part of the tile that is the renderer's.
+    """
+
+    def move(*_):
+        window = renderer.GetRenderWindow()
+        if window.GetTileScale() == (1, 1):
+            return
+        tile, own = window.GetTileViewport(), renderer.GetViewport()
+        parts = [min(own[k + 2], tile[k + 2]) - max(own[k], tile[k]) for k in (0, 1)]
+        pixels = [round(part * size * 2) for part, size in zip(parts, SIZE, strict=True)]
+        if min(pixels) > 0:
+            camera = renderer.GetActiveCamera()
+            centre = camera.GetWindowCenter()
+            camera.SetWindowCenter(*(c + 2 * o / p for c, o, p in zip(centre, position, pixels, strict=True)))
+
+    return renderer.AddObserver("StartEvent", move)
+
+
+@pytest.mark.parametrize("effect", [None, "depth_of_field"])
+def test_enlarged_pictures_of_tiles_are_refined(effect):
+    """Of two subplots, one of which the tiles' edges cut; every tile is the mean of its own samples."""
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=SIZE)
+    plotter.disable_anti_aliasing()
+    for column in range(2):
+        plotter.subplot(0, column)
+        plotter.set_background("black")
+        fill(plotter)
+        plotter.picture.antialias = 4
+        if effect is not None and column:
+            plotter.picture.depth_of_field = {"focal_distance": 90.0, "max_blur": 3.0}
+    plotter.show(auto_close=False)
+    found = shot(plotter, scale=2)
+    for column in range(2):
+        plotter.subplot(0, column)
+        plotter.picture.antialias = "off"
+    total = 0.0
+    for position in sample_positions(4):
+        undo = [moved_in_tiles(renderer, position) for renderer in plotter.renderers]
+        total = total + shot(plotter, scale=2)
+        for renderer, tag in zip(plotter.renderers, undo, strict=True):
+            renderer.RemoveObserver(tag)
+    wanted = total / 4
+    assert found.shape == (2 * SIZE[1], 2 * SIZE[0], 3)
+    assert np.abs(found - wanted).max() <= 1.0
+    assert len(np.unique(found[..., 0])) > 4
+    plotter.close()
+
+
+def test_what_lies_over_the_picture_is_drawn_once(plotter):
+    plotter.add_fiblets([[(-9, 0, 0), (0, 4, 0), (9, 9, 0)]], color="red", lighting=False)
+    mesh = pv.Plane(i_size=10, j_size=10)
+    mesh["height"] = mesh.points[:, 0]
+    plotter.add_mesh(mesh, lighting=False, scalar_bar_args={"color": "white"})
+    plotter.add_text("over", color="white", font_size=12)
+    plotter.add_point_labels([(0.0, -9.0, 0.0)], ["label"], shape=None, text_color="white", always_visible=True)
+    plotter.camera_position = "xy"
+    plotter.camera.zoom(0.5)
+    plotter.picture.antialias = "off"
+    plotter.show(auto_close=False)
+    before = shot(plotter)
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    shown = []
+    while plotter.picture.refine():
+        shown.append(grabbed(plotter))
+    after = shot(plotter)
+    assert len(shown) == 15
+    over = np.ones(before.shape[:2], bool)
+    over[40:160, 40:160] = False  # the plane and the line, and no text
+    label = np.s_[150:200, 60:140]
+    assert before[over].any()
+    assert before[label].any()
+    for picture in [*shown, after]:
+        assert np.array_equal(picture[over], before[over])
+        assert np.array_equal(picture[label], before[label])
+    assert not np.array_equal(after, before)
+
+
+@pytest.mark.parametrize(
+    "how", ["msaa", "ssaa", "peeling", "ssao", "edl", "background", "tone", "depth of field", "parallel"]
+)
+def test_with_everything_that_draws_otherwise(plotter, how, tmp_path):
+    plotter.window_size = SIZE
+    fill(plotter, **({"opacity": 0.5, "transparency": 2} if how == "peeling" else {}))
+    plotter.picture.antialias = "off"
+    {
+        "msaa": lambda: plotter.enable_anti_aliasing("msaa", multi_samples=4),
+        "ssaa": lambda: plotter.enable_anti_aliasing("ssaa"),
+        "peeling": lambda: plotter.enable_depth_peeling(4),
+        "ssao": lambda: plotter.enable_ssao(),
+        "edl": lambda: plotter.enable_eye_dome_lighting(),
+        "background": lambda: plotter.add_background_image(gradient(tmp_path)),
+        "tone": lambda: setattr(plotter.picture, "tone", {"operator": "aces", "exposure": 2.0}),
+        "depth of field": lambda: setattr(plotter.picture, "depth_of_field", {"focal_distance": 92.0}),
+        "parallel": lambda: plotter.enable_parallel_projection(),
+    }[how]()
+    plotter.show(auto_close=False)
+    wanted = mean_of_pictures(plotter, 5)
+    plotter.picture.antialias = 5
+    plotter.render()
+    found = shot(plotter)
+    assert plotter.picture.samples == 5
+    # VTK's supersampling is no linear filter of its samples.
+    assert np.abs(found - wanted).max() <= (12.0 if how == "ssaa" else 1.0)
+    assert np.abs(found - wanted).mean() < 0.3
+
+
+def gradient(folder):
+    """Write a picture of slanted colours."""
+    x, y = np.meshgrid(np.arange(60), np.arange(40))
+    path = folder / "gradient.png"
+    Image.fromarray(np.stack([4 * x, 5 * y, x + y], axis=-1).astype(np.uint8)).save(path)
+    return str(path)
+
+
+def test_transparent_backgrounds_have_the_mean_of_alpha(scene):
+    scene.picture.antialias = 8
+    scene.render()
+    found = shot(scene, transparent_background=True)
+    assert found.shape[2] == 4
+    wanted = mean_of_pictures(scene, 8, transparent_background=True)
+    assert np.abs(found - wanted).max() <= 1.0
+    assert len(np.unique(found[..., 3])) > 4
+
+
+def test_frames_of_movies_and_pictures_that_shows_return_are_finished(scene, tmp_path):
+    frames = []
+    scene.mwriter = type("Writer", (), {"append_data": lambda _, data: frames.append(np.asarray(data).astype(int)),
+                                        "close": lambda _: None})()
+    for _ in range(2):
+        scene.camera.Azimuth(3.0)
+        scene.write_frame()
+        assert scene.picture.samples == 16
+        assert np.array_equal(shot(scene), frames[-1])
+    assert not np.array_equal(*frames)
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.disable_anti_aliasing()
+    plotter.set_background("black")
+    fill(plotter)
+    image = plotter.show(screenshot=str(tmp_path / "shown.png"), return_img=True)
+    assert len(np.unique(image[..., 1])) > 10
+    assert np.array_equal(pv.read(tmp_path / "shown.png").point_data.values()[0].shape, (SIZE[0] * SIZE[1], 3))
+
+
+def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
+    """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.05)
+    interactor, asked = scene.iren.interactor, []
+    interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
+    renders = Renders(scene)
+    interactor.InvokeEvent("TimerEvent")
+    assert renders.since() == 0
+    scene.camera.Azimuth(3.0)
+    scene.render()
+    assert renders.since() == 1
+    plain = grabbed(scene)
+    interactor.InvokeEvent("TimerEvent")  # too early: somebody else's
+    assert renders.since() == 0
+    time.sleep(0.06)
+    for count in range(1, 17):
+        interactor.InvokeEvent("TimerEvent")
+        assert (renders.since(), scene.picture.samples) == (1, count)
+        assert np.array_equal(grabbed(scene), plain) == (count < 4)
+        time.sleep(0.002)
+    for _ in range(3):
+        interactor.InvokeEvent("TimerEvent")
+        time.sleep(0.06)
+    assert renders.since() == 0
+    finished = grabbed(scene)
+    assert np.array_equal(shot(scene), finished)
+
+
+def grabbed(plotter):
+    """Return the picture as it is, unfinished or not."""
+    interactor = plotter.iren.interactor
+    interactor.EnableRenderOff()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(plotter.render_window)
+    grab.ShouldRerenderOff()
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    interactor.EnableRenderOn()
+    width, height, _ = grab.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
+    return pixels[::-1].astype(int)
+
+
+def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    scene.enable_trackball_style()
+    interactor, renders = scene.iren.interactor, Renders(scene)
+    interactor.SetEventInformation(60, 60)
+    interactor.LeftButtonPressEvent()
+    for x in (70, 80, 90):
+        interactor.SetEventInformation(x, 65)
+        interactor.MouseMoveEvent()
+        assert scene.picture.samples == 1
+        assert scene.picture._pacer._due == 0.0
+        assert not scene.picture.refine()
+    assert renders.since() == 3
+    interactor.LeftButtonReleaseEvent()
+    assert scene.picture._pacer._due > 0.0
+    assert renders.since() == 1
+    time.sleep(0.2)
+    interactor.InvokeEvent("TimerEvent")
+    assert (renders.since(), scene.picture.samples) == (1, 1)
+    assert scene.picture.refine()
+
+
+def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
+    """As in a notebook: the interactor must not render, pictures are sent when the plotter renders."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.02)
+    sent = []
+    scene.add_on_render_callback(lambda _: sent.append(scene.picture.samples))
+    scene.iren.interactor.EnableRenderOff()
+    renders = Renders(scene)
+
+    async def look():
+        scene.camera.Azimuth(3.0)
+        scene.render()
+        assert sent == [1]
+        async with asyncio.timeout(20):
+            while len(sent) < 2:
+                await asyncio.sleep(0.01)
+        await asyncio.sleep(0.1)
+
+    asyncio.run(look())
+    assert sent == [1, 16]
+    assert renders.since() == 18  # plain, samples, and one more to be sent
+    scene.iren.interactor.EnableRenderOn()
+
+
+WINDOW = """
+import sys, time
+import numpy as np, pyvista as pv
+plotter = pv.Plotter(window_size=(200, 150))
+plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
+frames = []
+plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(plotter.picture.samples))
+plotter.show(interactive_update=True, auto_close=False)
+def wait(seconds):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        plotter.iren.process_events()
+        time.sleep(0.002)
+def until_finished():
+    end = time.monotonic() + 20.0
+    while plotter.picture.samples < 16 and time.monotonic() < end:
+        wait(0.01)
+    count = len(frames)
+    wait(0.5)
+    return len(frames) - count
+until_finished()  # VTK draws once more when the window appears
+plotter.iren.interactor.SetEventInformation(90, 70)
+plotter.iren.interactor.MouseWheelForwardEvent()
+print("turned", plotter.picture.samples)
+print("at rest", until_finished(), frames[-1])
+plotter.close()
+"""
+
+
+def test_a_window_on_a_screen_refines_by_itself(tmp_path):
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
+    without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
+    environment = {name: value for name, value in os.environ.items() if name not in without}
+    command = ["xvfb-run", "-a", sys.executable, "-c", WINDOW]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
+    told = [line for line in done.stdout.splitlines() if not line.startswith("\x1b")]
+    assert told == ["turned 1", "at rest 0 16"], done.stderr
+
+
+@pytest.mark.parametrize("bad", ["on", 1, 0, 257, 3.5, True, None, "16"])
+def test_other_values_are_refused_and_change_nothing(plotter, bad):
+    plotter.picture.antialias = 4
+    with pytest.raises(ValueError, match="antialias is .*; give 'off', 'coverage', 'refined' or a number of samples"):
+        plotter.picture.antialias = bad
+    assert plotter.picture.antialias == 4
+    with pytest.raises(ValueError, match="antialias_seconds is -1; give seconds, 0 or more"):
+        plotter.picture.antialias_seconds = -1
+
+
+def test_the_environment_names_another_default(plotter, monkeypatch):
+    for text, value in (("off", "off"), ("8", 8), ("coverage", "coverage")):
+        monkeypatch.setenv(VARIABLE, text)
+        assert plotter.picture.antialias == value
+    monkeypatch.setenv(VARIABLE, "much")
+    with pytest.raises(ValueError, match="PVFIBLETS_ANTIALIAS is 'much'; give"):
+        plotter.add_fiblets([[(0, 0, 0), (1, 1, 1)]])
+
+
+def test_memory_is_told_and_given_back(scene):
+    assert scene.picture.explain()["buffers"] == [{"name": "refinement", "bytes": SIZE[0] * SIZE[1] * 16}]
+    scene.picture.antialias = "off"
+    scene.render()
+    assert scene.picture.explain() == {"buffers": []}
