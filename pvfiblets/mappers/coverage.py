@@ -29,33 +29,42 @@ class EdgeSmoothing:
         self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
+        self._sample = False
         smoothers[self._address] = self
 
-    def begin(self) -> None:
-        """Forget what was drawn: another picture begins."""
+    def begin(self, *, sample: bool = False) -> None:
+        """Forget what was drawn: another picture begins.
+
+        Parameters
+        ----------
+        sample : bool
+            Whether it is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not smoothed;
+            but a line that is drawn wider than it is, because it is thinner than a pixel, is there only where it covers
+            a pixel's middle.
+        """
         self._noted.clear()
+        self._sample = sample
+
+    def wants(self, narrower: float) -> bool:
+        """Say whether edges are to be known of lines that are thinner by some pixels than they are drawn."""
+        return narrower > 0.0 or not self._sample
 
     def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:
         """Remember what a mapper has drawn for this picture, and in which part of it that may be."""
         if buffer.edges is not None:
             self._noted[mapper.GetAddressAsString("")] = SmoothedLines(buffer, narrower, rectangle)
 
-    def pending(self, thin: bool = False) -> bool:
-        """Say whether there is anything to smooth; with `thin`, lines that are thinner than a pixel."""
-        return any(lines.narrower > 0.0 or not thin for lines in self._noted.values())
+    @property
+    def pending(self) -> bool:
+        """Whether there is anything to smooth."""
+        return bool(self._noted)
 
     def smooth(
-        self,
-        effects: Coverage,
-        colour: Attachment,
-        depth: Attachment,
-        viewport: tuple[int, int, int, int],
-        thin: bool = False,
+        self, effects: Coverage, colour: Attachment, depth: Attachment, viewport: tuple[int, int, int, int]
     ) -> None:
-        """Smooth the picture, once; with `thin`, lines that are thinner than a pixel only."""
-        noted = [lines for lines in self._noted.values() if lines.narrower > 0.0 or not thin]
-        self._noted = {}
-        effects.smooth(colour, depth, viewport, noted, alike=not self._others())
+        """Smooth the picture, once."""
+        noted, self._noted = list(self._noted.values()), {}
+        effects.smooth(colour, depth, viewport, noted, alike=not self._others(), point=self._sample)
 
     def _others(self) -> bool:
         """Say whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""

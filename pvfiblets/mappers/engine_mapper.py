@@ -270,6 +270,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         )
         style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
+        narrower = self._narrower(pixel_scale(renderer, viewport))
+        if smoother is not None and not smoother.wants(narrower):
+            smoother = None
         if smoother is not None:
             style = replace(style, edges=True)
         slot = context.slot(self)
@@ -292,7 +295,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         if smoother is not None:
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
-            smoother.note(self, buffer, self._narrower(pixel_scale(renderer, viewport)), rectangle)
+            smoother.note(self, buffer, narrower, rectangle)
         if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")

@@ -7,11 +7,11 @@ picture is complete, its depths are those of VTK's framebuffer, and nothing lies
 read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
 they are.
 
-Refinement (`pvfiblets.mappers.refinement`) takes the picture as the effects leave it. `refine` draws one more frame of
-all the pictures of a window, `finish` all that are left. Whoever reads a window's picture gets the finished one: all do
-that with ``vtkWindowToImageFilter``, PyVista's ``screenshot`` and ``image`` too. It gives each renderer a copy of its
-camera before, and VTK tells of that (``ActiveCameraEvent``). Where an interactor must not render
-(``EnableRenderOff``), the window is a server's, whose pictures follow the camera: it calls `refine` itself.
+Refinement (`pvfiblets.mappers.refinement`) takes the picture as smooth edges (`pvfiblets.mappers.coverage`) and effects
+leave it. Whoever reads a window's picture gets the finished one: all do that with ``vtkWindowToImageFilter``, PyVista's
+``screenshot`` and ``image`` too. It gives each renderer a copy of its camera before, and VTK tells of that
+(``ActiveCameraEvent``). Where an interactor must not render (``EnableRenderOff``), the window is a server's, whose
+pictures follow the camera: it has them refined itself.
 
 While nothing is changed, none of this exists.
 """
@@ -30,18 +30,20 @@ from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
 from pvfiblets.mappers.refinement import Refinement
+from pvfiblets.mappers.refining import finish, shown_pictures
 from pvfiblets.mappers.scene import in_motion
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
 from pvfiblets.mappers.tiles import Margin, margin_of
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
-__all__ = ["DepthOfField", "Picture", "finish", "refine"]
+__all__ = ["DepthOfField", "Picture"]
 
-_COVERAGE = "coverage"
 _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
-_pictures: weakref.WeakSet[Picture] = weakref.WeakSet()
+_COVERAGE = "coverage"
+ANTIALIAS = ("off", _COVERAGE)
+"""How edges of lines may be smoothed."""
 
 
 class Picture:
@@ -77,7 +79,7 @@ class Picture:
         self._error: BaseException | None = None
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
-        _pictures.add(self)
+        shown_pictures.add(self)
 
     @property
     def renderer(self) -> Any:
@@ -107,24 +109,6 @@ class Picture:
         self._hang()
 
     @property
-    def smoothing(self) -> bool:
-        """Whether edges of lines are smoothed in plain frames (`pvfiblets.mappers.coverage`)."""
-        return self._smoothing is not None
-
-    @smoothing.setter
-    def smoothing(self, wanted: bool) -> None:
-        if wanted == self.smoothing or self.renderer is None:
-            return
-        if not wanted:
-            self._smoothing.release()
-            self._smoothing = None
-        else:
-            from pvfiblets.mappers.coverage import EdgeSmoothing
-
-            self._smoothing = EdgeSmoothing(self.renderer)
-        self._hang()
-
-    @property
     def refinement(self) -> Refinement | None:
         """Samples of the picture at rest; None for one."""
         return self._refinement
@@ -143,6 +127,27 @@ class Picture:
         return self._refinement.unfinished(self._state(renderer))
 
     @property
+    def antialias(self) -> str:
+        """How edges of lines are smoothed: ``'off'``, or ``'coverage'`` (`pvfiblets.mappers.coverage`)."""
+        return "off" if self._smoothing is None else "coverage"
+
+    @antialias.setter
+    def antialias(self, wanted: str) -> None:
+        if wanted not in ANTIALIAS:
+            raise ValueError(f"antialias is {wanted!r}; use one of {list(ANTIALIAS)}")
+        if wanted == self.antialias or self.renderer is None:
+            return
+        if wanted == "off":
+            self._smoothing.release()
+            self._smoothing = None
+            self._drop(_COVERAGE)
+        else:
+            from pvfiblets.mappers.coverage import EdgeSmoothing
+
+            self._smoothing = EdgeSmoothing(self.renderer)
+        self._hang()
+
+    @property
     def focal_distance(self) -> float | None:
         """Distance (mm) that was in focus in the last picture; None before the first, and without depth of field."""
         return self.focusing.distance if self._depth_of_field is not None else None
@@ -156,6 +161,15 @@ class Picture:
     def on(self) -> bool:
         """Whether anything is changed."""
         return self.has_effects or self._refinement is not None or self._smoothing is not None
+
+    def _drop(self, name: str) -> None:
+        """Give back what an effect keeps on the GPU."""
+        for context in contexts_with(self._prop) if self._prop is not None else []:
+            slot = context.slot(self._prop)
+            if name in slot.effects and context.alive:
+                context.window.MakeCurrent()
+                with context.foreign():
+                    slot.drop_effect(name)
 
     # In the renderer
 
@@ -229,10 +243,9 @@ class Picture:
             return
         if renderer.GetSelector() is not None:
             return
-        if self._smoothing is not None:
-            self._smoothing.begin()
         self._overlay.hold(renderer)
         if self._inside:
+            self._begin()
             return
         refinement = self._refinement
         if refinement is not None and tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
@@ -243,9 +256,15 @@ class Picture:
                 self._draw_around(renderer)
                 self._draw_inside(renderer)
             self._overlay.hold(renderer)
-        if self.has_effects or self._smoothing is not None or (refinement is not None and not refinement.idle):
+        if self._smoothing is not None or self.has_effects or (refinement is not None and not refinement.idle):
             self._insert()
         self._draw_around(renderer)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Have mappers note the edges of this frame."""
+        if self._smoothing is not None:
+            self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
 
     def _draw_around(self, renderer: Any) -> None:
         """Copy what lies around a tile, if effects look there; the tile itself is drawn after that."""
@@ -326,20 +345,18 @@ class Picture:
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             return
-        slot, refinement = context.slot(prop), self._refinement
-        with context.foreign():
-            if self._smoothing is None and _COVERAGE in slot.effects:
-                slot.drop_effect(_COVERAGE)
-            colour = attachment(context, COLOUR)
-            if self._smoothing is not None:
-                # The mean of samples smooths edges by itself. But each draws lines a pixel wide that are to be thinner.
-                thin = refinement is not None and not refinement.plain
-                if self._smoothing.pending(thin):
-                    self._smoothing.smooth(_smoother(context, slot), colour, attachment(context, DEPTH), viewport, thin)
-            if self.has_effects:
-                self._paint_effects(context, slot, colour, viewport)
-            if refinement is not None and self._shift == (0, 0) and not refinement.idle:
-                refinement.paint(context.ctx, slot, colour, viewport)
+        slot, refinement, smoothing = context.slot(prop), self._refinement, self._smoothing
+        smooth = smoothing is not None and smoothing.pending
+        taken = refinement is not None and self._shift == (0, 0) and not refinement.idle
+        if smooth or taken or self.has_effects:
+            with context.foreign():
+                colour = attachment(context, COLOUR)
+                if smooth:
+                    smoothing.smooth(_smoother(context, slot), colour, attachment(context, DEPTH), viewport)
+                if self.has_effects:
+                    self._paint_effects(context, slot, colour, viewport)
+                if refinement is not None and taken:
+                    refinement.paint(context.ctx, slot, colour, viewport)
         if refinement is not None and self._shift == (0, 0):
             refinement.put_back()
 
@@ -368,47 +385,6 @@ class Picture:
         effects.draw(colour, viewport, tone=self._tone, focus=focus, lens=lens)
 
 
-def _smoother(context: WindowContext, slot: Slot) -> Any:
-    """Return what smooths edges in a window, made when it is first needed."""
-    if _COVERAGE not in slot.effects:
-        from pvfiblets.engine.effects.coverage import Coverage
-
-        slot.effects[_COVERAGE] = Coverage, Coverage(context.ctx)
-    return slot.effects[_COVERAGE][1]
-
-
-def refine(window: Any) -> bool:
-    """Draw one more frame of the pictures of a window that want more samples; nothing if none does.
-
-    Parameters
-    ----------
-    window : vtkRenderWindow
-
-    Returns
-    -------
-    bool
-        Whether one of them wants another.
-    """
-    wanting = _unfinished(window)
-    for picture in wanting:
-        picture.refinement.due = True
-    if wanting:
-        window.Render()
-    return bool(_unfinished(window))
-
-
-def finish(window: Any) -> None:
-    """Draw all frames that the pictures of a window want."""
-    while refine(window):
-        pass
-
-
-def _unfinished(window: Any) -> list[Any]:
-    address = window.GetAddressAsString("")
-    shown = [picture for picture in _pictures if picture.unfinished]
-    return [picture for picture in shown if picture.renderer.GetRenderWindow().GetAddressAsString("") == address]
-
-
 def _refinable(renderer: Any) -> bool:
     """Say whether a picture has a camera that can be shifted, and one of them."""
     camera = renderer.GetActiveCamera()
@@ -419,3 +395,12 @@ def _refinable(renderer: Any) -> bool:
 def _starts_empty(renderer: Any) -> bool:
     """Say whether a renderer that draws once more begins with its background."""
     return renderer.GetLayer() == 0 and renderer.GetErase() and not renderer.GetPreserveColorBuffer()
+
+
+def _smoother(context: WindowContext, slot: Slot) -> Any:
+    """Return what smooths edges in a window, made when it is first needed."""
+    if _COVERAGE not in slot.effects:
+        from pvfiblets.engine.effects.coverage import Coverage
+
+        slot.effects[_COVERAGE] = Coverage, Coverage(context.ctx)
+    return slot.effects[_COVERAGE][1]

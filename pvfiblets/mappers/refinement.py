@@ -32,8 +32,8 @@ __all__ = ["SHOWN_FROM", "Refinement"]
 
 MIDDLE = (0.0, 0.0)
 
-SHOWN_FROM = 4
-"""Samples whose mean is better than one plain picture: where each frame is seen, that is shown until then."""
+SHOWN_FROM = 8
+"""Samples whose mean is better than one picture with smooth edges, which is shown until then to who sees each frame."""
 
 _WHOLE, _TILE = "refinement", "refinement of a tile"
 

@@ -16,8 +16,9 @@ import pyvista as pv
 from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers.engine_mapper import EngineMapper
-from pvfiblets.mappers.picture import DepthOfField, Picture, refine
+from pvfiblets.mappers.picture import DepthOfField, Picture
 from pvfiblets.mappers.refinement import Refinement
+from pvfiblets.mappers.refining import refine
 from pvfiblets.plotting.pacing import Pacer
 from pvfiblets.plotting.setting_places import OWN, Place
 from pvfiblets.plotting.settings import Setting, number
@@ -213,7 +214,7 @@ class PictureComponent:
 
     def follow(self, renderer: Any) -> None:
         """Be told that a renderer shows something of this package, or does so no more."""
-        self._refine_as_set(renderer)
+        self._smooth_as_set(renderer)
 
     def _read_antialias(self) -> str | int:
         return self._antialias.get(self._plotter.renderer.GetAddressAsString(""), default_antialias())
@@ -221,7 +222,7 @@ class PictureComponent:
     def _write_antialias(self, value: str | int) -> None:
         renderer = self._plotter.renderer
         self._antialias[renderer.GetAddressAsString("")] = value
-        self._refine_as_set(renderer)
+        self._smooth_as_set(renderer)
 
     def _read_antialias_seconds(self) -> float | None:
         return self._seconds.get(self._plotter.renderer.GetAddressAsString(""))
@@ -229,29 +230,25 @@ class PictureComponent:
     def _write_antialias_seconds(self, value: float | None) -> None:
         renderer = self._plotter.renderer
         self._seconds[renderer.GetAddressAsString("")] = value
-        self._refine_as_set(renderer)
+        self._smooth_as_set(renderer)
 
-    def _refine_as_set(self, renderer: Any) -> None:
-        """Have a renderer's picture refined as it was set; by default, if something of this package is in it."""
+    def _smooth_as_set(self, renderer: Any) -> None:
+        """Have a renderer's edges smoothed as it was set; by default, if something of this package is in it."""
         address = renderer.GetAddressAsString("")
         value = self._antialias.get(address)
         if value is None:
             value = default_antialias() if _shows_ours(renderer) else "off"
-        samples, seconds = samples_of(value), self._seconds.get(address)
         if value == "off" and address not in self._pictures:
             return
-        picture = self._picture(renderer)
-        if picture.smoothing != (value != "off"):
-            picture.smoothing = value != "off"
-            self._keep()
-        wanted = None if samples == 1 else Refinement(samples, seconds)
-        if wanted is None and picture.refinement is None:
-            return
-        if wanted is not None and picture.refinement is not None and wanted.same_as(picture.refinement):
-            return
-        if wanted is not None:
-            wanted.seen = self._seen
-        picture.refinement = wanted
+        picture, samples = self._picture(renderer), samples_of(value)
+        picture.antialias = "off" if value == "off" else "coverage"
+        wanted = Refinement(samples, self._seconds.get(address)) if samples > 1 else None
+        now = picture.refinement
+        if wanted is None or now is None or not wanted.same_as(now):
+            if wanted is not None:
+                wanted.seen = self._seen
+            if wanted is not now:
+                picture.refinement = wanted
         picture.drawn = self._drawn
         self._keep()
 

@@ -436,7 +436,7 @@ def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypa
     for count in range(1, 17):
         interactor.InvokeEvent("TimerEvent")
         assert (renders.since(), scene.picture.samples) == (1, count)
-        assert np.array_equal(grabbed(scene), plain) == (count < 4)
+        assert np.array_equal(grabbed(scene), plain) == (count < 8)
         time.sleep(0.002)
     for _ in range(3):
         interactor.InvokeEvent("TimerEvent")

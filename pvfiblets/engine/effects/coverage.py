@@ -57,6 +57,7 @@ class Coverage(PictureEffects):
         drawn: Sequence[SmoothedLines],
         *,
         alike: bool = False,
+        point: bool = False,
     ) -> None:
         """Smooth the edges of lines.
 
@@ -70,6 +71,8 @@ class Coverage(PictureEffects):
             Of every drawable in it.
         alike : bool
             Whether all samples of a pixel are the same, where it has several: then one of them is read.
+        point : bool
+            Whether pixels show what covers their middles, and no shares.
 
         Raises
         ------
@@ -96,7 +99,8 @@ class Coverage(PictureEffects):
             picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
             try:
                 picture.viewport = (x + left, y + low, right - left, top - low)
-                self._pass("coverage", picture, {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)})
+                shown, shift = {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)}
+                self._pass("coverage", picture, shown, shift, ["PICTURE_POINT"] if point else [])
             finally:
                 picture.release()
 

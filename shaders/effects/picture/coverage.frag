@@ -15,6 +15,8 @@
 //   shown      of visible_edges.frag, with a border of one texel
 //   shift      from a pixel of the target to one of it
 //
+// FEATURE_PICTURE_POINT: all samples lie in the pixel's middle.
+//
 // Colours are averaged as they are displayed, as supersampling does. Shares are counted in twelfths of a sample, and a sample is
 // a byte of a word: sums of all channels and samples are sums of words.
 
@@ -27,10 +29,15 @@ uniform ivec2 shift;
 out vec4 colour;
 
 // In 16ths of a pixel, quarter by quarter: upper right, upper left, lower right, lower left.
+#if FEATURE_PICTURE_POINT
+const vec4 X0 = vec4(0.0), X1 = X0, X2 = X0, X3 = X0, Y0 = X0, Y1 = X0, Y2 = X0, Y3 = X0;
+#else
 const vec4 X0 = vec4(1.5, 2.5, 5.5, 6.5), X1 = vec4(-2.5, -1.5, -5.5, -7.5);
 const vec4 Y0 = vec4(1.5, 5.5, 3.5, 7.5), Y1 = vec4(2.5, 6.5, 4.5, 0.5);
 const vec4 X2 = vec4(4.5, 3.5, 0.5, 7.5), X3 = vec4(-0.5, -4.5, -3.5, -6.5);
 const vec4 Y2 = vec4(-0.5, -4.5, -6.5, -3.5), Y3 = vec4(-2.5, -1.5, -5.5, -7.5);
+
+#endif
 
 const uint EVERY = 0x01010101u, SAMPLE = 12u, PIXEL = 16u * SAMPLE;
 const int OWN = 4;
