@@ -101,8 +101,9 @@ def switched(source, features):
 @pytest.mark.parametrize("wide", [False, True])
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING",), ("CLIPPING", "CLIP_PLANES")])
 @pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",), ("VALUES_VOLUME",)])
-def test_a_geometry_stage_emits_no_more_than_opengl_promises(values, clipping, wide):
-    features = {*values, *clipping, *(("WIDE_LINES",) if wide else ())}
+@pytest.mark.parametrize("edges", [(), ("EDGES",)])
+def test_a_geometry_stage_emits_no_more_than_opengl_promises(edges, values, clipping, wide):
+    features = {*edges, *values, *clipping, *(("WIDE_LINES",) if wide else ())}
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
     declared = [
         re.match(r"VARYING (\w+) varying", line)

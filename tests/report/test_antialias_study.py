@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.report import antialias
-from pvfiblets.report.front import mark_fronts
+from pvfiblets.report.pareto import mark_fronts
 from pvfiblets.report.study import Budget
 
 from .little import little

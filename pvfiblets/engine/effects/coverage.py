@@ -99,8 +99,8 @@ class Coverage(PictureEffects):
             picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
             try:
                 picture.viewport = (x + left, y + low, right - left, top - low)
-                textures, uniforms = {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)}
-                self._pass("coverage", picture, textures, uniforms, ["PICTURE_POINT"] if point else [])
+                shown, shift = {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)}
+                self._pass("coverage", picture, shown, shift, ["PICTURE_POINT"] if point else [])
             finally:
                 picture.release()
 

@@ -6,7 +6,8 @@
 #include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/tangent.glsl"
 
-vec3 tangent_before;   // u of the last segment before
+vec3 tangent_before;   // u of the last segment before that has one
+vec3 tangent_next;     // and of the next segment
 Tangents tangents;
 
 void begin_tangents(uint f) {
@@ -24,8 +25,9 @@ void begin_tangents(uint f) {
 // ahead: the next segment, none after the last.
 void start_tangents(uint segment, vec3 delta, vec3 ahead) {
     if (segment == 0u && polyline.whole) tangent_before = unit_or_none(direction_before(polyline.fiblet, true));
-    vec3 here = unit_or_none(delta);
-    Tangents found = tangents_of(tangent_before, here, unit_or_none(ahead), !polyline.whole && segment + 1u == polyline.count);
+    vec3 here = segment > 0u ? tangent_next : unit_or_none(delta);
+    tangent_next = unit_or_none(ahead);
+    Tangents found = tangents_of(tangent_before, here, tangent_next, !polyline.whole && segment + 1u == polyline.count);
     if (segment > 0u) found.start = tangents.end;
     tangents = found;
     if (here != vec3(0.0)) tangent_before = here;

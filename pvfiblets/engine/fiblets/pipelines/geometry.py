@@ -4,15 +4,15 @@ Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/
 ``hardware_raster`` and ``segments``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/hardware_raster/varyings.glsl``, with per-point values among them or without:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, those of edges included, and per-point values or not:
 
 ==============================  ==========  ==============  =======================================================
 drawn                           components  vertices        segments of a share
 ==============================  ==========  ==============  =======================================================
-thin, uncut                     15          1024 // 15: 68  60: all of them, by 61 vertices
-thin, uncut, with values        17          1024 // 17: 60  30
-thin, may be cut                16          1024 // 16: 64  30: every segment may be a strip of its own
-thin, may be cut, with values   18          1024 // 18: 56  20
+thin, uncut                     16          1024 // 16: 64  60: all of them, by 61 vertices
+thin, uncut, with values        18          1024 // 18: 56  30
+thin, may be cut                17          1024 // 17: 60  30: every segment may be a strip of its own
+thin, may be cut, with values   19          1024 // 19: 53  20
 wide                            20          1024 // 20: 51  12: four vertices each, 60 in five shares
 wide, with values               22          1024 // 22: 46  10: 60 in six shares
 wide, caller's planes, either   28          1024 // 28: 36  9: 60 in seven shares
