@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -32,18 +34,17 @@ def density(
     check_target(target)  # before minutes of work, not after
     if voxel is not None and len(voxel) not in (1, 3):
         raise ValueError(f"--voxel has {len(voxel)} numbers; give one side in mm, or three")
-    if quiet:
-        logging.getLogger("pvfiblets").setLevel(logging.ERROR)
     begin = time.perf_counter()
-    found = add_up(
-        source,
-        None if voxel is None else voxel if len(voxel) == 3 else voxel[0],
-        like=_image(like),
-        weights=_numbers(weights),
-        contrast=contrast if contrast in CONTRASTS else _numbers(contrast),
-        ends_only=ends_only,
-        progress=show_progress(quiet, json),
-    )
+    with _warnings_off() if quiet else nullcontext():
+        found = add_up(
+            source,
+            None if voxel is None else voxel if len(voxel) == 3 else voxel[0],
+            like=_image(like),
+            weights=_numbers(weights),
+            contrast=contrast if contrast in CONTRASTS else _numbers(contrast),
+            ends_only=ends_only,
+            progress=show_progress(quiet, json),
+        )
     seconds = time.perf_counter() - begin
     found.save(target)
     result = facts(target, found, seconds)
@@ -51,6 +52,18 @@ def density(
         print_json(result)
     else:
         print(summary(result))
+
+
+@contextmanager
+def _warnings_off() -> Iterator[None]:
+    """Have the package log errors only meanwhile: the process may go on to do other things."""
+    logger = logging.getLogger("pvfiblets")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def facts(target: str, found: DensityMap, seconds: float) -> dict[str, Any]:

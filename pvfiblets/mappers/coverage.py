@@ -46,7 +46,7 @@ class EdgeSmoothing:
         self._sample = sample
 
     def wants(self, narrower: float) -> bool:
-        """Say whether edges are to be known of lines that are thinner by some pixels than they are drawn."""
+        """Say whether lines that are thinner by some pixels than they are drawn are to be noted."""
         return narrower > 0.0 or not self._sample
 
     def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:

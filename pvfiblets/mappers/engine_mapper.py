@@ -271,9 +271,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
         narrower = self._narrower(pixel_scale(renderer, viewport))
-        if smoother is not None and not smoother.wants(narrower):
-            smoother = None
-        if smoother is not None:
+        if smoother is not None:  # in every frame: what wants them in some only would be made anew again and again
             style = replace(style, edges=True)
         slot = context.slot(self)
         with context.foreign():
@@ -292,7 +290,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
-        if smoother is not None:
+        if smoother is not None and smoother.wants(narrower):
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)

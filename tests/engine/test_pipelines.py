@@ -320,7 +320,8 @@ def test_limits_are_those_of_textures(gl, fabricate, random_lines, pipeline, mon
 
 
 def test_no_memory_for_a_picture_is_told(gl):
-    target = SimpleNamespace(size=SIZE, depth=None, owner=None, ids=None, position=None, across=None, relief=None)
+    blank = dict.fromkeys(("depth", "owner", "ids", "position", "across", "relief", "edges"))
+    target = SimpleNamespace(size=SIZE, **blank)
 
     def refuse(*_):
         raise moderngl.Error("out of memory")

@@ -251,13 +251,19 @@ CHANGED = {
         modules="plotting.picture_component",
     ),
     "picture: refined": What(
-        ran="effects/picture/copy.frag, effects/picture/mean.frag",
-        features="PICTURE_SAMPLES",
-        buffers="refinement",
-        modules="plotting.picture_component",
+        ran="""
+            effects/picture/copy.frag, effects/picture/coverage.frag, effects/picture/mean.frag,
+            effects/picture/visible_edges.frag
+        """,
+        features="EDGES, PICTURE_SAMPLES",
+        buffers="coverage, refinement",
+        modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
     ),
     "picture: refined, moving": What(
-        modules="plotting.picture_component",
+        ran="effects/picture/coverage.frag, effects/picture/visible_edges.frag",
+        features="EDGES, PICTURE_SAMPLES",
+        buffers="coverage",
+        modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
     ),
     "picture: tone": What(
         ran="effects/picture/copy.frag, effects/picture/tone.frag",

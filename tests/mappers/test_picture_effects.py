@@ -366,7 +366,7 @@ def test_an_error_while_drawing_is_raised_later(make_plotter, monkeypatch):
     fill(plotter)
     picture = Picture(plotter.renderer)
     picture.tone = Tone(gamma=2.0)
-    monkeypatch.setattr("pvfiblets.mappers.picture._COLOUR", 0x8CE7)
+    monkeypatch.setattr("pvfiblets.mappers.picture.COLOUR", 0x8CE7)
     plotter.show(auto_close=False)
     with pytest.raises(RuntimeError, match="draw into textures"):
         picture.raise_pending()
