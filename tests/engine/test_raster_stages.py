@@ -84,7 +84,7 @@ def switched(source, features):
     kept, stack = [], [True]
     for line in source.splitlines():
         if match := re.match(r"#(if|elif) (.*)", line):
-            text = re.sub(r"FEATURE_(\w+)", lambda m: str(m[1] in features), match[2])
+            text = re.sub(r"(!?)FEATURE_(\w+)", lambda m: str((m[2] in features) != bool(m[1])), match[2])
             value = all(any(ast.literal_eval(term.strip()) for term in part.split("||")) for part in text.split("&&"))
             stack.append(value)
         elif line.startswith("#ifndef"):
