@@ -112,8 +112,8 @@ def make_parser() -> argparse.ArgumentParser:
     verify = commands.add_parser(
         "verify",
         help="check a .fiblets file against its checksums and against its original",
-        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL. "
-        "Fails if the file is damaged or an error is greater than the file promises.",
+        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL, "
+        "and its directions from theirs. Fails if the file is damaged or an error is greater than the file promises.",
     )
     verify.add_argument("path", metavar="FILE", help="a .fiblets file")
     verify.add_argument(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as json_
+import math
 import sys
 import time
 from pathlib import Path
@@ -79,6 +80,7 @@ def rewrite(source: str, target: str, max_points: int = REWRITTEN_POINTS) -> dic
         "bytes_per_point": size / max(n_points, 1),
         "error_mm": None,
         "error_steps": None,
+        "error_degrees": None,
         "seconds": seconds,
         "points_per_second": n_points / max(seconds, 1e-9),
         "dropped": dropped,
@@ -100,7 +102,7 @@ def info(path: str, *, json: bool) -> None:
 
 
 def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
-    """Check a compressed file's checksums and, given the original, every point."""
+    """Check a compressed file's checksums and, given the original, every point and direction."""
     from pvfiblets.codec.convert import measure_file_error
     from pvfiblets.codec.fiblets_format import verify_file
     from pvfiblets.codec.fibletset import FibletSet
@@ -150,6 +152,9 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
             "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
             "         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()),
         ]
+        if result["points"] and math.isfinite(result["error_degrees"]["max"]):
+            angles = ", ".join(f"{k} {v:.2g}°" for k, v in result["error_degrees"].items())
+            lines.append(f"         directions: {angles}")
     speed = result["points_per_second"] / 1e6
     lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]

@@ -15,10 +15,11 @@ from PIL import Image
 
 from pvfiblets import formats
 from pvfiblets.cli import main, make_parser
+from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.synthetic import brain_streamlines
 
 CONVERT_KEYS = {
-    "streamlines", "points", "fiblets", "bytes", "bytes_per_point", "error_mm", "error_steps",
+    "streamlines", "points", "fiblets", "bytes", "bytes_per_point", "error_mm", "error_steps", "error_degrees",
     "seconds", "points_per_second", "dropped",
 }  # fmt: skip
 
@@ -69,6 +70,10 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
     assert result["error_mm"]["mean"] == pytest.approx(error.mean(), rel=0.02)
     assert result["error_steps"]["max"] == pytest.approx(error.max() / 0.5, rel=0.02)
+    angles = direction_angles(brain.points, back.points, brain.offsets)
+    assert result["error_degrees"]["max"] == pytest.approx(angles.max(), rel=0.02)
+    assert result["error_degrees"]["mean"] == pytest.approx(angles.mean(), rel=0.02)
+    assert result["error_degrees"]["p99"] == pytest.approx(np.quantile(angles, 0.99), rel=0.05)
     np.testing.assert_allclose(back.per_point["fa"].ravel(), brain.per_point["fa"], atol=0.003)
 
 
@@ -82,6 +87,7 @@ def test_convert_speaks_to_people_too(tractogram, tmp_path, capsys):
     out = capsys.readouterr().out
     assert "300 streamlines" in out
     assert "steps" in out
+    assert "directions: max" in out
     assert "per point" in out
 
 
@@ -91,7 +97,7 @@ def test_convert_out_of_the_compressed_form_is_read_by_nibabel(compressed, tract
     assert main(["convert", str(compressed), str(target), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert set(result) >= CONVERT_KEYS
-    assert result["error_mm"] is None
+    assert result["error_mm"] is result["error_degrees"] is None
     loaded = nib.streamlines.load(target).streamlines
     assert len(loaded) == 300
     np.testing.assert_allclose(loaded.get_data(), tractogram[1].points, atol=0.06)
@@ -114,6 +120,7 @@ def test_verify_measures_against_the_original(compressed, tractogram, capsys):
     result = json.loads(capsys.readouterr().out)
     assert result["kept"] is True
     assert 0.0 < result["error_mm"]["max"] <= result["promise_mm"]
+    assert 0.0 < result["error_degrees"]["mean"] < result["error_degrees"]["p99"] < result["error_degrees"]["max"]
     assert main(["verify", str(compressed)]) == 0
 
 

@@ -17,6 +17,7 @@ from .. import formats
 from ..streamlines import Streamlines
 from .archive import Member, write_archive
 from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
+from .decompress import iter_chunks
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
@@ -65,7 +66,8 @@ def compress_file(
     -------
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
-        error_steps{...}, promise_mm, seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped``.
+        error_steps{...}, error_degrees{max, mean, p99}, promise_mm, seconds`` (to read and code), ``points_per_second,
+        seconds_to_measure, dropped``.
 
     Raises
     ------
@@ -175,8 +177,8 @@ def _compare(
 ) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = FibletSet.open(target)
-    tally = ErrorTally(coded.promise, coded.step, by_streamline=False)
-    decoded = coded.iter_chunks(CHUNK_POINTS)
+    tally = ErrorTally(coded, by_streamline=False)
+    decoded = iter_chunks(coded, CHUNK_POINTS, np.float64)
     rest: Streamlines | None = None
     seen = 0
     for chunk in shown(originals, total, "measuring", progress):
@@ -194,7 +196,7 @@ def _compare(
                     f"streamline {seen + differs} has {a.counts[differs]} points in the original, {b.counts[differs]} "
                     "in the fiblets: errors can be measured only against what was compressed"
                 )
-            tally.add(a, b.points)
+            tally.add(a, np.asarray(b.points, np.float64))
             rest = _plain(rest, n, len(rest))
             done += n
             seen += n

@@ -16,7 +16,7 @@ from .baselines.directions import PaperFiblets, QFib
 from .baselines.linearised import linearised
 from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from .data_sets import SMALL, DataSet, data_sets
-from .errors_and_times import Turns, distances, error_figures, median_step
+from .errors_and_times import Turns, direction_figures, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 
@@ -136,9 +136,11 @@ class CodecStudy:
     )
     notes = (
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
-        "distance between consecutive points. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
-        "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
-        "read or written. "
+        "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
+        "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
+        "bounds' diagonal; a tangent is the mean direction of the two segments at a point. Raw points are float32: 12 "
+        "bytes each. All variants count 4 bytes a streamline for its number of points where decoding needs it. Times "
+        "are of one thread, in memory: no file is read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
         "*fiblets*: greedy encoder, with the error bound as the setting; *look-ahead*: effort high; *fiblets of 30 "
@@ -199,17 +201,18 @@ def measured(
     packed = pack(points, offsets)
     numbers = {"compress": turns.add(lambda: pack(points, offsets))}
     if hasattr(packed, "points"):
-        apart = distances(points, packed.points())
+        decoded = packed.points()
+        apart, angles = distances(points, decoded), direction_figures(points, decoded, offsets)
         numbers["decompress"] = turns.add(packed.points)
     else:
-        apart = packed.distances(points, offsets)
+        apart, angles = packed.distances(points, offsets), {}
     record = Record(
         data=data.name,
         group=data.group,
         approximation="points of streamlines",
         method=variant.name,
         setting=variant.setting,
-        errors=error_figures(apart, step),
+        errors=error_figures(apart, step) | angles,
         costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
         ours=variant.ours,
         default=variant.default,

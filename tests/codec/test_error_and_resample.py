@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
+from pvfiblets.codec.decompress import iter_chunks
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
@@ -28,10 +29,11 @@ def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch
     per = [distance[a:b] for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)]
     np.testing.assert_allclose(error.streamline_max_mm, [d.max() if len(d) else np.nan for d in per])
     np.testing.assert_allclose(error.streamline_mean_mm, [d.mean() if len(d) else np.nan for d in per])
-    chunks = list(fiblets.iter_chunks(100))
-    monkeypatch.setattr(type(fiblets), "iter_chunks", lambda self: iter(chunks))
+    chunks = list(iter_chunks(fiblets, 100, np.float64))
+    monkeypatch.setattr("pvfiblets.codec.error.iter_chunks", lambda fiblets, dtype: iter(chunks))
     again = pf.measure_error(lines, fiblets)
     assert (again.max_mm, again.p999_mm) == (error.max_mm, error.p999_mm)
+    assert (again.max_degrees, again.p99_degrees) == (error.max_degrees, error.p99_degrees)
     assert again.mean_mm == pytest.approx(error.mean_mm, rel=1e-12)
 
 
