@@ -82,7 +82,11 @@ def make_parser() -> argparse.ArgumentParser:
         "--step", type=positive, metavar="MM", help="resample to this distance between points (default: keep points)"
     )
     convert.add_argument(
-        "--max-error", type=positive, metavar="MM", help="greatest error of any point (default: a tenth of a step)"
+        "--max-error",
+        type=positive,
+        metavar="MM",
+        help="greatest error of any point (default: a tenth of a step; of uneven or coarse lines 1/4000 of the extent "
+        "if that is less)",
     )
     convert.add_argument(
         "--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error, same size"

@@ -35,7 +35,7 @@ def compress(
     """Compress streamlines into fiblets.
 
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
-    error of about a hundredth of a step; any other line is kept point for point on a lattice, at about two bytes a
+    error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
     point. Which of the two is decided for every 60 points, so that the promise always holds.
 
     Parameters
@@ -46,7 +46,9 @@ def compress(
         'auto' keeps every point. A number resamples each streamline to points that lie this far apart along it, mm, its
         two ends kept.
     max_error : float, optional
-        Promise in mm: no decoded point is farther from its original. Default: a tenth of the median step.
+        Promise in mm: no decoded point is farther from its original. Default: a tenth of the median step. Where steps
+        vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal: half
+        a pixel of a full-screen view.
     effort : {'fast', 'high'}
         'high' looks ahead with a beam while coding: a tenth of the speed for a lower mean error at the same bytes.
     order : {'input', 'hilbert'}

@@ -45,7 +45,7 @@ def as_fiblets(
     per_point : iterable of str
         Further per-point arrays to keep, for a later change of the actor's ``scalars``.
     max_error : float, optional
-        Greatest distance (mm) between a given and a drawn point; a tenth of a step by default.
+        Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
     progress : bool, default: False
         Show a progress bar.
     **options
