@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError
 
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
@@ -89,6 +90,14 @@ def make_parser() -> argparse.ArgumentParser:
         "if that is less)",
     )
     convert.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help="greatest angle between true and drawn directions, at segments longer than a pixel of a full-screen view "
+        f"(default: {DEFAULT_ANGLE:g}); none: any, for smaller files where --max-error is coarse",
+    )
+    convert.add_argument(
         "--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error, same size"
     )
     convert.add_argument(
@@ -122,6 +131,13 @@ def make_parser() -> argparse.ArgumentParser:
     verify.add_argument("path", metavar="FILE", help="a .fiblets file")
     verify.add_argument(
         "original", metavar="ORIGINAL", nargs="?", help="what it was made from; without it, only checksums"
+    )
+    verify.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help=f"say whether directions are within this angle (default: {DEFAULT_ANGLE:g})",
     )
     _quiet_and_json(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
@@ -332,6 +348,16 @@ def positive(text: str) -> float:
     value = float(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return value
+
+
+def angle(text: str) -> float | None:
+    """Parse degrees above zero and up to 90, or ``none``."""
+    if text == "none":
+        return None
+    value = float(text)
+    if not 0.0 < value <= 90.0:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0 and up to 90 degrees, or none")
     return value
 
 

@@ -82,6 +82,17 @@ def test_convert_keeps_the_promise_that_was_asked_for(tractogram, tmp_path, caps
     assert json.loads(capsys.readouterr().out)["error_mm"]["max"] <= 0.004 * 1.01
 
 
+def test_convert_keeps_the_directions_that_were_asked_for(tractogram, tmp_path, capsys):
+    largest = []
+    for angle in ("none", "10", "2"):
+        words = ["--max-error", "0.2", "--max-angle", angle, "--json"]
+        assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets"), *words]) == 0
+        largest.append(json.loads(capsys.readouterr().out)["error_degrees"]["max"])
+    assert largest[0] > 10.0 >= largest[1] > 2.0 >= largest[2]
+    assert main(["convert", str(tractogram[0]), str(tmp_path / "a.trk"), "--max-angle", "none"]) == 1
+    assert "--max-angle" in capsys.readouterr().err
+
+
 def test_convert_speaks_to_people_too(tractogram, tmp_path, capsys):
     assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets")]) == 0
     out = capsys.readouterr().out
@@ -118,9 +129,12 @@ def test_info_of_both_forms_agrees(compressed, tractogram, capsys):
 def test_verify_measures_against_the_original(compressed, tractogram, capsys):
     assert main(["verify", str(compressed), str(tractogram[0]), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
-    assert result["kept"] is True
+    assert result["kept"] is result["directions_kept"] is True
     assert 0.0 < result["error_mm"]["max"] <= result["promise_mm"]
     assert 0.0 < result["error_degrees"]["mean"] < result["error_degrees"]["p99"] < result["error_degrees"]["max"]
+    tight = f"{0.5 * result['error_degrees']['max']}"
+    assert main(["verify", str(compressed), str(tractogram[0]), "--max-angle", tight, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["directions_kept"] is False
     assert main(["verify", str(compressed)]) == 0
 
 

@@ -23,7 +23,7 @@ from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import Parameters, survey
+from .parameters import DEFAULT_ANGLE, Parameters, survey
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 from .resample import resample
@@ -38,6 +38,7 @@ def compress_file(
     *,
     step: float | Literal["auto"] = "auto",
     max_error: float | None = None,
+    max_angle: float | None = DEFAULT_ANGLE,
     effort: Effort = "fast",
     order: Order = "input",
     per_point: Sequence[str] = (),
@@ -54,7 +55,7 @@ def compress_file(
         Any format that :func:`pvfiblets.iter_chunks` reads.
     target : str or PathLike
         A name ending in ``.fiblets``; it appears when it is whole.
-    step, max_error, effort, per_point, per_point_bits
+    step, max_error, max_angle, effort, per_point, per_point_bits
         As in :func:`pvfiblets.compress`.
     order : {'input'}
         Another order needs all streamlines at once, and is refused here.
@@ -90,7 +91,7 @@ def compress_file(
             yield chunk if step == "auto" else resample(chunk, step)
 
     found = survey(shown(chunks(), None, "surveying", progress), per_point)
-    encoder = Encoder(Parameters.choose(found, max_error), effort)
+    encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
     folder = Path(target).resolve().parent
     with (
         tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,

@@ -12,8 +12,9 @@ import numpy.typing as npt
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
 
-__all__ = ["DEFAULT_PROMISE_EXTENT", "DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
+__all__ = ["DEFAULT_ANGLE", "DEFAULT_PROMISE_EXTENT", "DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
 
+DEFAULT_ANGLE = 10.0  # degrees between true and drawn tangents
 DEFAULT_PROMISE_STEPS = 0.1
 DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the bounds' diagonal: half a pixel of a full-screen view
 EVEN_SHARE = 0.9  # of the segments within STEP_BAND of the median: steps are constant, and directions code nearly all

@@ -1,8 +1,9 @@
 """How far drawn directions are from true ones: the angle between tangents, whose colour and light a line has.
 
 The tangent at a point is the sum of the unit vectors of the segment before and of the segment after, as a unit vector;
-at an end it is that of the only one. A segment of no length has no direction and adds nothing. A renderer interpolates
-tangents along each segment, so that they are compared at its two ends.
+at an end it is that of the only one. A segment of no length has no direction and adds nothing, nor does one shorter
+than a thousandth of a pixel in truth: its ends are one point twice, and its direction is that of their rounding. A
+renderer interpolates tangents along each segment, so that they are compared at its two ends.
 
 Segments shorter than a pixel of a picture of the whole set show no direction of their own. They are left out; where one
 is next to a longer segment, it counts in the tangent that they share. Where the true line turns back on itself, the sum
@@ -20,10 +21,13 @@ import numpy as np
 
 from .jit import kernel, parallel_kernel
 
-__all__ = ["LEAST_SUM", "PIXELS", "pixel", "tangent_angles"]
+__all__ = ["LEAST_SUM", "ONE_POINT", "PIXELS", "direction", "pixel", "tangent_angles", "unit"]
 
 PIXELS = 2000.0
 """Pixels of a full-screen view along the diagonal of the bounds."""
+
+ONE_POINT = 1e-3
+"""Pixels: points that are no farther apart are one, and no direction leads from one to the other."""
 
 LEAST_SUM = 1e-3
 """Sums of two unit vectors that are shorter have no direction: the line turns by more than 179.9 degrees."""
@@ -46,11 +50,18 @@ def pixel(bounds: Sequence[float]) -> float:
 
 
 @kernel
-def _direction(points: Any, i: int) -> Any:
+def direction(points: Any, i: int) -> Any:
     """Unit vector from point ``i`` to the next one and its length; zeros where it has none."""
-    x = np.float64(points[i + 1, 0]) - np.float64(points[i, 0])
-    y = np.float64(points[i + 1, 1]) - np.float64(points[i, 1])
-    z = np.float64(points[i + 1, 2]) - np.float64(points[i, 2])
+    return unit(
+        np.float64(points[i + 1, 0]) - np.float64(points[i, 0]),
+        np.float64(points[i + 1, 1]) - np.float64(points[i, 1]),
+        np.float64(points[i + 1, 2]) - np.float64(points[i, 2]),
+    )
+
+
+@kernel
+def unit(x: float, y: float, z: float) -> Any:
+    """Unit vector of a vector and its length; zeros where it has none."""
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
         return 0.0, 0.0, 0.0, 0.0
@@ -85,8 +96,10 @@ def tangent_angles(true: Any, drawn: Any, offsets: Any, shortest: float, degrees
             before = longer
             longer = False
             if i + 1 < offsets[s + 1]:
-                cx, cy, cz, length = _direction(true, i)
-                dx, dy, dz, _ = _direction(drawn, i)
+                cx, cy, cz, length = direction(true, i)
+                if length <= shortest * ONE_POINT:
+                    cx = cy = cz = 0.0
+                dx, dy, dz, _ = direction(drawn, i)
                 longer = length > shortest
             tx, ty, tz = ax + cx, ay + cy, az + cz
             ux, uy, uz = bx + dx, by + dy, bz + dz

@@ -59,11 +59,13 @@ class _Fiblets:
 def _fiblets(error_bound: float | None, effort: Any, record: int | None = None) -> Callable[[float], Any]:
     def make(step: float) -> Callable[[Points, Offsets], _Fiblets]:
         from pvfiblets.codec.compress import compress
+        from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
         def pack(points: Points, offsets: Offsets) -> _Fiblets:
             cut = offsets if record is None else recut(offsets, record)
             max_error = error_bound * step if error_bound is not None and step > 0.0 else None
-            made = compress(Streamlines(points, cut), max_error=max_error, effort=effort)
+            angle = DEFAULT_ANGLE if error_bound is None else None  # a bound of distances alone, as other methods have
+            made = compress(Streamlines(points, cut), max_error=max_error, max_angle=angle, effort=effort)
             # Only the last fiblet of a streamline has an end vector. Cut streamlines have too many.
             return _Fiblets(made, made.nbytes - made.ends.itemsize * (len(cut) - len(offsets)))
 
@@ -141,8 +143,9 @@ class CodecStudy:
         "are of one thread, in memory: no file is read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
-        "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps vary "
-        "or are coarse a 4000th of the bounds' diagonal at most); *look-ahead*: effort high; *fiblets of 30 "
+        "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
+        "vary or are coarse a 4000th of the bounds' diagonal at most, and directions within 10°; others do not bound "
+        "directions); *look-ahead*: effort high; *fiblets of 30 "
         "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/baselines/directions.py says what it leaves open), with the file's "
         "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "

@@ -13,6 +13,7 @@ from .record import Figure, Timing
 
 __all__ = ["Turns", "direction_angles", "direction_figures", "distances", "error_figures", "median_step"]
 
+ONE_POINT = 1e-3  # pixels
 LEAST_SUM = 1e-3  # of two unit vectors; a shorter one has no direction
 PIXELS = 2000.0  # of a full-screen view, along the diagonal of the bounds
 
@@ -71,8 +72,9 @@ def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.ND
     """Angles between the tangents of original and decoded lines, at both ends of every segment that shows.
 
     A tangent is the sum of the unit vectors of a point's two segments, as a unit vector; at an end of a line, that of
-    the only one. A segment shows where the original one is longer than a 2000th of the bounds' diagonal. Points at
-    which the original line turns back on itself have no tangent and are left out.
+    the only one. A pixel is a 2000th of the bounds' diagonal. A segment shows where the original one is longer than
+    that; of one that is shorter than a thousandth of it the ends are one point twice, and it has no direction. Points
+    at which the original line turns back on itself have no tangent and are left out.
 
     Parameters
     ----------
@@ -92,8 +94,10 @@ def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.ND
     inside = np.ones(len(points) - 1, bool)
     joins = offsets[1:-1] - 1
     inside[joins[(joins >= 0) & (joins < len(inside))]] = False
-    shown = inside & (np.linalg.norm(np.diff(points, axis=0), axis=1) > np.linalg.norm(np.ptp(points, axis=0)) / PIXELS)
-    true, _ = _tangents(points, inside)
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    pixel = np.linalg.norm(np.ptp(points, axis=0)) / PIXELS
+    shown = inside & (lengths > pixel)
+    true, _ = _tangents(points, inside & (lengths > ONE_POINT * pixel))
     drawn, before = _tangents(np.asarray(decoded, np.float64), inside)
     short = np.linalg.norm(drawn, axis=1) <= LEAST_SUM
     drawn[short] = before[short]
@@ -105,10 +109,10 @@ def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.ND
     return angles
 
 
-def _tangents(points: npt.NDArray[np.float64], inside: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def _tangents(points: npt.NDArray[np.float64], leads: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
     """Sums of the unit vectors of both segments at each point, and those of the segments before, ``(n, 3)`` each."""
     steps = np.diff(points, axis=0)
-    steps[~inside] = 0.0
+    steps[~leads] = 0.0
     lengths = np.linalg.norm(steps, axis=1, keepdims=True)
     units = np.divide(steps, lengths, out=np.zeros_like(steps), where=lengths > 0.0)
     none = np.zeros((1, 3))
