@@ -15,6 +15,7 @@ from PIL import Image
 
 from pvfiblets import formats
 from pvfiblets.cli import main, make_parser
+from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.synthetic import brain_streamlines
 
@@ -70,7 +71,8 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
     assert result["error_mm"]["mean"] == pytest.approx(error.mean(), rel=0.02)
     assert result["error_steps"]["max"] == pytest.approx(error.max() / 0.5, rel=0.02)
-    angles = direction_angles(brain.points, back.points, brain.offsets)
+    firsts = FibletSet.open(target).fiblet_points()
+    angles = direction_angles(brain.points, back.points, brain.offsets, firsts)
     assert result["error_degrees"]["max"] == pytest.approx(angles.max(), rel=0.02)
     assert result["error_degrees"]["mean"] == pytest.approx(angles.mean(), rel=0.02)
     assert result["error_degrees"]["p99"] == pytest.approx(np.quantile(angles, 0.99), rel=0.05)

@@ -178,7 +178,7 @@ def encode_directions(
         anchor, states, fresh = np.empty(3), np.empty((WIDTH, 10)), np.empty((WIDTH + 1, 10))
         parents, chosen = np.zeros((MAX_POINTS, WIDTH), np.uint8), np.zeros((MAX_POINTS, WIDTH), np.uint8)
         scratch = (anchor, states, fresh, parents, chosen)
-        units = np.empty((MAX_POINTS, 4))
+        units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)

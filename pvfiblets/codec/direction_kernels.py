@@ -36,10 +36,10 @@ _CELL = CELLS / (2.0 * EXTENT)
 
 @parallel_kernel
 def scan(points: Any, offsets: Any, found: Any) -> None:
-    """Bounds, longest squared segment and farthest last slot, by thousands of streamlines.
+    """Bounds, longest squared segment and farthest last fiblet, by thousands of streamlines.
 
     ``found`` is ``(ceil(n_streamlines / 1024), 8)`` float64: least x, y, z; greatest x, y, z; longest segment
-    squared; largest distance along an axis from the last point of a streamline to one of its last slot. A coordinate
+    squared; largest distance along an axis from the last point of a streamline to one of the last 60. A coordinate
     that is not finite makes the row's bounds infinite.
     """
     n = len(offsets) - 1
@@ -65,7 +65,7 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
                 found[row, 6] = max(found[row, 6], squares)
             last = offsets[s + 1] - 1
             if last >= offsets[s]:
-                for i in range(last - (last - offsets[s]) % MAX_POINTS, last):
+                for i in range(max(last - MAX_POINTS + 1, offsets[s]), last):
                     for axis in range(3):
                         apart = abs(np.float64(points[last, axis]) - np.float64(points[i, axis]))
                         found[row, 7] = max(found[row, 7], apart)
@@ -297,7 +297,7 @@ def encode_directions(
         Least and greatest step.
     promise : float
         Largest error accepted, mm.
-    bound : (float, float)
+    bound : (float, float, float)
         What bounds turns, as in :func:`.turn_kernels.may_turn`.
     end_scale : float
         Unit of the end vectors, mm.
@@ -318,7 +318,7 @@ def encode_directions(
         decoded = np.empty((2, MAX_POINTS, 3))
         trial = np.empty((2, MAX_POINTS), np.uint8)
         following = np.empty(3)
-        units = np.empty((MAX_POINTS, 4))
+        units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)

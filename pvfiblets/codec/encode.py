@@ -1,8 +1,9 @@
 """Streamlines to fiblet records, chunk by chunk: cut, code, and lay out in pages.
 
-A streamline is cut every 60 points. Each cut is first tried with direction bytes; where those would break the promise
-(steps that vary, bends beyond the cap angles) or turn a tangent too far it is coded on the lattice instead, split
-further where that saves bytes. No point is ever dropped or moved by more than the promise.
+A streamline is cut every 60 points, or a little before where it bends sharply there (:mod:`.turn_reference`). Each cut
+is first tried with direction bytes; where those would break the promise (steps that vary, bends beyond the cap angles)
+or turn a tangent too far it is coded on the lattice instead, split further where that saves bytes. No point is ever
+dropped or moved by more than the promise.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from . import beam_kernels, direction_kernels, lattice_kernels, nearest
+from . import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
 from .capsules import capsule_ends
 from .direction_codebook import cap_ratios, directions, quaternions
 from .jit import parallel_kernel
-from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack, unpack_ends
+from .layout import CAPS, PAGE, PAGE_BITS, pack, unpack_ends
 from .parameters import DEFAULT_ANGLE, Parameters
 from .tangents import PIXELS
 
@@ -92,11 +93,13 @@ class Encoder:
         """Largest anchor number."""
         return 2.0**self.parameters.anchor_bits - 1.0
 
-    def _bound(self) -> tuple[float, float]:
-        """Segments that count are longer than the first, mm; sine of the largest angle."""
+    def _bound(self) -> tuple[float, float, float]:
+        """Segments that count are longer than the first, mm; sine of the largest angle, and its chord."""
         if self.max_angle is None:
-            return math.inf, math.inf
-        return math.hypot(*self.parameters.anchor_scale) * self.top / PIXELS, math.sin(math.radians(self.max_angle))
+            return math.inf, math.inf, math.inf
+        angle = math.radians(self.max_angle)
+        diagonal = math.hypot(*self.parameters.anchor_scale) * self.top
+        return diagonal / PIXELS, math.sin(angle), 2.0 * math.sin(0.5 * angle)
 
     def add(self, streamlines: Streamlines) -> FibletChunk:
         """Code the next streamlines."""
@@ -104,7 +107,8 @@ class Encoder:
         points = np.ascontiguousarray(streamlines.points)
         offsets = np.asarray(streamlines.offsets, np.int64)
         origin, scale = np.array(p.origin), np.array(p.anchor_scale)
-        slots, rank, end = _cut(offsets)
+        bound = self._bound()
+        slots, rank, end = _cut(points, offsets, bound)
         self._count_empty(offsets)
         m = len(slots)
         ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
@@ -113,7 +117,6 @@ class Encoder:
         encode = direction_kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
         out = (ok, shape, step, cap, radius, end, end_words, codes)
         steps = (p.step_lo, p.step_hi)
-        bound = self._bound()
         encode(points, origin, slots, scale, self.top, steps, p.budget, bound, p.end_scale, search_tables(), out)
 
         wanted = np.flatnonzero(ok == 0)
@@ -233,17 +236,17 @@ class Encoder:
 
 
 def _cut(
-    offsets: npt.NDArray[np.int64],
+    points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], bound: tuple[float, float, float]
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.uint8]]:
     """Slots of at most 60 points: ``(m, 2)`` first point and count, rank, and whether each ends its streamline."""
-    lengths = np.diff(offsets)
-    filled = np.flatnonzero(lengths > 0)
-    per = -(-lengths[filled] // MAX_POINTS)
-    rank = np.repeat(np.arange(len(filled)), per)
-    nth = np.arange(len(rank)) - np.repeat(np.cumsum(per) - per, per)
-    first = offsets[filled][rank] + MAX_POINTS * nth
-    count = np.minimum(MAX_POINTS, offsets[filled + 1][rank] - first)
-    return np.stack([first, count], axis=1), rank, (nth == per[rank] - 1).astype(np.uint8)
+    per = np.zeros(len(offsets) - 1, np.int64)
+    turn_kernels.cut(points, offsets, bound, per, per, np.empty((0, 2), np.int64))
+    slots, at = np.empty((int(per.sum()), 2), np.int64), np.cumsum(per) - per
+    if len(slots):
+        turn_kernels.cut(points, offsets, bound, per, at, slots)
+    end = np.zeros(len(slots), np.uint8)
+    end[(at + per)[per > 0] - 1] = 1
+    return slots, np.repeat(np.cumsum(per > 0) - 1, per), end
 
 
 def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> npt.NDArray[Any]:

@@ -11,6 +11,8 @@ import numpy.typing as npt
 from ..streamlines import Streamlines
 from .decompress import iter_chunks
 from .fibletset import FibletSet
+from .layout import unpack
+from .streamline_ranges import coded_rows
 from .tangents import pixel, tangent_angles
 
 __all__ = ["CodingError", "ErrorTally", "measure_error"]
@@ -64,6 +66,7 @@ class ErrorTally:
         self._step = fiblets.step
         self._dtype = fiblets.point_dtype()
         self._pixel = pixel(fiblets.bounds)
+        self._firsts = _FirstPoints(fiblets)
         self._by_streamline = by_streamline
         self._largest = 0.0
         self._edge = max(fiblets.promise, np.finfo(float).tiny) * 1.25
@@ -104,7 +107,7 @@ class ErrorTally:
         self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]
     ) -> None:
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
-        tangent_angles(true, drawn, offsets, self._pixel, degrees, uses)
+        tangent_angles(true, drawn, offsets, self._firsts.of_next(len(true)), self._pixel, degrees, uses)
         bins = np.ceil(degrees * _PER_DEGREE).astype(np.int64)
         self._angles += np.bincount(bins, uses, minlength=len(self._angles)).astype(np.int64)
         self._angle_sum += float(degrees @ uses)
@@ -130,6 +133,34 @@ class ErrorTally:
             return float("nan"), float("nan"), float("nan")
         p99 = int(np.searchsorted(counted, 0.99 * counted[-1])) / _PER_DEGREE
         return self._largest_angle, self._angle_sum / float(counted[-1]), min(p99, self._largest_angle)
+
+
+class _FirstPoints:
+    """Whether points are the first of their fiblets, for chunks of consecutive streamlines."""
+
+    def __init__(self, fiblets: FibletSet) -> None:
+        self._fiblets = fiblets
+        self._fiblet = 0
+        self._point = 0
+        self._all: npt.NDArray[np.bool_] | None = None
+        if not fiblets.in_order:
+            coded = np.zeros(fiblets.n_points, bool)
+            coded[fiblets.fiblet_points()] = True
+            self._all = np.empty_like(coded)
+            self._all[coded_rows(fiblets)] = coded
+
+    def of_next(self, n: int) -> npt.NDArray[np.bool_]:
+        """``(n,)`` of the next ``n`` points, which belong to whole streamlines."""
+        if self._all is not None:
+            self._point += n
+            return self._all[self._point - n : self._point]
+        counts = unpack("last", self._fiblets.decoding[self._fiblet : self._fiblet + n]).astype(np.int64) + 1
+        starts = np.cumsum(counts) - counts
+        starts = starts[starts < n]
+        self._fiblet += len(starts)
+        firsts = np.zeros(n, bool)
+        firsts[starts] = True
+        return firsts
 
 
 def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:

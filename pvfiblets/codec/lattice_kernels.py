@@ -135,6 +135,8 @@ def _plan(true: Any, count: int, total: int, scale: Any, top: float, h: float, u
         size[node] = _size(box[node], high[node] - low[node])
         if over > 1.0:
             size[node] += TURNED_TOO_FAR
+        if low[node] > 0 and units[low[node], 4] < 0.0:
+            size[node] += TURNED_TOO_FAR
         if (box[node] >> 3 == LATTICE8 and over <= 1.0) or 2 * node + 1 >= _NODES:
             whole[node] = 1
             continue
@@ -194,7 +196,7 @@ def plan_lattices(
         slot = wanted[w]
         first, n = slots[slot, 0], slots[slot, 1]
         total = n if end[slot] else n + 1
-        true, units = np.empty((MAX_POINTS + 1, 3)), np.empty((MAX_POINTS, 4))
+        true, units = np.empty((MAX_POINTS + 1, 3)), np.empty((MAX_POINTS, 5))
         take_points(points, origin, first, total, true)
         may_turn(points, first, n, follows(slots, end, slot), bound, units)
         mine = cuts[first : first + n]
@@ -280,7 +282,7 @@ def encode_lattices(
         first, n = slots[slot, 0], slots[slot, 1]
         more = 0 if end[slot] else 1
         true = np.empty((MAX_POINTS + 1, 3))
-        decoded, units, following = np.empty((MAX_POINTS, 3)), np.empty((MAX_POINTS, 4)), np.empty(3)
+        decoded, units, following = np.empty((MAX_POINTS, 3)), np.empty((MAX_POINTS, 5)), np.empty(3)
         take_points(points, origin, first, n + more, true)
         may_turn(points, first, n, follows(slots, end, slot), bound, units)
         fiblet, byte = at[w, 0], at[w, 1]

@@ -331,6 +331,7 @@ def plan_lattice(points: Array, anchors: Array, h: float, turns: Turns | None = 
         box = _box(points[a:b], anchors[a], h * 0.5**halvings)
         whole = box.size(count) if box is not None else 2**30
         whole += TURNED_TOO_FAR if over > 1.0 else 0
+        whole += TURNED_TOO_FAR if turns is not None and a > 0 and turns.first[a : a + 1].min(initial=0.0) < 0.0 else 0
         if (box is not None and box.kind == Kind.LATTICE8 and over <= 1.0) or depth == TREE_DEPTH:
             return whole, [count]
         middle = a + count // 2

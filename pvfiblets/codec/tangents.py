@@ -8,6 +8,9 @@ renderer interpolates tangents along each segment, so that they are compared at 
 Segments shorter than a pixel of a picture of the whole set show no direction of their own. They are left out; where one
 is next to a longer segment, it counts in the tangent that they share. Where the true line turns back on itself, the sum
 has no direction, and the point is left out as well.
+
+Drawn tangents are as the shaders have them (``fiblets/attributes/tangent.glsl``): the same, but at the first point of a
+fiblet that of the segment after it.
 """
 
 from __future__ import annotations
@@ -71,7 +74,7 @@ def unit(x: float, y: float, z: float) -> Any:
 
 
 @parallel_kernel
-def tangent_angles(true: Any, drawn: Any, offsets: Any, shortest: float, degrees: Any, uses: Any) -> None:
+def tangent_angles(true: Any, drawn: Any, offsets: Any, firsts: Any, shortest: float, degrees: Any, uses: Any) -> None:
     """Angle between true and drawn tangent at every point.
 
     Parameters
@@ -80,6 +83,8 @@ def tangent_angles(true: Any, drawn: Any, offsets: Any, shortest: float, degrees
         Points, mm, of the same streamlines.
     offsets : (n_streamlines + 1,) int64
         Where each streamline begins.
+    firsts : (n,) bool
+        Whether a point is the first of a fiblet.
     shortest : float
         Only segments that are longer in truth count, mm.
     degrees : (n,) float64
@@ -103,6 +108,8 @@ def tangent_angles(true: Any, drawn: Any, offsets: Any, shortest: float, degrees
                 longer = length > shortest
             tx, ty, tz = ax + cx, ay + cy, az + cz
             ux, uy, uz = bx + dx, by + dy, bz + dz
+            if firsts[i] and (dx != 0.0 or dy != 0.0 or dz != 0.0):
+                ux, uy, uz = dx, dy, dz
             degrees[i] = 0.0
             uses[i] = int(before) + int(longer)
             if tx * tx + ty * ty + tz * tz <= LEAST_SUM * LEAST_SUM:

@@ -138,9 +138,10 @@ class CodecStudy:
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
         "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
         "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
-        "bounds' diagonal; a tangent is the mean direction of the two segments at a point. Raw points are float32: 12 "
-        "bytes each. All variants count 4 bytes a streamline for its number of points where decoding needs it. Times "
-        "are of one thread, in memory: no file is read or written. "
+        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; a fiblet is drawn with that "
+        "of its first segment at its first point. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
+        "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
+        "read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
         "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
@@ -204,7 +205,8 @@ def measured(
     numbers = {"compress": turns.add(lambda: pack(points, offsets))}
     if hasattr(packed, "points"):
         decoded = packed.points()
-        apart, angles = distances(points, decoded), direction_figures(points, decoded, offsets)
+        firsts = packed.fiblets.fiblet_points() if isinstance(packed, _Fiblets) else None
+        apart, angles = distances(points, decoded), direction_figures(points, decoded, offsets, firsts)
         numbers["decompress"] = turns.add(packed.points)
     else:
         apart, angles = packed.distances(points, offsets), {}

@@ -68,7 +68,9 @@ def error_figures(apart: npt.NDArray[np.float64], step: float, unit: str = "mm")
     return figures | {f"{name} in steps": Figure(value * scale, "steps") for name, value in numbers.items()}
 
 
-def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.NDArray[np.float64]:
+def direction_angles(
+    original: Floats, decoded: Floats, offsets: Ints, firsts: Ints | None = None
+) -> npt.NDArray[np.float64]:
     """Angles between the tangents of original and decoded lines, at both ends of every segment that shows.
 
     A tangent is the sum of the unit vectors of a point's two segments, as a unit vector; at an end of a line, that of
@@ -82,6 +84,8 @@ def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.ND
         ``(n, 3)``, mm.
     offsets : numpy.ndarray
         ``(n_streamlines + 1,)``.
+    firsts : numpy.ndarray, optional
+        First points of fiblets. The drawn tangent at such a point is that of the segment after it.
 
     Returns
     -------
@@ -99,6 +103,9 @@ def direction_angles(original: Floats, decoded: Floats, offsets: Ints) -> npt.ND
     shown = inside & (lengths > pixel)
     true, _ = _tangents(points, inside & (lengths > ONE_POINT * pixel))
     drawn, before = _tangents(np.asarray(decoded, np.float64), inside)
+    if firsts is not None:
+        after = drawn[firsts] - before[firsts]
+        drawn[firsts] = np.where(after.any(axis=1, keepdims=True), after, drawn[firsts])
     short = np.linalg.norm(drawn, axis=1) <= LEAST_SUM
     drawn[short] = before[short]
     ends = np.concatenate([np.flatnonzero(shown), np.flatnonzero(shown) + 1])
@@ -120,9 +127,11 @@ def _tangents(points: npt.NDArray[np.float64], leads: npt.NDArray[np.bool_]) -> 
     return before + np.concatenate([units, none]), before
 
 
-def direction_figures(original: Floats, decoded: Floats, offsets: Ints) -> dict[str, Figure]:
+def direction_figures(
+    original: Floats, decoded: Floats, offsets: Ints, firsts: Ints | None = None
+) -> dict[str, Figure]:
     """Return the largest, mean and 99th percentile of :func:`direction_angles`; nothing where no segment shows."""
-    angles = direction_angles(original, decoded, offsets)
+    angles = direction_angles(original, decoded, offsets, firsts)
     if not len(angles):
         return {}
     numbers = {"max": angles.max(), "mean": angles.mean(), "p99": np.quantile(angles, 0.99)}

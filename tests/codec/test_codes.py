@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,26 +14,31 @@ import pvfiblets as pf
 from pvfiblets.codec import reference
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
+from pvfiblets.codec.turn_reference import cut as reference_cut
 from pvfiblets.codec.turn_reference import may_turn
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering
 
 
+def pixel_of(fiblets: FibletSet) -> float:
+    bounds = np.array(fiblets.bounds)
+    return float(np.linalg.norm(bounds[1::2] - bounds[::2])) / 2000.0
+
+
 def reference_slot(
-    line: np.ndarray, first: int, fiblets: FibletSet
+    line: np.ndarray, first: int, count: int, fiblets: FibletSet
 ) -> list[reference.DirectionPiece | reference.LatticePiece]:
     """What the encoder must write for one cut of at most 60 points of a streamline, by the reference alone."""
     p = fiblets.parameters
-    bounds = np.array(fiblets.bounds)
-    turns = may_turn(line, float(np.linalg.norm(bounds[1::2] - bounds[::2])) / 2000.0, 10.0)[first : first + MAX_POINTS]
-    points = line[first : first + MAX_POINTS + 1] - fiblets.origin
+    turns = may_turn(line, pixel_of(fiblets), 10.0)[first : first + count]
+    points = line[first : first + count + 1] - fiblets.origin
     scale = fiblets.anchor_scale
     top = 2.0**p.anchor_bits - 1
     grid = np.divide(points, scale, out=np.zeros_like(points), where=scale > 0)
     anchors = scale * np.clip(np.rint(grid), 0, top)
-    points = points[:MAX_POINTS]
-    following = anchors[MAX_POINTS] if len(anchors) > MAX_POINTS else None
+    points = points[:count]
+    following = anchors[count] if len(anchors) > count else None
     if len(points) > 1:
         best = None
         step, length = reference.choose_step(points, p.step_lo, p.step_hi)
@@ -54,19 +60,22 @@ def reference_slot(
     return pieces
 
 
-def assert_matches_reference(streamlines: Streamlines, fiblets: FibletSet, most: int = 150) -> None:
+def assert_matches_reference(streamlines: Streamlines, fiblets: FibletSet, most: int = 60) -> None:
     starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
     code_at = unpack("code", fiblets.decoding) + fiblets._base(1)
     where = {int(s): f for f, s in enumerate(starts)}
-    cuts = [
-        (int(s), int(b), a)
-        for s, b in zip(streamlines.offsets[:-1], streamlines.offsets[1:], strict=True)
-        for a in range(int(s), int(b), MAX_POINTS)
-    ]
+    cuts = []
+    for s, e in zip(streamlines.offsets[:-1].tolist(), streamlines.offsets[1:].tolist(), strict=True):
+        if e > s:
+            begins = [0]
+            if e - s > MAX_POINTS:
+                line = streamlines.points[s:e].astype(np.float64)
+                begins = reference_cut(may_turn(line, pixel_of(fiblets), 10.0), 10.0)
+            cuts += [(s, e, a, b - a) for a, b in pairwise([*begins, e - s])]
     chosen = np.random.default_rng(0).permutation(len(cuts))[:most]
-    for s, b, a in (cuts[c] for c in chosen):
-        line = streamlines.points[s:b].astype(np.float64)
-        for piece in reference_slot(line, a - s, fiblets):
+    for s, e, first, count in (cuts[c] for c in chosen):
+        line, a = streamlines.points[s:e].astype(np.float64), s + first
+        for piece in reference_slot(line, first, count, fiblets):
             f = where[a]
             assert counts[f] == len(piece.points)
             words = {name: int(unpack(name, fiblets.decoding)[f]) for name in ("shape", "step", "cap", "kind")}

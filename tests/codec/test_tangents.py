@@ -13,10 +13,13 @@ from pvfiblets.streamlines import Streamlines
 from .samples import extremes, noisy, smooth, wandering
 
 
-def measured(true: np.ndarray, drawn: np.ndarray, offsets: np.ndarray, shortest: float = 0.0) -> np.ndarray:
+def measured(
+    true: np.ndarray, drawn: np.ndarray, offsets: np.ndarray, shortest: float = 0.0, firsts: object = ()
+) -> np.ndarray:
     """Angles at both ends of each segment that counts, in the order of points."""
-    degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
-    tangent_angles(true, drawn, np.asarray(offsets, np.int64), shortest, degrees, uses)
+    degrees, uses, first = np.empty(len(true)), np.empty(len(true), np.uint8), np.zeros(len(true), bool)
+    first[np.asarray(firsts, np.int64)] = True
+    tangent_angles(true, drawn, np.asarray(offsets, np.int64), first, shortest, degrees, uses)
     return np.repeat(degrees, uses)
 
 
@@ -58,10 +61,10 @@ def test_the_kernel_agrees_with_numpy(name: str) -> None:
     lines = {"smooth": smooth(), "noisy": noisy(), "wandering": wandering(), **extremes()}[name]
     fiblets = pf.compress(lines)
     drawn = fiblets.decompress(dtype=np.float64).points
-    offsets = np.asarray(lines.offsets, np.int64)
+    offsets, firsts = np.asarray(lines.offsets, np.int64), fiblets.fiblet_points()
     with np.errstate(over="ignore"):
-        expected = direction_angles(lines.points, drawn, offsets)
-    found = measured(lines.points, drawn, offsets, pixel(fiblets.bounds))
+        expected = direction_angles(lines.points, drawn, offsets, firsts)
+    found = measured(lines.points, drawn, offsets, pixel(fiblets.bounds), firsts)
     if name != "denormal coordinates":  # NumPy's squares of them are 0
         assert len(found) == len(expected)
         np.testing.assert_allclose(np.sort(found), np.sort(expected), atol=1e-6, rtol=1e-9)
@@ -73,6 +76,21 @@ def test_the_kernel_agrees_with_numpy(name: str) -> None:
     assert error.mean_degrees == pytest.approx(found.mean(), rel=1e-12)
     exact = np.quantile(found, 0.99, method="inverted_cdf")
     assert exact <= error.p99_degrees <= min(exact + 0.01, error.max_degrees)
+
+
+def test_a_fiblet_begins_with_the_direction_of_its_first_segment() -> None:
+    """As the shaders draw it: half of the turn is missing there, though nothing was moved."""
+    line = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0]])
+    np.testing.assert_allclose(measured(line, line, [0, 5], 0.0, [0, 2]), [0, 0, 0, 45, 45, 0, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(measured(line, line, [0, 5], 0.0, [0, 3, 4]), 0.0, atol=1e-12)
+    expected = direction_angles(line, line, np.array([0, 5]), np.array([0, 2]))
+    np.testing.assert_allclose(np.sort(expected), [0, 0, 0, 0, 0, 0, 45, 45], atol=1e-12)
+
+
+def test_sets_out_of_order_are_measured_as_those_in_order() -> None:
+    lines = noisy(40, 150)
+    plain, hilbert = (pf.measure_error(lines, pf.compress(lines, order=order)) for order in ("input", "hilbert"))
+    assert hilbert.summary()["error_degrees"] == pytest.approx(plain.summary()["error_degrees"])
 
 
 def test_the_pixel_is_a_share_of_the_diagonal() -> None:

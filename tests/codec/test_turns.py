@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec.turn_reference import Turns, may_turn
+from pvfiblets.codec.turn_reference import cut, may_turn
 from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.streamlines import Streamlines
 
@@ -25,10 +26,11 @@ FILES = [
 ]  # fmt: skip
 
 
-def angles(lines: Streamlines, **options: object) -> np.ndarray:
-    """Angles between the tangents of lines and of what is decoded, by plain NumPy."""
-    decoded = pf.compress(lines, **options).decompress(dtype=np.float64)
-    return direction_angles(lines.points, decoded.points, np.asarray(lines.offsets, np.int64))
+def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.ndarray:
+    """Angles between the tangents of lines and of what is drawn, by plain NumPy; of bare points if not ``begun``."""
+    fiblets = pf.compress(lines, **options)
+    decoded, offsets = fiblets.decompress(dtype=np.float64).points, np.asarray(lines.offsets, np.int64)
+    return direction_angles(lines.points, decoded, offsets, fiblets.fiblet_points() if begun else None)
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -39,12 +41,15 @@ def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> N
 
 
 @pytest.mark.parametrize("effort", ["fast", "high"])
-@pytest.mark.parametrize(("make", "kept"), [(smooth, 1.0), (noisy, 1.3), (wandering, 15.0), (wandering, 1.0)])
+@pytest.mark.parametrize(("make", "kept"), [(smooth, 1.0), (noisy, 1.3), (wandering, 15.0)])
 def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept: float, effort: str) -> None:
     lines = make()
+    # The first two turn at every point by more than such angles, so that no first point of a fiblet can keep them.
+    begun = make is wandering
     coarse = 0.4 * float(np.median(np.linalg.norm(np.diff(lines[0], axis=0), axis=1)))
-    free = angles(lines, max_error=coarse, max_angle=None, effort=effort).max()
-    assert angles(lines, max_error=coarse, max_angle=kept, effort=effort).max() <= kept < free
+    free = angles(lines, begun=begun, max_error=coarse, max_angle=None, effort=effort).max()
+    bound = angles(lines, begun=begun, max_error=coarse, max_angle=kept, effort=effort).max()
+    assert bound <= kept < free
 
 
 @pytest.mark.parametrize("name", extremes())
@@ -60,7 +65,7 @@ def test_doubled_points_and_short_segments_beside_long_ones() -> None:
     rng = np.random.default_rng(4)
     lines = []
     for k in range(300):
-        steps = rng.normal(size=(14, 3)) * 4.0
+        steps = 4.0 * (rng.normal(size=3) + 0.15 * rng.normal(size=(14, 3)))
         steps[rng.integers(1, 13)] *= (0.0, 1e-7, 0.02)[k % 3]
         lines.append(np.cumsum(steps, axis=0) + rng.uniform(-60, 60, 3))
     made = Streamlines.from_list(lines)
@@ -95,5 +100,54 @@ def test_segments_within_their_bounds_keep_the_angle(seed: int, angle: float) ->
         turn = 2.0 * np.arcsin(min(0.5 * allowed, 1.0)) * rng.choice([0.0, 0.5, 0.999999])
         steps.append(np.cos(turn) * unit + np.sin(turn) * across)
     drawn = np.concatenate([[[0.0, 0, 0]], np.cumsum(steps, axis=0)])
-    assert Turns(turns.units, turns.allowed).excess(drawn) <= 1.0
+    assert turns.excess(drawn) <= 1.0
     assert direction_angles(line, drawn, np.array([0, 12])).max() <= angle * (1.0 + 1e-9)
+
+
+@settings(max_examples=100)
+@given(st.integers(0, 2**32 - 1), st.floats(5.0, 90.0))
+def test_first_segments_within_their_bounds_keep_the_angle(seed: int, angle: float) -> None:
+    """The same where fiblets begin, at points where they may."""
+    rng = np.random.default_rng(seed)
+    line = np.cumsum(rng.normal(size=3) + 0.3 * rng.normal(size=(12, 3)), axis=0)
+    turns = may_turn(line, 0.0, angle)
+    for i in np.flatnonzero(np.isfinite(turns.first) & (turns.first > 0.0)):
+        across = np.cross(turns.units[i], rng.normal(size=3))
+        across /= np.linalg.norm(across)
+        turn = 2.0 * np.arcsin(0.5 * turns.first[i]) * 0.999999
+        drawn = np.array([line[i], line[i] + np.cos(turn) * turns.units[i] + np.sin(turn) * across])
+        assert turns[i : i + 1].excess(drawn) == pytest.approx(max(1.0, turns.first[i] / turns.allowed[i]), rel=1e-3)
+        moved = line.copy()
+        moved[i:] += drawn[1] - line[i + 1]
+        moved[i] = line[i]
+        found = direction_angles(line[i - 1 : i + 2], moved[i - 1 : i + 2], np.array([0, 3]), np.array([1]))
+        assert found[1] <= angle * (1.0 + 1e-9)
+
+
+def test_fiblets_begin_where_lines_bend_little() -> None:
+    """Corners at every 60th point, of which each would be the first of a fiblet."""
+    steps = np.tile([[1.0, 0.0, 0.0]], (400, 1))
+    for corner in range(60, 400, 60):
+        steps[corner:] = np.roll(steps[corner:], 1, axis=1)
+    lines = Streamlines.from_list([np.cumsum(steps, axis=0)])
+    firsts = pf.compress(lines).fiblet_points()
+    corners = np.arange(60, 400, 60) - 1
+    assert not np.isin(firsts, corners).any()
+    assert angles(lines).max() <= 10.0
+    assert np.diff(pf.compress(lines, max_angle=None).fiblet_points()).tolist() == [60] * 6
+
+
+def test_lines_that_bend_everywhere_are_cut_where_they_bend_least() -> None:
+    lines = wandering(30, 200)
+    fiblets = pf.compress(lines)
+    fiblets.verify()
+    assert fiblets.fiblet_counts().max() <= 60
+    enough = 0.8 * 2.0 * np.sin(np.radians(5.0))
+    for s, line in enumerate(lines):
+        turns = may_turn(line, 0.0, 10.0)
+        mine = set((fiblets.fiblet_points() - lines.offsets[s]).tolist())
+        assert set(cut(turns, 10.0)) <= mine
+        for a, b in pairwise(cut(turns, 10.0)):
+            assert 40 < b - a <= 60
+            if b < len(turns.bends):
+                assert turns.bends[b] <= max(turns.bends[a + 41 : a + 61].min(), enough)
