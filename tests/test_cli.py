@@ -90,7 +90,7 @@ def test_convert_keeps_the_directions_that_were_asked_for(tractogram, tmp_path, 
         words = ["--max-error", "0.2", "--max-angle", angle, "--json"]
         assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets"), *words]) == 0
         largest.append(json.loads(capsys.readouterr().out)["error_degrees"]["max"])
-    assert largest[0] > 1.5 >= largest[1]
+    assert largest[0] > 2.0 > largest[1]  # these lines turn by more than 1.5 degrees wherever a fiblet could begin
     assert main(["convert", str(tractogram[0]), str(tmp_path / "a.trk"), "--max-angle", "none"]) == 1
     assert "--max-angle" in capsys.readouterr().err
 
