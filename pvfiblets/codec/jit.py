@@ -4,13 +4,19 @@ numba keeps compiled kernels beside their source and looks at that one file to s
 that calls another module's kernel, or takes its constants, would be used on after that module changed, and might then
 read beyond arrays whose layout is another by now. So the kept kernels are keyed by all the codec's sources as well, and
 those of a folder of the codec by that folder's besides.
+
+They are kept in the user's folder for such things, by that key: another clone or installation of the same sources finds
+them compiled, and a package folder that nobody may write to is none the worse.
 """
 
 from __future__ import annotations
 
 import hashlib
 import logging
+import os
+import shutil
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -18,12 +24,14 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.misc.appdirs import AppDirs
 
 __all__ = ["compilation_noticed", "kernel", "parallel_kernel", "sources_digest"]
 
 logger = logging.getLogger("pvfiblets.codec")
 NOTICED = 1.0  # seconds, after which one wonders
+FORGOTTEN = 30 * 86400.0  # seconds, after which kernels of other sources are not kept any more
 _DISPATCHERS: list[Any] = []
 HOME = Path(__file__).resolve().parent
 
@@ -39,7 +47,35 @@ def sources_digest(folder: Path = HOME) -> str:
     return digest.hexdigest()
 
 
+@cache
+def kept_folder(digest: str) -> Path:
+    """Return the folder of the kernels of sources of some digest; of others, what nobody has used for a month goes."""
+    home = Path(AppDirs("pvfiblets", appauthor=False).user_cache_dir) / "kernels"
+    folder = home / digest[:16]
+    folder.mkdir(parents=True, exist_ok=True)
+    os.utime(folder)
+    for other in home.iterdir():
+        if other.stat().st_mtime < time.time() - FORGOTTEN:
+            shutil.rmtree(other, ignore_errors=True)
+    return folder
+
+
 class _KeyedBySources(FunctionCache):
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        if numba.config.CACHE_DIR:  # the user's own choice, NUMBA_CACHE_DIR
+            return
+        digest = sources_digest(Path(function.__code__.co_filename).resolve().parent)
+        try:
+            folder = str(kept_folder(digest))
+        except OSError as error:
+            logger.debug("kernels are kept beside their sources: %s", error)
+            return
+        self._cache_path = folder
+        self._cache_file = IndexDataCacheFile(
+            cache_path=folder, filename_base=self._impl.filename_base, source_stamp=digest
+        )
+
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         folder = Path(self._py_func.__code__.co_filename).resolve().parent
         return (*super()._index_key(sig, codegen), sources_digest(folder))

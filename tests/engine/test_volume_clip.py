@@ -212,11 +212,8 @@ def test_empty_nodes_are_left_before_what_follows_begins(cast, camera, step):
     stairs = RaycastVolume(numbers, affine)
     fog = Transfer([[1, 0.5, 0, 0.0], [1, 0.5, 0, 0.9]], (0.0, 1.0))
     matrix = camera(SIZE, eye=(-60, -9, 4), target=(0, 0, 0), near=1, far=150)
-    for options in (
-        {"mode": "isosurface", "values": (0.05,)},
-        {"mode": "mip"},
-        *({"mode": "composite", "transfer": fog, "integrator": kind} for kind in ("riemann", "simpson", "preintegrated")),
-    ):
+    light = ({"mode": "composite", "transfer": fog, "integrator": i} for i in ("riemann", "simpson", "preintegrated"))
+    for options in ({"mode": "isosurface", "values": (0.05,)}, {"mode": "mip"}, *light):
         plain, _ = cast(stairs, RaycastOptions(**options, step=step, octree=False), matrix)
         skipped, renderer = cast(stairs, RaycastOptions(**options, step=step), matrix)
         assert plain["there"].sum() > 500
