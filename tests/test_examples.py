@@ -16,7 +16,8 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))
 HEAVY = {
     "08_large_and_culled", "13_more_colours", "15_selected_tracts", "16_furball", "18_halos_of_air",
-    "19_halos_of_a_scan", "20_halos_of_knots", "21_depth_of_field", "22_angiogram", "23_tracts_in_their_anatomy", "24_inside_a_volume",
+    "19_halos_of_a_scan", "20_halos_of_knots", "21_depth_of_field", "22_angiogram",
+    "23_tracts_in_their_anatomy", "24_inside_a_volume",
 }  # fmt: skip
 """What other examples and pages show as well, and larger. `make docs` draws all."""
 
