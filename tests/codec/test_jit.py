@@ -64,3 +64,36 @@ def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path: Path) -> None:
     home = {"XDG_CACHE_HOME": str(tmp_path / "file"), "NUMBA_CACHE_DIR": ""}
     assert run(tmp_path, **home) == ["3.0", "0"]
     assert run(tmp_path, **home) == ["3.0", "1"]
+
+
+FORKS = """
+import multiprocessing
+import numpy as np
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+
+lines = brain_streamlines(40, seed=1)
+
+def work(_):
+    fiblets = pvfiblets.compress(lines)
+    return fiblets.decompress().points, pvfiblets.density(fiblets, voxel_size=8.0).values
+
+wanted = work(0)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    for found in pool.map_async(work, range(3)).get(120):
+        for ours, theirs in zip(found, wanted, strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+print("done")
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot")
+def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path) -> None:
+    """GNU's OpenMP ended or hung them; pools of processes then waited for ever."""
+    script = tmp_path / "forks.py"
+    script.write_text(FORKS)
+    environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}
+    done = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, check=False, timeout=150
+    )
+    assert done.stdout.split() == ["done"], done.stderr
