@@ -5,8 +5,8 @@ that calls another module's kernel, or takes its constants, would be used on aft
 read beyond arrays whose layout is another by now. So the kept kernels are keyed by all the codec's sources as well, and
 those of a folder of the codec by that folder's besides.
 
-A process that was forked after numba had begun its threads has none of them, and GNU's OpenMP ends it, or waits for ever.
-There the loops of parallel kernels run one after the other, on the one core that such a process is meant to use.
+A process that was forked after numba had begun its threads has none of them, and GNU's OpenMP ends it, or waits for
+ever. There the loops of parallel kernels run one after the other, on the one core that such a process is meant to use.
 
 They are kept in the user's folder for such things, by that key: another clone or installation of the same sources finds
 them compiled, and a package folder that nobody may write to is none the worse.
@@ -101,7 +101,7 @@ def kernel(function: Any) -> Any:
 
 
 class _ParallelKernel:
-    """A kernel whose loops run on all cores, or one after the other where numba's threads were left behind by a fork."""
+    """A kernel whose loops run on all cores, or one after the other where a fork left numba's threads behind."""
 
     def __init__(self, function: Any) -> None:
         self._threaded = _compiled(function, threaded=True)
@@ -122,7 +122,7 @@ _threads_left_behind = False
 
 
 def _forked() -> None:
-    global _threads_left_behind  # noqa: PLW0603 - of the process
+    global _threads_left_behind
     # TBB and numba's own work queue begin anew in a child.
     if parallel._is_initialized and parallel._threading_layer == "omp":  # noqa: SLF001 - numba does not tell otherwise
         _threads_left_behind = True
