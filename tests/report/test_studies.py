@@ -155,7 +155,9 @@ def decoded(made, dtype, how):
 EVERY = [(order, algebra, source) for order in (0, 1) for algebra in (0, 1) for source in (0, 1, 2)]
 
 
-@pytest.mark.parametrize("cap", [0, 7, 15])
+@pytest.mark.parametrize(
+    "cap", [pytest.param(0, marks=pytest.mark.exhaustive), 7, pytest.param(15, marks=pytest.mark.exhaustive)]
+)
 def test_all_variants_of_decoding_mean_the_same(cap):
     made = decode.made(20, cap, 0.2, 0)
     right = decode.exact(made)
