@@ -31,10 +31,9 @@ if [ -z "$make_only" ] && [ $# = 0 ]; then
     exit 2
 fi
 
-# What the folder was made from: when that changes it is made anew.
-wanted_state() {
-    { echo "$PACKAGES $MIRROR"; sed -n '/^dependencies/,/^]/p; /^dev/,/^]/p; /^web/p' "$HERE/pyproject.toml"; } | sha256sum | cut -c1-64
-}
+# What the folder and its Python were made from: when that changes they are made anew.
+wanted_root() { echo "$PACKAGES $MIRROR"; }
+wanted_python() { sed -n '/^dependencies/,/^]/p' "$HERE/pyproject.toml" | tr -d '\n'; }
 
 make_root() {
     if [ "$(id -u)" = 0 ]; then
@@ -81,7 +80,7 @@ install_python() {
         if [ -f "$file" ]; then cp "$file" "$ROOT/etc/pip.conf"; fi
     done
     if [ -f /etc/ssl/certs/ca-certificates.crt ]; then cp -L /etc/ssl/certs/ca-certificates.crt "$ROOT/etc/ssl/certs/"; fi
-    inside python3 -m venv /opt/pvfiblets
+    inside python3 -m venv --clear /opt/pvfiblets
     inside /opt/pvfiblets/bin/python - <<'CODE' >"$ROOT/opt/needs.txt"
 import tomllib
 
@@ -96,16 +95,20 @@ CODE
 
 # Folders of this machine that pip is told to install from.
 NEWER_MESA_MOUNTS=$({ env | grep '^PIP_'; cat /etc/pip.conf "$HOME/.config/pip/pip.conf" "$HOME/.pip/pip.conf"; } 2>/dev/null |
-    grep -oE '(file://)?/[^ "=]+' | sed 's|^file://||' | while read -r folder; do if [ -d "$folder" ]; then echo "$folder"; fi; done | sort -u || true)
+    grep -oE '(file://)?/[^ "=]+' | sed 's|^file://||' | while read -r folder; do
+        if [ -d "$folder" ]; then echo "${folder%/simple}"; fi # an index names files beside itself
+    done | sort -u || true)
 export NEWER_MESA_MOUNTS
-state=$(wanted_state)
-if [ "$(cat "$READY" 2>/dev/null)" != "$state" ]; then
-    echo "Making a folder with the newest Mesa in $ROOT (some minutes) ..." >&2
+if [ "$(cat "$READY" 2>/dev/null)" != "$(wanted_root)" ]; then
+    echo "Making a folder with the newest Mesa in $ROOT (two minutes) ..." >&2
     rm -rf --one-file-system "$ROOT"
     mkdir -p "$ROOT"
     make_root >"$ROOT.log" 2>&1 || { tail -n 5 "$ROOT.log" >&2; exit 1; }
+    wanted_root >"$READY"
+fi
+if [ "$(cat "$READY.python" 2>/dev/null)" != "$(wanted_python)" ]; then
     install_python
-    echo "$state" >"$READY"
+    wanted_python >"$READY.python"
 fi
 if [ -n "$make_only" ]; then exit 0; fi
 
