@@ -176,7 +176,7 @@ class EmulatedMesh(MeshPipeline):
         super().draw(job)
 
     def _compiled(self, job, features):
-        every = frozenset([*self._features(job), *features]) - {"PER_PRIMITIVE"}
+        every = frozenset([*self._features(job), *features]) - {"PER_PRIMITIVE", "MESH_EXT"}
         serial = self.name == "mesh-serial"
         key = serial, bool(job.wide), every
         if key not in self.kept:

@@ -15,11 +15,12 @@ from pvfiblets.engine.fiblets.pipelines.hardware_raster import RasterTarget, See
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
 from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.synthetic import brain_streamlines
+from tests.drivers import MESH
 
 from .likeness import assert_like
 from .pictures import EMPTY, SIZE, assert_same, differences, draw, read
 
-RASTER = ["tessellation", "geometry"]
+RASTER = ["tessellation", "geometry", *MESH]
 BOX = [(1.0, 0, 0, 25), (-1.0, 0, 0, 25), (0, 1.0, 0, 25), (0, -1.0, 0, 25), (0, 0, 1.0, 25), (0, 0, -1.0, 25)]
 VIEWS = {
     "perspective": {},
