@@ -32,14 +32,14 @@ void put_triangle(uint primitive, uvec3 vertices) { gl_PrimitiveTriangleIndicesE
 void put_line(uint primitive, uvec2 vertices) { gl_PrimitiveLineIndicesEXT[primitive] = vertices; }
 #endif
 #else
-void put_counts(uint vertices, uint primitives) {
-    if (gl_LocalInvocationIndex == 0u) gl_PrimitiveCountNV = primitives;
-}
+void put_counts(uint vertices, uint primitives) { gl_PrimitiveCountNV = primitives; }
 
 void put_vertex(uint vertex, vec4 at) { gl_MeshVerticesNV[vertex].gl_Position = at; }
 
 void put_triangle(uint primitive, uvec3 vertices) {
-    for (uint i = 0u; i < 3u; ++i) gl_PrimitiveIndicesNV[3u * primitive + i] = vertices[i];
+    gl_PrimitiveIndicesNV[3u * primitive] = vertices.x;
+    gl_PrimitiveIndicesNV[3u * primitive + 1u] = vertices.y;
+    gl_PrimitiveIndicesNV[3u * primitive + 2u] = vertices.z;
 }
 
 void put_line(uint primitive, uvec2 vertices) {
