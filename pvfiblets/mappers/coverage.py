@@ -39,15 +39,15 @@ class EdgeSmoothing:
         ----------
         sample : bool
             Whether it is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not smoothed;
-            but a line that is drawn wider than it is, because it is thinner than a pixel, is there only where it covers
-            a pixel's middle.
+            but a line that is drawn wider than it is, because it is thinner than a pixel, or by OpenGL's rule for thin
+            lines, which makes slanted ones thinner, is there where it covers a pixel's middle.
         """
         self._noted.clear()
         self._sample = sample
 
-    def wants(self, narrower: float) -> bool:
-        """Say whether lines that are thinner by some pixels than they are drawn are to be noted."""
-        return narrower > 0.0 or not self._sample
+    def wants(self, inexact: bool) -> bool:
+        """Say whether lines are to be noted, of which some may not take just those pixels whose middle they cover."""
+        return inexact or not self._sample
 
     def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:
         """Remember what a mapper has drawn for this picture, and in which part of it that may be."""

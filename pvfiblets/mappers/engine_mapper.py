@@ -28,7 +28,7 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, smoothers, world_planes
+from pvfiblets.mappers.scene import Frame, frame_of, others_before, pixel_scale, smoothers, world_planes
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
@@ -290,7 +290,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
-        if smoother is not None and smoother.wants(narrower):
+        if smoother is not None and smoother.wants(self._inexact(style, frame)):
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)
@@ -320,6 +320,10 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     def _narrower(self, pixel_scale: float) -> float:  # noqa: ARG002
         """Return the pixels by which lines are thinner than they are drawn."""
         return 0.0
+
+    def _inexact(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
+        """Say whether some lines may be drawn into other pixels than those whose middle they cover."""
+        return False
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style, with the values that the colours need and what effects want."""

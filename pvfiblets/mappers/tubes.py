@@ -161,3 +161,6 @@ class TubeMapper(EngineMapper[TubeOptions]):
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> TubeStyle:  # noqa: ARG002
         return TubeStyle(min_width=self.options.min_width * pixel_scale)
+
+    def _inexact(self, style: TubeStyle, frame: Frame) -> bool:  # noqa: ARG002
+        return style.drawn_width > style.min_width

@@ -115,7 +115,13 @@ void main() {
         vec2 way = vec2(dot(window_gradient(0), outwards), dot(window_gradient(1), outwards))
                  - gl_FragCoord.xy * dot(window_gradient(3), outwards);
         float pixels = length(way), per_size = pixels * s.size / max(ray.depth.y + l * ray.rise.y, 1e-30);
-        out_edges = packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (p.w - passed) * per_size, 2.0 * p.w * per_size, 0u);
+        float own = p.w;
+        if (tube_own_least_over_w < tube_least_over_w) {
+            vec4 by = widened_by(int(hit.x), s);
+            float middle = 0.5 * (by.y + by.z);
+            own -= quadratic(vec4(second ? middle : by.x), vec4(second ? by.z : by.y), vec4(second ? by.w : middle), t).x;
+        }
+        out_edges = packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (own - passed) * per_size, 2.0 * own * per_size, 0u);
 #endif
     }
 #if FEATURE_EDGES

@@ -108,10 +108,11 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             reach=self._inside.reach,
             middle=self._middle,
             min_width=style.min_width,
+            drawn_width=style.drawn_width,
             iterations=self.iterations,
             n_segments=self._tubes.n_segments,
         )
-        hollow = self._inside.touched(view, style.min_width)
+        hollow = self._inside.touched(view, style.drawn_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
         rounds = self._rounds(common, cut=cut, hollow=hollow)
         self._nodes.bind()
