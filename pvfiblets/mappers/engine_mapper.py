@@ -272,7 +272,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
         narrower = self._narrower(pixel_scale(renderer, viewport))
         if smoother is not None:  # in every frame: what wants them in some only would be made anew again and again
-            style = replace(style, edges=True)
+            exact = smoother.sample and self._widened(style, frame)
+            style = replace(style, edges=True, exact=exact)
+            smoother.widened |= exact
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
@@ -290,11 +292,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
-        if smoother is not None and smoother.wants(self._inexact(style, frame)):
+        if smoother is not None and not smoother.sample:
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)
-        if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
+        if is_shifted(renderer.GetActiveCamera()) or style.exact:  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
@@ -321,8 +323,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         """Return the pixels by which lines are thinner than they are drawn."""
         return 0.0
 
-    def _inexact(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
-        """Say whether some lines may be drawn into other pixels than those whose middle they cover."""
+    def _widened(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
+        """Say whether some lines may be drawn into other pixels than those whose middles they cover."""
         return False
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:

@@ -97,12 +97,12 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._actor_modified()
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
-        return FibletStyle(line_width=max(1.0, self._line_width * pixel_scale), min_width=max(1.0, pixel_scale))
+        return FibletStyle(line_width=self._line_width * pixel_scale, min_width=max(1.0, pixel_scale))
 
     def _narrower(self, pixel_scale: float) -> float:
         return 0.0 if self._thickness > 0.0 else max(1.0 - self._line_width * pixel_scale, 0.0)
 
-    def _inexact(self, style: FibletStyle, frame: Frame) -> bool:
+    def _widened(self, style: FibletStyle, frame: Frame) -> bool:
         if style.radius is None:
             return style.half_width == 0.0
         return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width

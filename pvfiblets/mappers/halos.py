@@ -246,8 +246,8 @@ class HaloMapper(EngineMapper[HaloOptions]):
 
         return HaloDrawStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
 
-    def _inexact(self, style: HaloDrawStyle, frame: Frame) -> bool:  # noqa: ARG002
-        return style.drawn_width > style.look.min_width
+    def _widened(self, style: HaloDrawStyle, frame: Frame) -> bool:  # noqa: ARG002
+        return style.look.min_width < 1.0
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:

@@ -111,9 +111,7 @@ class Frame:
         right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
         return float(left), float(lower), float(right), float(upper)
 
-    def pixel_rectangle(
-        self, bounds: Sequence[float], slack: float, margin: float
-    ) -> tuple[int, int, int, int]:
+    def pixel_rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[int, int, int, int]:
         """Return the same as x, y, width, height in whole pixels of the viewport."""
         left, lower, right, upper = self.rectangle(bounds, slack, margin)
         width, height = self.viewport[2:]

@@ -57,7 +57,6 @@ class Coverage(PictureEffects):
         drawn: Sequence[SmoothedLines],
         *,
         alike: bool = False,
-        point: bool = False,
     ) -> None:
         """Smooth the edges of lines.
 
@@ -71,8 +70,6 @@ class Coverage(PictureEffects):
             Of every drawable in it.
         alike : bool
             Whether all samples of a pixel are the same, where it has several: then one of them is read.
-        point : bool
-            Whether pixels show what covers their middles, and no shares.
 
         Raises
         ------
@@ -100,7 +97,7 @@ class Coverage(PictureEffects):
             try:
                 picture.viewport = (x + left, y + low, right - left, top - low)
                 shown, shift = {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)}
-                self._pass("coverage", picture, shown, shift, ["PICTURE_POINT"] if point else [])
+                self._pass("coverage", picture, shown, shift)
             finally:
                 picture.release()
 

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
 
-
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):
     """How lines or points with halos become pixels.
@@ -46,7 +45,7 @@ class HaloDrawStyle(Style):
     @property
     def drawn_width(self) -> float:
         """Pixels that a line is drawn with at least: all of one, where edges say how much of it is line."""
-        return max(self.look.min_width, 1.0) if self.edges else self.look.min_width
+        return max(self.look.min_width, 1.0) if self.edges and not self.exact else self.look.min_width
 
     @property
     def reach(self) -> float:

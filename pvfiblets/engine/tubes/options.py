@@ -78,7 +78,7 @@ class TubeStyle(Style):
     @property
     def drawn_width(self) -> float:
         """Pixels that a tube is drawn with at least: all of one, where edges say how much of it is tube."""
-        return max(self.min_width, 1.0) if self.edges else self.min_width
+        return max(self.min_width, 1.0) if self.edges and not self.exact else self.min_width
 
     @property
     def relief(self) -> str:

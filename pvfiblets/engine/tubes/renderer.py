@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = ["TubeRenderer"]
 
 
-
 class TubeRenderer(HitDrawable[TubeStyle]):
     """Draws one set of spline tubes; a view's region is not looked at.
 
@@ -129,9 +128,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer
 
-    def _render(
-        self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None
-    ) -> None:
+    def _render(self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None) -> None:
         """Draw all segments, or those that are listed."""
         target.hits_buffer.use()
         for chosen, sides in rounds:

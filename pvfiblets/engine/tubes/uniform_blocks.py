@@ -53,7 +53,15 @@ class TubeBlocks:
         self.buffers: dict[str, moderngl.Buffer] = {}
 
     def write(
-        self, view: View, *, reach: float, middle: float, min_width: float, drawn_width: float, iterations: int, n_segments: int
+        self,
+        view: View,
+        *,
+        reach: float,
+        middle: float,
+        min_width: float,
+        drawn_width: float,
+        iterations: int,
+        n_segments: int,
     ) -> bool:
         """Bring all up to date and bind them; say whether a clip plane may touch anything.
 

@@ -18,8 +18,6 @@
 //   shown      of visible_edges.frag, with a border of one texel
 //   shift      from a pixel of the target to one of it
 //
-// FEATURE_PICTURE_POINT: of one of many pictures whose mean is shown. Pixels show the nearest line whose band covers their middle.
-//
 // Colours are averaged as they are displayed, as supersampling does. Shares are counted in twelfths of a sample, and a sample is
 // a byte of a word: sums of all channels and samples are sums of words.
 
@@ -84,26 +82,6 @@ uint lines[9];
     what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
 #define FETCH(k, right, up) around[k] = texelFetch(shown, pixel + ivec2(right, up), 0);
 
-#if FEATURE_PICTURE_POINT
-#define MIDDLE(k, right, up) \
-    { Band band = band_of(unpacked_edges(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[OWN].x)); \
-      if (abs(band.away) <= band.size && around[k].x < depth) { depth = around[k].x; shows = around[k].z; found = true; } \
-      vec4 of_it = unpackUnorm4x8(around[k].z); \
-      if (around[k].y != 0u) { fronts += of_it; ++of_lines; } else if (around[k].x > around[OWN].x) { backs += of_it; ++of_backs; } }
-
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy) + shift;
-    NINE(FETCH)
-    Edges own = unpacked_edges(around[OWN].y);
-    bool line = around[OWN].y != 0u, found = line && own.e >= 0.0 && own.e <= own.w && (within(own, vec4(0.0), vec4(0.0)) & 1u) != 0u;
-    uint depth = found || !line ? around[OWN].x : 0xFFFFFFFFu, shows = around[OWN].z;
-    vec4 fronts = vec4(0.0), backs = vec4(0.0);
-    float of_lines = 0.0, of_backs = 0.0;
-    EIGHT(MIDDLE)
-    if (shows == around[OWN].z && (found || !line || of_lines + of_backs == 0.0)) discard;
-    colour = found ? unpackUnorm4x8(shows) : of_backs > 0.0 ? backs / of_backs : fronts / of_lines;
-}
-#else
 #define BEGIN(k, right, up) \
     bands[k] = band_of(unpacked_edges(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[OWN].x)); \
     behind[k] = line && around[k].y == 0u && around[k].x > around[OWN].x ? 1u : 0u; \
@@ -156,4 +134,3 @@ void main() {
     NINE(ADD)
     colour = vec4(red_blue & 0xFFFFu, green_alpha & 0xFFFFu, red_blue >> 16u, green_alpha >> 16u) / (255.0 * float(PIXEL));
 }
-#endif
