@@ -104,7 +104,7 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     def _widened(self, style: FibletStyle, frame: Frame) -> bool:
         if style.radius is None:
-            return style.half_width == 0.0
+            return style.line_width <= 1.0
         return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width
 
     @property

@@ -93,11 +93,7 @@ void main() {
     // others that go on round; by the least steps of a float32, so that it does not matter which is drawn first.
     uint steps = (beyond >> 29u) + (line ? 0u : 8u);
     gl_FragDepth = uintBitsToFloat(floatBitsToUint(max(far - back, 1e-9)) - steps);
-#if FEATURE_EDGES
-    float ink = float(line);     // what smooths edges smooths these
-#else
     float ink = halo_smooth != 0 ? clamp(0.5 - (r - edge) * reach.y * over_w, 0.0, 1.0) : float(line);
-#endif
 #if FEATURE_HALO_CUT
     t = varying_part.x + t * (varying_part.y - varying_part.x);
 #endif

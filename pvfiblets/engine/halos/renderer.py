@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -123,6 +123,8 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
 
     def _draw(self, view: View, style: HaloDrawStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         look, vertices = style.look, self._vertices
+        if style.edges or style.exact:  # what smooths all edges smooths these
+            look = replace(look, smooth=False)
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
         vertices.show_mask(look.n_tapered, look.t_tapered)
