@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.fiblets.filtering import Filtering
+from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.scalars import find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import THINNEST, WIDEST, FibletSettings
@@ -87,7 +88,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._finish(mapper, given)
         self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
-        self._take(given)
+        if given["look"] is not None:
+            self._take_look(given["look"], but=given.named)
+        self._take({name: value for name, value in given.items() if name != "look"})
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
@@ -186,6 +189,19 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._colour_by(scalars, found)
 
     # How it is drawn ----------------------------------------------------------------------------
+
+    def _read_look(self) -> str | None:
+        return look_of({name: getattr(self, name) for name in PLAIN}, self._fiblets)
+
+    def _write_look(self, look: str | None) -> None:
+        if look is not None:
+            self._take_look(look)
+
+    def _take_look(self, look: str, but: Collection[str] = ()) -> None:
+        """Set all that a look says but some settings."""
+        for name, value in settings_of(look, self._fiblets).items():
+            if name not in but:
+                setattr(self, name, value)
 
     @property
     def pipeline_in_use(self) -> str | None:
