@@ -144,8 +144,10 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             their sum; ``fiblets_total``; ``pipeline``; ``culling``; ``share``: how many of the
             streamlines are drawn; ``fiblets``: of the last redraw ``total``, ``in_frustum``,
             ``drawn`` and ``visible``, ``None`` where not known; ``streamlines``: ``total`` and
-            ``shown``; ``criteria``, ``conditions``, ``clips``, ``groups_shown``; ``selection``:
-            how many streamlines, and what drawing them apart takes.
+            ``shown``; ``look``; ``colours``: of numbers their ``clim``, and the ``percentile`` of
+            them that it ends at by default, ``None`` where it ends at the largest; ``criteria``,
+            ``conditions``, ``clips``, ``groups_shown``; ``selection``: how many streamlines, and
+            what drawing them apart takes.
         """
         return {
             **added_up(self._mapper.explain()),
@@ -154,6 +156,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             "pipeline": self.pipeline_in_use,
             "culling": self.culling,
             "share": self.share,
+            "look": self.look,
+            "colours": self._explain_colours(),
             **self._explain_choices(),
         }
 
@@ -187,6 +191,12 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         if fiblets is not self._fiblets:
             self._draw(fiblets)
         self._colour_by(scalars, found)
+
+    def _explain_colours(self) -> dict[str, Any] | None:
+        if self._scalars is None or not self._scalars.mapped:
+            return None
+        chosen = self._settings.clim is not None
+        return {"clim": tuple(self.clim), "percentile": None if chosen else self._scalars.percentile}
 
     # How it is drawn ----------------------------------------------------------------------------
 

@@ -92,14 +92,14 @@ LOOKS: dict[str, Look] = {
         "lines that shine and lie in each other's shade",
         PLAIN | {"line_width": WIDTH, "illuminated": True, "ambient_occlusion": True},
     ),
-    "tubes": Look("round tubes", PLAIN | {"tube_radius": RADIUS, "ambient_occlusion": {"strength": 0.5}}),
+    "tubes": Look("round tubes", PLAIN | {"tube_radius": RADIUS}),
     "ink": Look(
         "a drawing in black or white, whose gaps show what lies behind",
         PLAIN | {"line_width": WIDTH, "style": "ink", "halos": {"color": "background"}, "depth_cue": {"strength": 0.5}},
     ),
     "studio": Look(
-        "thick tubes set apart from what is behind them, which fades",
-        PLAIN | {"tube_radius": THICK, "halos": {"color": "background"}, "depth_cue": {"strength": 0.4}},
+        "thick tubes in soft shade, which fade with the distance",
+        PLAIN | {"tube_radius": THICK, "ambient_occlusion": {"strength": 0.7}, "depth_cue": {"strength": 0.35}},
     ),
 }
 

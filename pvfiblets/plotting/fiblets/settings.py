@@ -42,7 +42,7 @@ class FibletSettings(Settings):
         "Name of settings that give a finished picture together; ``None`` where they are no look.\n\n"
         "``'plain'``: thin lines in gentle light. ``'illuminated'``: lines that shine and lie in each\n"
         "other's shade. ``'tubes'``: round tubes. ``'ink'``: a drawing in black or white, whose gaps show\n"
-        "what lies behind. ``'studio'``: thick tubes set apart from what is behind them, which fades.\n\n"
+        "what lies behind. ``'studio'``: thick tubes in soft shade, which fade with the distance.\n\n"
         "Setting it sets line width, style, tubes, opacity, light and shading, no colours; widths follow\n"
         "the distance between lines. Change any of these afterwards.",
         argument="Settings that give a finished picture together: ``\"plain\"``, ``\"illuminated\"``, ``\"tubes\"``, "
