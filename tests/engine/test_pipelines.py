@@ -53,7 +53,7 @@ def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name
         compared(gl, fiblets, view, style, pipeline)
 
 
-@pytest.mark.every("pair")
+@pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("kind", [1, 2, 3])
 @pytest.mark.parametrize("low", [False, True])
@@ -98,9 +98,9 @@ def test_per_point_values(gl, fabricate, random_lines, camera, values, pipeline)
     for name, dtype in (("bytes", np.uint8), ("words", np.uint16)):
         codes = rng.integers(0, np.iinfo(dtype).max, fiblets.n_points, dtype, endpoint=True)
         fiblets.per_point[name] = SimpleNamespace(codes=codes, lo=-2.0, hi=3.0, max_error=0.0)
-    for view in (View(SIZE, camera(SIZE)), View(SIZE, camera(SIZE, **VIEWS["far"])), View(SIZE, camera(SIZE), BOX)):
-        for style in (FibletStyle(1.0, values=values), FibletStyle(5.0, values=values)):
-            compared(gl, fiblets, view, style, pipeline)
+    views = View(SIZE, camera(SIZE)), View(SIZE, camera(SIZE, **VIEWS["far"])), View(SIZE, camera(SIZE), BOX)
+    for view, width in zip((*views, views[0]), (1.0, 5.0, 1.0, 5.0), strict=True):
+        compared(gl, fiblets, view, FibletStyle(width, values=values), pipeline)
 
 
 @pytest.mark.parametrize("pipeline", RASTER)
