@@ -271,8 +271,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
         narrower = self._narrower(pixel_scale(renderer, viewport))
-        if smoother is not None:
-            style = replace(style, edges=not smoother.sample, exact=smoother.sample)
+        if smoother is not None:  # edges in every frame: what wants them in some only would be made anew all the time
+            style = replace(style, edges=True, exact=smoother.sample)
             smoother.widened |= smoother.sample and self._widened(style, frame)
         slot = context.slot(self)
         with context.foreign():

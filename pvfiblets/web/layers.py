@@ -122,8 +122,11 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
     return prop.check(value, data, volumes)
 
 
-def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any) -> dict[str, Any]:
-    """Return settings with one changed that was checked, and with those that it resets or, a look, sets."""
+def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any = None) -> dict[str, Any]:
+    """Return settings with one changed that was checked, and with those that it resets or, a look, sets.
+
+    Data are asked for their line widths where looks come into it.
+    """
     found = {**settings, name: value}
     if name == LOOK and value is not None:
         found |= {key: bool(one) if isinstance(one, Mapping) else one for key, one in settings_of(value, data).items()}

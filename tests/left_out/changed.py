@@ -96,7 +96,8 @@ CHANGED = {
         resolve="ambient_occlusion",
         passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
-        modules="engine.effects.ambient_occlusion",
+        packages="numba",
+        modules="codec.decompress, engine.effects.ambient_occlusion, halos.spacing",
     ),
     "depth cue": What(
         resolve="depth_cue",
@@ -106,14 +107,16 @@ CHANGED = {
         resolve="halo",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="engine.effects.halos",
+        packages="numba",
+        modules="codec.decompress, engine.effects.halos, halos.spacing",
     ),
     "ink": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="-line_light, halo, ink",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="engine.effects.halos",
+        packages="numba",
+        modules="codec.decompress, engine.effects.halos, halos.spacing",
     ),
     "clip: plane": What(
         features="CLIP_PLANES",
@@ -255,7 +258,7 @@ CHANGED = {
             effects/picture/copy.frag, effects/picture/coverage.frag, effects/picture/mean.frag,
             effects/picture/visible_edges.frag
         """,
-        features="EDGES, PICTURE_SAMPLES",
+        features="EDGES, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
         modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
     ),

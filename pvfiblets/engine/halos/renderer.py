@@ -123,7 +123,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
 
     def _draw(self, view: View, style: HaloDrawStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         look, vertices = style.look, self._vertices
-        if style.edges or style.exact:  # what smooths all edges smooths these
+        if style.edges:  # what smooths all edges smooths these
             look = replace(look, smooth=False)
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
