@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from .what import What
 
+# Of how far apart lines lie: some of them are decoded.
+MEASURING = (
+    "codec.capsule_kernels, codec.decode_kernels, codec.decompress, codec.direction_kernels, codec.jit, codec.nearest, "
+    "codec.tangents, codec.turn_kernels, halos.spacing"
+)
+
 CHANGED = {
     "one colour": What(
         resolve="-colour_orientation, colour_solid",
@@ -97,7 +103,7 @@ CHANGED = {
         passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
         packages="numba",
-        modules="codec.decompress, engine.effects.ambient_occlusion, halos.spacing",
+        modules=f"{MEASURING}, engine.effects.ambient_occlusion",
     ),
     "depth cue": What(
         resolve="depth_cue",
@@ -108,7 +114,7 @@ CHANGED = {
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         packages="numba",
-        modules="codec.decompress, engine.effects.halos, halos.spacing",
+        modules=f"{MEASURING}, engine.effects.halos",
     ),
     "ink": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
@@ -116,7 +122,7 @@ CHANGED = {
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         packages="numba",
-        modules="codec.decompress, engine.effects.halos, halos.spacing",
+        modules=f"{MEASURING}, engine.effects.halos",
     ),
     "clip: plane": What(
         features="CLIP_PLANES",
