@@ -11,9 +11,9 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 
-Mode = Literal["orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba"]
+Mode = Literal["orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"]
 
-_TABLE_MODES = ("streamline_scalar", "point_scalar")
+_TABLE_MODES = ("streamline_scalar", "point_scalar", "pixel_count")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
 
@@ -43,6 +43,8 @@ class Colouring:
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
         ``'point_scalar'``: `source`, a number per point, through `lut`.
         ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes only.
+        ``'pixel_count'``: how many lines a pixel holds, through `lut`; of fiblets, with a
+        `pvfiblets.mappers.density.Density`.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
@@ -53,7 +55,7 @@ class Colouring:
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
-        Values of the table's two ends. Needed by ``'point_scalar'``; by default the finite range of
+        Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range of
         `values`.
     log_scale : bool, default False
         Spread the table over the logarithms; `clim` must be positive.
@@ -126,7 +128,7 @@ class Colouring:
             if self.clim is None:
                 self._set("clim", _finite_range(values, positive=self.log_scale))
         if self.clim is None:
-            raise ValueError("mode 'point_scalar' needs clim: the values of the table's two ends")
+            raise ValueError(f"mode {self.mode!r} needs clim: the values of the table's two ends")
         low, high = (float(end) for end in self.clim)
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise ValueError(f"clim is {self.clim!r}; expected two finite numbers in rising order")
@@ -144,8 +146,9 @@ class Colouring:
             "streamline_scalar": ["colour_streamline"],
             "point_scalar": ["colour_point_scalar"],
             "point_rgba": ["colour_point_rgba"],
+            "pixel_count": ["colour_point_scalar", "density_value"],
         }[self.mode]
-        if self.mode == "point_scalar" and self.log_scale:
+        if self.mode in ("point_scalar", "pixel_count") and self.log_scale:
             names = [*names, "scale_logarithm"]
         return frozenset(names)
 
@@ -168,11 +171,12 @@ class Colouring:
         above = self.lut[-1] if self.above_color is None else _bytes(self.above_color)
         return np.concatenate([self.lut, [below, above, _bytes(self.nan_color)]]).astype(np.uint8)
 
-    def scaled_range(self) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale)."""
-        if self.lut is None or self.clim is None:
+    def scaled_range(self, clim: tuple[float, float] | None = None) -> tuple[float, float, float]:
+        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale); for other ends if given."""
+        clim = self.clim if clim is None else clim
+        if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")
-        low, high = np.log10(self.clim) if self.log_scale else self.clim
+        low, high = np.log10(clim) if self.log_scale else clim
         span = float(high) - float(low)
         return float(low), float(high), len(self.lut) / span if span > 0.0 else 3.0e38
 

@@ -24,6 +24,7 @@ from pvfiblets.engine.shaders import read_shader
 
 FEATURES = (
     "gbuffer",
+    "sums",
     "layers",
     "normal",
     "tube_shading",
@@ -36,6 +37,8 @@ FEATURES = (
     "colour_point_rgba",
     "colour_point_scalar",
     "layers_value",
+    "density_value",
+    "density",
     "scale_logarithm",
     "highlight",
     "illuminated",

@@ -45,6 +45,6 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
     if colouring.mode == "solid":
         program.SetUniform3f("fibletColour", colouring.color)
-    if colouring.mode == "point_scalar" and colouring.lut is not None:
+    if "colour_point_scalar" in colouring.features and colouring.lut is not None:
         program.SetUniformi("fibletTableSize", len(colouring.lut))
         program.SetUniform3f("fibletTableRange", colouring.scaled_range())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,10 +14,11 @@ from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
-from pvfiblets.plotting.fiblets.scalars import find_scalars
+from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
-from pvfiblets.plotting.fiblets.settings import THINNEST, WIDEST, FibletSettings
+from pvfiblets.plotting.fiblets.settings import THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.setting_places import OPTIONS
@@ -26,9 +28,10 @@ from pvfiblets.plotting.shading import Shading
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-    from pvfiblets.plotting.fiblets.scalars import Scalars
 
 _LAYERS = "layers"
+_DENSITY = "density"
+_COUNTS = Scalars("density", "pixel_count")
 _SOME_LAYERS = 4
 
 
@@ -80,6 +83,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._fiblets = fiblets
         self._init_colours(scalars, given, theme)
         self._init_shading()
+        self._tone = TONES[0]
         self._init_filtering()
         self._init_selection()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
@@ -220,6 +224,39 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _show(self, scalars: Scalars | None) -> None:
         super()._show(scalars)
         self._relight()
+        self._count_lines()
+
+    # Density ------------------------------------------------------------------------------------
+
+    def _count_lines(self) -> None:
+        """Have all lines of a pixel counted where style or colours ask for it."""
+        thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
+        if not thin and not counted:
+            self._mapper.set_effect(_DENSITY, None)
+            return
+        from pvfiblets.mappers.density import Density
+
+        clim = self._settings.clim
+        most = None if clim is None else limits(replace(self._settings, log_scale=False), _COUNTS)[1]
+        effect = Density(thin and not counted, thin, most, self._tone, self._most_found if counted else None)
+        if effect != self._mapper.effects.get(_DENSITY):
+            self._mapper.set_effect(_DENSITY, effect)
+
+    def _most_found(self, most: float) -> None:
+        """Have the scalar bar end at the number of lines in the fullest pixel."""
+        low, high = self._table.scalar_range
+        if most > low and most != high and self._scalars is not None:
+            self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))
+            self._table.scalar_range = low, most
+
+    def _read_density_tone(self) -> str:
+        return self._tone
+
+    def _write_density_tone(self, tone: str) -> None:
+        if tone not in TONES:
+            raise ValueError(f"density_tone is {tone!r}; choose one of {TONES}")
+        self._tone = tone
+        self._count_lines()
 
     def _read_transparency(self) -> str | int | None:
         effect: Any = self._mapper.effects.get(_LAYERS)

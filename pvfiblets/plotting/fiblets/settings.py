@@ -9,7 +9,8 @@ from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effect, Switch
 from pvfiblets.plotting.settings import Row, Setting, Settings, truth
 
-STYLES = ("surface", "halo")
+STYLES = ("surface", "halo", "density")
+TONES = ("log", "sqrt", "linear")
 """What :attr:`FibletSettings.style` may be."""
 
 
@@ -78,15 +79,34 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
-        "``'surface'``, lines in their colours, or ``'halo'``, black lines in white halos.\n\n"
+        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, or ``'density'``, all\n"
+        "lines that lie on each other.\n\n"
         "``'halo'`` is a drawing in ink (Everts et al. 2009), best on white: it draws all\n"
         "lines black and without light, and sets default halos where none are. Colours and\n"
-        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.",
-        argument=False,
+        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.\n\n"
+        "``'density'`` adds up light: a pixel has the mean colour of all streamlines in it, the\n"
+        "brighter the more there are (``density_tone``), over what is behind them. The second number of\n"
+        "``clim`` is how many have full brightness; without, as many as the fullest pixel of the\n"
+        "picture holds. Lines are a pixel wide, without light. With ``scalars=\"density\"`` a colour map and a\n"
+        "scalar bar tell streamlines per pixel.",
+        argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in white "
+        "halos.",
         choices=STYLES,
         where=LATER,
         row=Row("Style", "Halo: black lines in white halos, best on a white background.", "Lines",
-                choices=[("surface", "coloured lines"), ("halo", "ink and halos")]),
+                choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("density", "density")]),
+    )  # fmt: skip
+    density_tone: Setting[str] = Setting(
+        TONES[0],
+        "How brightness grows with the number n of streamlines in a pixel, in ``style='density'``.\n\n"
+        "Where m have full brightness: ``'log'``, log(1 + n) / log(1 + m); ``'sqrt'``, the root of n / m;\n"
+        "``'linear'``, n / m. Colours of ``scalars=\"density\"`` spread by ``log_scale`` instead.",
+        argument=False,
+        choices=TONES,
+        where=LATER,
+        row=Row("Tone", "How brightness grows with the number of lines in a pixel.", "Lines",
+                choices=[("log", "logarithm"), ("sqrt", "square root"), ("linear", "proportional")],
+                matters=lambda s: s["style"] == "density" and s["scalars"] != "density"),
     )  # fmt: skip
     tube_radius: Setting[float | None] = Setting(
         None,

@@ -263,6 +263,28 @@ class RasterPipeline(abc.ABC):
                 with passes.timed("visibility_bits"):
                     self._seen.update(request.target)
 
+    def gathers_words(self, request: DrawRequest) -> bool:  # noqa: ARG002 - of all pipelines
+        """Say that sums are floats: OpenGL blends no words."""
+        return False
+
+    def gather(self, request: DrawRequest) -> None:
+        """Add up what all lines show; the uniform blocks are bound already.
+
+        Raises
+        ------
+        EngineError
+            If a program does not compile.
+        """
+        assert request.gather is not None
+        with request.passes.timed("gather"), self._gl.framebuffers_kept(), self._drawing():
+            request.gather.target.begin(self._gl)
+            self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+            self._ctx.blend_func = moderngl.ONE, moderngl.ONE
+            try:
+                self._round(request, ())
+            finally:
+                self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+
     def _attach(self, target: GBuffer, two_rounds: bool) -> RasterTarget:
         held = self._target
         same = held is not None and held.target is target and held.across is target.across
@@ -295,7 +317,7 @@ class RasterPipeline(abc.ABC):
             array = self._arrays[program] = ctx.vertex_array(program, [])
             self._prepare(program)
         self._bind(program, request, features)
-        ctx.enable_only(moderngl.DEPTH_TEST)
+        ctx.enable_only(moderngl.DEPTH_TEST if request.gather is None else moderngl.BLEND)
         ctx.depth_func = "<"
         for index, chunk in enumerate(request.chunks):
             chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
@@ -316,7 +338,7 @@ class RasterPipeline(abc.ABC):
             *request.planes,
             *request.kept.culling,
         )
-        every = (*every, *request.peeling)
+        every = (*every, *request.peeling, *request.gathering)
         return [*self.features, *every, *culling]
 
     def _bind(self, program: moderngl.Program, request: DrawRequest, features: Sequence[str]) -> None:
@@ -325,6 +347,8 @@ class RasterPipeline(abc.ABC):
             request.occlusion.bind(program)
         if request.peel is not None:
             request.peel.bind(program)
+        if request.gather is not None:
+            request.gather.bind(program)
         if self._seen is not None and "seen" in program:
             self._seen.texture.use(FIBLET_ROUNDS["seen"])
             program["seen"], program["seen_bits"] = FIBLET_ROUNDS["seen"], self._seen.bits

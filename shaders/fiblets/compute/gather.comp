@@ -1,0 +1,64 @@
+// Adds up what all lines show in each pixel, in words of an image with atomics. Nothing is hidden, so that there is one round,
+// and whole numbers are added, so that the order does not matter.
+//
+// A wide line or a tube adds once to a pixel: by the segment beside which the pixel lies, and by round ends where the line ends.
+
+#version 430
+layout(local_size_x = {{ group_size }}) in;
+
+#include "fiblets/compute/software_raster/segments.glsl"
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
+
+#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/bits.glsl"
+#include "fiblets/gather/slices.glsl"
+
+layout(r32ui, binding = {{ image_gathered }}) uniform uimage2DArray gathered;
+
+#if FEATURE_PAINTED
+#include "fiblets/attributes/pixel.glsl"
+#include "fiblets/gather/paint.glsl"
+#else
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
+#endif
+#if FEATURE_TUBES
+vec3 shown_normal(Hit hit) { return hit.normal; }
+#endif
+
+uint owner;
+
+uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
+
+void plot(Fragment fragment, Segment segment) {
+#if FEATURE_WIDE_LINES
+    if (fragment.s >= 1.0 && !segment.piece.cap || fragment.s <= 0.0 && !segment.piece.start) return;
+#endif
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(fragment.pixel, fragment.z)) return;
+#endif
+    int slice = slice_of(fragment.pixel, depth_key(fragment.z), owner);
+    if (slice < 0) return;
+#if FEATURE_PAINTED
+    float t = along(fragment, segment);
+    uvec4 adds = uvec4(painted(pixel_streamline, normalize(tangent_between(tangents, t)), pixel_place(segment.index, t).y));
+    for (int channel = 0; channel < 4; ++channel) {
+        if (adds[channel] != 0u) imageAtomicAdd(gathered, ivec3(fragment.pixel, 4 * slice + channel), adds[channel]);
+    }
+#else
+    imageAtomicAdd(gathered, ivec3(fragment.pixel, slice), 1u);
+#endif
+}
+
+void main() {
+    for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
+        uint f = nth_fiblet(k);
+        if (f == NO_FIBLET) break;
+        owner = chunk_first + f;
+#if FEATURE_PAINTED
+        begin_pixels(f);
+#endif
+        draw_fiblet(f);
+    }
+}
