@@ -139,8 +139,11 @@ SAMPLED = Scope("volumes that colour streamlines", {"sampled_volume": 28})
 PEELING = Scope("depth peeling", {"peeled_depth": 29, "peeled_ids": 30, "peeled_position": 31})
 GATHERING = Scope(
     "lines added up",
-    {"nearest_depth": 32, "nearest_owner": 33, "outside_depth": 34, "paint_colours": 35, "gathered": 36},
-)
+    {
+        "nearest_depth": 32, "nearest_owner": 33, "nearest_ids": 34, "nearest_position": 35, "outside_depth": 36,
+        "paint_colours": 37, "gathered": 38,
+    },
+)  # fmt: skip
 FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14})
 BETWEEN_ROUNDS = Scope("the pass between rounds", {"depth_key": 13, "owner": 14, "depth": 15})
 LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, "across": 15})

@@ -294,7 +294,8 @@ class Gather:
     def bind(self, program: Any) -> None:
         """Bind what programs look at, and tell them where."""
         self.paint.bind(program)
-        sources = {"nearest_depth": self.nearest.depth, "nearest_owner": self.nearest.owner, "outside_depth": self.outside}
+        sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "owner", "ids", "position")}
+        sources["outside_depth"] = self.outside
         for name, texture in sources.items():
             if texture is not None and name in program:
                 texture.use(GATHERING[name])

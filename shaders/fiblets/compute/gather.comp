@@ -38,6 +38,7 @@ void plot(Fragment fragment, Segment segment) {
 #if FEATURE_CLIP_REGION
     if (!region_keeps(fragment.pixel, fragment.z)) return;
 #endif
+    if (!new_surface(fragment.pixel, segment.index)) return;
     int slice = slice_of(fragment.pixel, depth_key(fragment.z), owner);
     if (slice < 0) return;
 #if FEATURE_PAINTED
