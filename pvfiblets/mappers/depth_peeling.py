@@ -122,7 +122,7 @@ class Layers(ShaderEffect):
 
 def layers_of(effects: Iterable[Any]) -> int:
     """Return how many layers a mapper's geometry must have."""
-    return max((effect.count for effect in effects if isinstance(effect, Layers)), default=1)
+    return max((getattr(effect, "count", 1) for effect in effects), default=1)
 
 
 def with_layers(features: frozenset[str]) -> frozenset[str]:

@@ -317,7 +317,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     ) -> Any:
         """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
         actor = self.actor
-        if self._layers == 1 and actor is not None and others_before(renderer, actor):
+        summed = any(getattr(effect, "translucent", False) for effect in self._effects.values())
+        if self._layers == 1 and not summed and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 

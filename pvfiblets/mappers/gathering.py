@@ -71,6 +71,8 @@ class Sums:
         Of the last draw.
     most : float
         Lines in its fullest pixel, where an effect asked for that.
+    paint : Paint or None
+        Of the last draw, where an effect notes it.
     """
 
     def __init__(self, ctx: Any) -> None:
@@ -80,6 +82,7 @@ class Sums:
         self._blank: dict[str, Any] = {}
         self.held: Gathered | None = None
         self.most = 1.0
+        self.paint: Paint | None = None
 
     def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:
         """Return textures by the names of their samplers.

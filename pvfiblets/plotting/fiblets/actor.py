@@ -18,7 +18,7 @@ from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
-from pvfiblets.plotting.fiblets.settings import THINNEST, TONES, WIDEST, FibletSettings
+from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.setting_places import OPTIONS
@@ -84,6 +84,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._init_colours(scalars, given, theme)
         self._init_shading()
         self._tone = TONES[0]
+        self._transparency: str | int | None = ALL
         self._init_filtering()
         self._init_selection()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
@@ -220,6 +221,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             self._mapper.line_width = width
         self._take_tube_shading()
         self._relight()
+        self._see_through()
 
     def _show(self, scalars: Scalars | None) -> None:
         super()._show(scalars)
@@ -233,6 +235,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
         if not thin and not counted:
             self._mapper.set_effect(_DENSITY, None)
+            self._see_through()
             return
         from pvfiblets.mappers.density import Density
 
@@ -241,6 +244,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         effect = Density(thin and not counted, thin, most, self._tone, self._most_found if counted else None)
         if effect != self._mapper.effects.get(_DENSITY):
             self._mapper.set_effect(_DENSITY, effect)
+        self._see_through()
 
     def _most_found(self, most: float) -> None:
         """Have the scalar bar end at the number of lines in the fullest pixel."""
@@ -259,23 +263,33 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._count_lines()
 
     def _read_transparency(self) -> str | int | None:
-        effect: Any = self._mapper.effects.get(_LAYERS)
-        if effect is None:
-            return None
-        return "layers" if effect.count == _SOME_LAYERS else effect.count
+        return self._transparency
 
     def _write_transparency(self, transparency: str | int | None) -> None:
-        if transparency is None:
-            self._mapper.set_effect(_LAYERS, None)
-            return
-        layers = _SOME_LAYERS if transparency == "layers" else transparency
-        try:
-            effect = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
-        except (TypeError, ValueError) as error:
-            raise ValueError(
-                f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
-            ) from error
-        self._mapper.set_effect(_LAYERS, effect)
+        if transparency is not None and transparency != ALL:
+            try:
+                Layers(_SOME_LAYERS if transparency == "layers" else transparency)  # type: ignore[arg-type]
+            except (TypeError, ValueError) as error:  # what is no number is refused by it
+                raise ValueError(
+                    f"transparency is {transparency!r}; give 'all', 'layers', a number of layers from 2 to 64, or None"
+                ) from error
+        self._transparency = transparency
+        self._see_through()
+
+    def _see_through(self) -> None:
+        """Bring in step what shows behind the nearest line; nothing where nothing shows through."""
+        effect: Any = None
+        if _DENSITY in self._mapper.effects or self._transparency is None:
+            pass
+        elif self._transparency != ALL:
+            count = _SOME_LAYERS if self._transparency == "layers" else int(self._transparency)
+            effect = Layers(count)
+        elif self._mapper.colouring.translucent() or self.prop.GetOpacity() < 1.0:
+            from pvfiblets.mappers.slices import Slices
+
+            effect = Slices()
+        if effect != self._mapper.effects.get(_LAYERS):
+            self._mapper.set_effect(_LAYERS, effect)
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from pvfiblets.plotting.settings import Row, Setting, Settings, truth
 
 STYLES = ("surface", "halo", "density")
 TONES = ("log", "sqrt", "linear")
+ALL = "all"
 """What :attr:`FibletSettings.style` may be."""
 
 
@@ -55,17 +56,19 @@ class FibletSettings(Settings):
     )
     opacity = shared.opacity("Of all streamlines.")
     transparency: Setting[str | int | None] = Setting(
-        None,
-        "How many layers of lines an ``opacity`` below 1 shows, one through the other.\n\n"
-        "``None``: the nearest alone, through which one sees the rest of the scene. ``\"layers\"``:\n"
-        "four, each with its own colour, light and depth, blended in order. A number from 2 to 64:\n"
-        "as many. What lies behind the last does not show. A layer costs a drawing of all\n"
-        "streamlines in view, and 44 bytes of GPU memory a pixel; opaque actors pay for none.",
+        ALL,
+        "What an ``opacity`` below 1 shows behind the nearest line.\n\n"
+        "``\"all\"``: all lines, in no order that one could see: the nearest as it is, the others in\n"
+        "four slices by how far behind it they are, mixed within a slice. Costs one drawing of all\n"
+        "streamlines in view, and 64 bytes of GPU memory a pixel. ``\"layers\"``: the four nearest, each\n"
+        "with its own colour, light and depth, blended in order. A number from 2 to 64: as many. What\n"
+        "lies behind the last does not show; a layer costs a drawing, and 44 bytes a pixel. ``None``:\n"
+        "the nearest alone, through which one sees the rest of the scene. Opaque actors pay for none.",
         kind="str | int | None",
-        header='{None, "layers"} or int, optional',
+        header='{"all", "layers", None} or int, default: "all"',
         where=LATER,
         row=Row("Seen through", "What shows behind the nearest line, with opacity below 1.", type="choice",
-                choices=[(None, "what is behind all lines"), ("layers", "the next lines")],
+                choices=[("all", "all lines"), ("layers", "the next lines"), (None, "what is behind all lines")],
                 matters=lambda s: s["opacity"] < 1.0),
     )  # fmt: skip
     line_width: Setting[float] = Setting(

@@ -1,0 +1,60 @@
+"""`Slices`, an effect of a mapper of fiblets: where it is translucent, all lines show through each other.
+
+The mapper's geometry then has two triangles for the nearest lines and for each slice of those behind them
+(`pvfiblets.mappers.proxy`), the farthest first, so that VTK blends them with all else that is translucent, by depth
+peeling too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pvfiblets.engine.fiblets.gathering import SLICES, Paint, slice_edges
+from pvfiblets.mappers.gathering import Sums, paint_of
+from pvfiblets.mappers.shader_effects import ShaderEffect
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers.shader_effects import Draw
+
+__all__ = ["Slices"]
+
+
+@dataclass(frozen=True)
+class Slices(ShaderEffect):
+    """All lines behind the nearest show, blended in slices by distance (`pvfiblets.engine.fiblets.gathering`).
+
+    The nearest line of each pixel is exact, and so is what all lines let through where they have the same opacity.
+    Lines of one slice are blended as if they were mixed evenly.
+    """
+
+    features: ClassVar[frozenset[str]] = frozenset({"sums", "slices", "slices_colour", "layers_covered"})
+    count: ClassVar[int] = SLICES + 1
+
+    def make(self, ctx: Any) -> Sums:
+        """Make room for a window's sums."""
+        return Sums(ctx)
+
+    def prepare(self, kept: Sums, draw: Draw) -> Mapping[str, Any]:
+        """Have the engine add up, unless nothing shows through or VTK selects."""
+        through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
+        kept.paint = _paint(draw) if through else None
+        return kept.textures(draw, kept.paint, sliced=True)
+
+    def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:
+        """Say how many slices there are, where they begin and how to read them."""
+        kept.set_uniforms(program)
+        program.SetUniformi("fibletLayerCount", 1 if kept.held is None else self.count)
+        program.SetUniform4f("fibletSliceEdges", (0.0, *slice_edges()))
+        if kept.held is not None and kept.paint is not None:
+            distances = draw.engine.slice_distances(draw.view)
+            program.SetUniform4f("fibletSliceTerms", distances.terms)
+            program.SetUniformf("fibletSliceFar", distances.far)
+            varied = kept.paint.opacity is not None
+            program.SetUniformf("fibletAbsorbance", kept.paint.absorbance if varied else 0.0)
+
+
+def _paint(draw: Draw) -> Paint:
+    opacity = float(draw.actor.GetProperty().GetOpacity()) if draw.colouring.translucent() else None
+    return paint_of(draw, lit="line_light" in draw.actor.GetMapper().features, opacity=opacity)
