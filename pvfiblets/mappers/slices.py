@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pvfiblets.engine.fiblets.gathering import SLICES, Paint, slice_edges
+from pvfiblets.engine.fiblets.gathering import SLICES, Paint
 from pvfiblets.mappers.gathering import Sums, paint_of
 from pvfiblets.mappers.shader_effects import ShaderEffect
 
@@ -40,19 +40,16 @@ class Slices(ShaderEffect):
         """Have the engine add up, unless nothing shows through or VTK selects."""
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
         kept.paint = _paint(draw) if through else None
-        return kept.textures(draw, kept.paint, sliced=True)
+        textures = kept.textures(draw, kept.paint, sliced=True)
+        keys = None if kept.held is None else kept.held.keys
+        return {**textures, "fibletSliceKeys": draw.buffer.depth if keys is None else keys}
 
-    def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:
-        """Say how many slices there are, where they begin and how to read them."""
+    def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
+        """Say how many slices there are, and how to read them."""
         kept.set_uniforms(program)
         program.SetUniformi("fibletLayerCount", 1 if kept.held is None else self.count)
-        program.SetUniform4f("fibletSliceEdges", (0.0, *slice_edges()))
-        if kept.held is not None and kept.paint is not None:
-            distances = draw.engine.slice_distances(draw.view)
-            program.SetUniform4f("fibletSliceTerms", distances.terms)
-            program.SetUniformf("fibletSliceFar", distances.far)
-            varied = kept.paint.opacity is not None
-            program.SetUniformf("fibletAbsorbance", kept.paint.absorbance if varied else 0.0)
+        varied = kept.paint is not None and kept.paint.opacity is not None
+        program.SetUniformf("fibletAbsorbance", kept.paint.absorbance if varied else 0.0)
 
 
 def _paint(draw: Draw) -> Paint:

@@ -5,7 +5,6 @@
 // stands where it begins: there it is in front of all that is behind any of its lines.
 //
 // Symbols
-//   c, d         1 - window depth; distance along the view, d = (p + q c) / (r + s c), linear in space
 //   W            weight of a slice, the number of its lines where all have the same opacity
 //   A            absorbance of weight 1: a slice lets exp(-A W) through
 
@@ -23,9 +22,7 @@ flat out int fibletLayer;
                      fibletUpper ? fibletRectangle.w : fibletRectangle.y, 0.0, 1.0);
 
 //@ fragment after //VTK::CustomUniforms::Dec
-uniform vec4 fibletSliceTerms;     // p, q, r, s
-uniform float fibletSliceFar;      // d of the far end of the data
-uniform vec4 fibletSliceEdges;     // where slices begin, from the nearest line, 0, to that end, 1
+uniform usampler2D fibletSliceKeys; // depth keys of the nearest line and of where the next slices begin
 uniform float fibletAbsorbance;    // A; 0: that of the actor's opacity
 flat in int fibletLayer;
 
@@ -35,13 +32,7 @@ flat in int fibletLayer;
   if (fibletLayer > 0 && fibletKey != fibletEmpty)
   {
     fibletSlice = fibletSumOf(fibletPixel, fibletLayer - 1);
-    float fibletComplement = float(fibletEmpty - fibletKey) / 4294967295.0;
-    float fibletNear = (fibletSliceTerms.x + fibletSliceTerms.y * fibletComplement) /
-      (fibletSliceTerms.z + fibletSliceTerms.w * fibletComplement);
-    float fibletStart = mix(fibletNear, max(fibletSliceFar, fibletNear), fibletSliceEdges[fibletLayer - 1]);
-    fibletComplement = (fibletSliceTerms.x - fibletStart * fibletSliceTerms.z) /
-      (fibletStart * fibletSliceTerms.w - fibletSliceTerms.y);
-    uint fibletBehind = fibletEmpty - uint(clamp(fibletComplement, 1e-9, 0.999) * 4294967295.0);
+    uint fibletBehind = texelFetch(fibletSliceKeys, fibletPixel, 0)[fibletLayer - 1];
     // Behind the nearest, in steps that a depth buffer tells apart.
     uint fibletLeast = fibletKey + min(1024u * uint(fibletLayer), fibletEmpty - 1u - fibletKey);
     fibletKey = fibletSlice.a < 0.5 ? fibletEmpty : max(fibletLeast, fibletBehind);

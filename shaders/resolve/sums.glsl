@@ -2,8 +2,9 @@
 // weight, slice by slice.
 //
 //   fibletSumFloats    rgba32f  a layer a slice
-//   fibletSumWords     r32ui    four layers a slice, or one of weights alone
-//   fibletSumKind      0: floats; else layers of a slice
+//   fibletSumWords     r32ui    a layer a slice, of weights alone; or twice as wide and high: below red and green, above blue
+//                               and weight
+//   fibletSumKind      0: floats; 1: weights alone; 4: words with colours
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform sampler2DArray fibletSumFloats;
@@ -12,6 +13,7 @@ uniform int fibletSumKind;
 
 vec4 fibletSumOf(ivec2 pixel, int slice)
 {
+  ivec3 fibletWord = ivec3(2 * pixel, slice);
   if (fibletSumKind == 0)
   {
     return texelFetch(fibletSumFloats, ivec3(min(pixel, textureSize(fibletSumFloats, 0).xy - 1), slice), 0);
@@ -20,10 +22,6 @@ vec4 fibletSumOf(ivec2 pixel, int slice)
   {
     return vec4(0.0, 0.0, 0.0, float(texelFetch(fibletSumWords, ivec3(pixel, slice), 0).r));
   }
-  vec4 sum;
-  for (int channel = 0; channel < 4; ++channel)
-  {
-    sum[channel] = float(texelFetch(fibletSumWords, ivec3(pixel, 4 * slice + channel), 0).r);
-  }
-  return sum;
+  return vec4(texelFetch(fibletSumWords, fibletWord, 0).r, texelFetch(fibletSumWords, fibletWord + ivec3(1, 0, 0), 0).r,
+    texelFetch(fibletSumWords, fibletWord + ivec3(0, 1, 0), 0).r, texelFetch(fibletSumWords, fibletWord + ivec3(1, 1, 0), 0).r);
 }

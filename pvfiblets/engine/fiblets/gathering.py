@@ -45,7 +45,7 @@ __all__ = ["SLICES", "Gather", "Gathered", "Gatherer", "Paint", "SliceDistances"
 SLICES = 4
 """Sums of a pixel behind its nearest line; the shaders' three edges between them say so too."""
 
-GROWTH = 4.0
+GROWTH = 2.5
 """How many times as deep as the one before each slice is."""
 
 MOST_OPAQUE = 0.999
@@ -191,8 +191,8 @@ class Gathered:
     painted : bool
         Whether there are colours beside numbers.
     words : bool
-        Words of 32 bits, layer after layer: of each slice red, green, blue and weight, or the weight alone. Else
-        float32, a layer a slice, with these in its channels.
+        Words of 32 bits: of each pixel red and green below blue and weight, or the weight alone. Else float32 with these
+        in its channels. A slice has a layer.
 
     Raises
     ------
@@ -202,47 +202,73 @@ class Gathered:
     Attributes
     ----------
     texture : moderngl.TextureArray
+        Of words with colours twice as wide and high as the picture.
+    framebuffer : moderngl.Framebuffer
+        Of its layers.
+    keys : moderngl.Texture or None
+        rgba32ui, if there are several slices: depth keys of the nearest line and of where each slice but the first begins.
     """
 
     def __init__(
         self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], slices: int, painted: bool, words: bool
     ) -> None:
         self.size, self.slices, self.painted, self.words = size, slices, painted, words
-        self._framebuffer: moderngl.Framebuffer | None = None
-        layers, channels = (slices * (4 if painted else 1), 1) if words else (slices, 4)
-        self.nbytes = 4 * size[0] * size[1] * layers * channels
+        side, channels = (2 if painted else 1, 1) if words else (1, 4)
+        self.nbytes = 4 * size[0] * size[1] * slices * side * side * channels
+        self.keys: moderngl.Texture | None = None
+        self._key_target: moderngl.Framebuffer | None = None
         held: list[Any] = []
         try:
-            self.texture = ctx.texture_array((*size, layers), channels, dtype="u4" if words else "f4")
+            if slices > 1:
+                self.keys = ctx.texture(size, 4, dtype="u4")
+                self.keys.filter = moderngl.NEAREST, moderngl.NEAREST
+                held.append(self.keys)
+                self._key_target = ctx.framebuffer([self.keys])
+                held.append(self._key_target)
+                self.nbytes += 16 * size[0] * size[1]
+            shape, dtype = (side * size[0], side * size[1]), "u4" if words else "f4"
+            self.texture = ctx.texture_array((*shape, slices), channels, dtype=dtype)
             self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
             held.append(self.texture)
-            if not words:
-                # moderngl attaches whole textures: these hold the places.
-                held += [ctx.renderbuffer(size, 4, dtype="f4") for _ in range(slices)]
-                self._framebuffer = ctx.framebuffer(held[1:])
-                for layer in range(slices):
-                    gl.attach_layer(self._framebuffer, self.texture, layer, layer)
-                for place in held[1:]:
-                    place.release()
+            # moderngl attaches whole textures: these hold the places.
+            places = [ctx.renderbuffer(shape, channels, dtype=dtype) for _ in range(slices)]
+            held += places
+            self.framebuffer = ctx.framebuffer(places)
+            for layer in range(slices):
+                gl.attach_layer(self.framebuffer, self.texture, layer, layer)
+            for place in places:
+                place.release()
         except moderngl.Error as error:
             for thing in held:
                 thing.release()
             raise GPUMemoryError(f"no memory for {self.nbytes} bytes of sums of {size[0]} x {size[1]} pixels") from error
 
-    @property
-    def weight_place(self) -> tuple[int, int]:
-        """Layer and channel of the first slice's weight."""
-        return (3 if self.painted else 0, 0) if self.words else (0, 3)
 
-    def bind_image(self) -> None:
-        """Bind the words for a compute stage."""
-        self.texture.bind_to_image(SUM_IMAGES["gathered"], read=True, write=True)
+    def find_keys(self, ctx: moderngl.Context, programs: Programs, nearest: GBuffer, distances: SliceDistances) -> None:
+        """Find where the slices of each pixel begin, if there are several."""
+        if self._key_target is None:
+            return
+        program, array = programs.screen("fiblets/gather/slice_keys.frag")
+        nearest.depth.use(GATHERING["nearest_depth"])
+        set_uniforms(
+            program,
+            nearest_depth=GATHERING["nearest_depth"],
+            slice_distances=distances.terms,
+            slice_far=distances.far,
+            slice_edges=slice_edges(),
+        )
+        ctx.enable_only(moderngl.NOTHING)
+        self._key_target.use()
+        array.render(moderngl.TRIANGLES, vertices=3)
 
-    def begin(self, gl: GLExtras) -> None:
-        """Empty the float sums, and have them drawn into."""
-        assert self._framebuffer is not None
-        for layer in range(self.slices):
-            gl.fill(self._framebuffer, layer, (0.0, 0.0, 0.0, 0.0))
+    def clear(self, gl: GLExtras) -> None:
+        """Empty the sums."""
+        with gl.framebuffers_kept():
+            for layer in range(self.slices):
+                if self.words:
+                    gl.clear_integers(self.framebuffer, (0,), layer)
+                else:
+                    gl.fill(self.framebuffer, layer, (0.0, 0.0, 0.0, 0.0))
 
     def read(self) -> npt.NDArray[np.float64]:
         """Return ``(slices, height, width, 4)`` red, green, blue and weight, the lowest row first."""
@@ -250,17 +276,21 @@ class Gathered:
         if not self.words:
             raw = np.frombuffer(self.texture.read(), "<f4").reshape(self.slices, height, width, 4)
             return raw.astype(np.float64)
-        raw = np.frombuffer(self.texture.read(), "<u4").reshape(self.slices, -1, height, width)
+        raw = np.frombuffer(self.texture.read(), "<u4").reshape(self.slices, *self.texture.size[1::-1])
         found = np.zeros((self.slices, height, width, 4))
-        found[..., 4 - raw.shape[1] :] = np.moveaxis(raw, 1, -1)
+        if not self.painted:
+            found[..., 3] = raw
+        else:
+            for channel in range(4):
+                found[..., channel] = raw[:, channel >> 1 :: 2, channel & 1 :: 2]
         return found
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""
-        if self._framebuffer is not None:
-            self._framebuffer.release()
-            self._framebuffer = None
-        self.texture.release()
+        for thing in (self.framebuffer, self._key_target, self.keys, self.texture):
+            if thing is not None:
+                thing.release()
+        self._key_target = self.keys = None
 
 
 @dataclass(frozen=True)
@@ -273,7 +303,6 @@ class Gather:
     paint : Paint
     nearest : GBuffer
         The picture, which slices begin behind.
-    distances : SliceDistances
     outside : moderngl.Texture, optional
         Depth keys of what hides lines, r32ui of the picture's size.
     """
@@ -281,7 +310,6 @@ class Gather:
     target: Gathered
     paint: Paint
     nearest: GBuffer
-    distances: SliceDistances
     outside: moderngl.Texture | None = None
 
     @property
@@ -295,14 +323,18 @@ class Gather:
         """Bind what programs look at, and tell them where."""
         self.paint.bind(program)
         sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "owner", "ids", "position")}
-        sources["outside_depth"] = self.outside
+        sources |= {"slice_keys": self.target.keys, "outside_depth": self.outside}
         for name, texture in sources.items():
             if texture is not None and name in program:
                 texture.use(GATHERING[name])
                 program[name] = GATHERING[name]
-        set_uniforms(
-            program, slice_distances=self.distances.terms, slice_far=self.distances.far, slice_edges=slice_edges()
-        )
+
+    def bind_images(self) -> None:
+        """Bind what compute stages read and write."""
+        self.target.texture.bind_to_image(SUM_IMAGES["gathered"], read=True, write=True)
+        if self.target.keys is not None:
+            self.target.keys.bind_to_image(SUM_IMAGES["slice_keys"], read=True, write=False)
+            self.nearest.owner.bind_to_image(SUM_IMAGES["nearest_owner"], read=True, write=False)
 
 
 class Gatherer:
@@ -368,7 +400,9 @@ class Gatherer:
         hides = None if outside is None else outside()
         request = make_job()
         held = self._resize(nearest.size, slices, bool(paint.features), self._pipeline.gathers_words(request))
-        gather = Gather(held, paint, nearest, distances, hides)
+        with self._gl.framebuffers_kept():
+            held.find_keys(self._ctx, self._programs, nearest, distances)
+        gather = Gather(held, paint, nearest, hides)
         self._pipeline.gather(replace(request, occlusion=None, gather=gather, across=(), edges=()))
         self._made = key
         return held
@@ -394,12 +428,10 @@ class Gatherer:
             texture = self._ctx.texture((width, height), 1, dtype="f4")
             self._squares = texture, self._ctx.framebuffer([texture])
         texture, framebuffer = self._squares
-        program, array = self._programs.screen(
-            "fiblets/gather/greatest.frag", ("GATHER_WORDS",) if held.words else ()
-        )
+        features = [*(["GATHER_WORDS"] if held.words else []), *(["PAINTED"] if held.painted else [])]
+        program, array = self._programs.screen("fiblets/gather/greatest.frag", features)
         held.texture.use(GATHERING["gathered"])
-        layer, channel = held.weight_place
-        set_uniforms(program, gathered=GATHERING["gathered"], layer=layer, channel=channel)
+        set_uniforms(program, gathered=GATHERING["gathered"], size=held.size)
         with self._gl.framebuffers_kept():
             self._ctx.enable_only(moderngl.NOTHING)
             framebuffer.use()

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from ...codec.fibletset import FibletSet
     from ...query.region import Region
-    from .gathering import Gathered, Gatherer, Paint, SliceDistances
+    from .gathering import Gathered, Gatherer, Paint
     from .region_query import RegionQuery
     from .sampled_volume import VolumeSource
 
@@ -222,14 +222,15 @@ class FibletRenderer(Drawable[FibletStyle]):
         EngineError
             As :meth:`render`.
         """
-        from .gathering import SLICES, Gatherer, Paint
+        from .gathering import SLICES, Gatherer, Paint, SliceDistances
 
         style = style or FibletStyle()
         nearest = self.render(view, style)
         if self._gatherer is None:
             maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
             self._gatherer = self._keep(maker, "gathered")
-        distances = self.slice_distances(view)
+        origin, scale, top = self._shared.place
+        distances = SliceDistances.of(view, origin, origin + top * scale)
         with self._programs.noting() as features:
             found = self._gatherer.of(
                 nearest,
@@ -242,13 +243,6 @@ class FibletRenderer(Drawable[FibletStyle]):
             )
         self._features_of_layers |= features
         return found
-
-    def slice_distances(self, view: View) -> SliceDistances:
-        """Return how distance along a view follows from depth, and how far the data reach."""
-        from .gathering import SliceDistances
-
-        origin, scale, top = self._shared.place
-        return SliceDistances.of(view, origin, origin + top * scale)
 
     def most_lines(self) -> float:
         """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""

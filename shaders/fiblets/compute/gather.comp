@@ -1,6 +1,8 @@
 // Adds up what all lines show in each pixel, in words of an image with atomics. Nothing is hidden, so that there is one round,
 // and whole numbers are added, so that the order does not matter.
 //
+// The four words of a pixel lie side by side, two in a row: atomics cost what memory they touch costs.
+//
 // A wide line or a tube adds once to a pixel: by the segment beside which the pixel lies, and by round ends where the line ends.
 
 #version 430
@@ -18,8 +20,14 @@ layout(local_size_x = {{ group_size }}) in;
 layout(r32ui, binding = {{ image_gathered }}) uniform uimage2DArray gathered;
 
 #if FEATURE_PAINTED
-#include "fiblets/attributes/pixel.glsl"
+#include "fiblets/attributes/streamline_index.glsl"
+#include "fiblets/attributes/values.glsl"
 #include "fiblets/gather/paint.glsl"
+#include "fiblets/gather/run.glsl"
+
+uint streamline;
+
+void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) { start_values(segment, to, delta, polyline.steps); }
 #else
 void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
 #endif
@@ -42,10 +50,14 @@ void plot(Fragment fragment, Segment segment) {
     int slice = slice_of(fragment.pixel, depth_key(fragment.z), owner);
     if (slice < 0) return;
 #if FEATURE_PAINTED
-    float t = along(fragment, segment);
-    uvec4 adds = uvec4(painted(pixel_streamline, normalize(tangent_between(tangents, t)), pixel_place(segment.index, t).y));
+    float value = 0.0;
+#if FEATURE_PAINT_TABLE
+    float t = along(fragment, segment), at = t * polyline.steps, whole = floor(clamp(at, 0.0, max(polyline.steps - 1.0, 0.0)));
+    value = value_along(segment.index, t, uint(whole), at - whole);
+#endif
+    uvec4 adds = uvec4(painted(streamline, run_direction(segment.to.local - segment.from.local), value));
     for (int channel = 0; channel < 4; ++channel) {
-        if (adds[channel] != 0u) imageAtomicAdd(gathered, ivec3(fragment.pixel, 4 * slice + channel), adds[channel]);
+        imageAtomicAdd(gathered, ivec3(2 * fragment.pixel + ivec2(channel & 1, channel >> 1), slice), adds[channel]);
     }
 #else
     imageAtomicAdd(gathered, ivec3(fragment.pixel, slice), 1u);
@@ -58,7 +70,8 @@ void main() {
         if (f == NO_FIBLET) break;
         owner = chunk_first + f;
 #if FEATURE_PAINTED
-        begin_pixels(f);
+        streamline = streamline_of(f);
+        begin_values(f);
 #endif
         draw_fiblet(f);
     }

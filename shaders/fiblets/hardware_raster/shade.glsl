@@ -68,7 +68,7 @@ void add(float s, uint key, uint segment, float t, float steps) {
     int slice = slice_of(ivec2(gl_FragCoord.xy), key, varying_ids.z);
     if (slice < 0) discard;
 #if FEATURE_PAINTED
-    vec4 adds = painted(varying_ids.x, normalize(tangent_between(varying_tangents(), t)), value_at(segment, t, steps));
+    vec4 adds = painted(varying_ids.x, unpacked_tangent(varying_tangent), value_at(segment, t, steps));
 #else
     vec4 adds = vec4(0.0, 0.0, 0.0, 1.0);
 #endif

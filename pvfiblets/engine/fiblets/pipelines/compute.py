@@ -103,6 +103,7 @@ class ComputePipeline:
         self._ctx = ctx
         self._programs = programs
         self._max_groups = max_groups
+        self._gl = GLExtras(ctx)
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
         self._shares = [(0, MAX_POINTS)]
@@ -207,13 +208,11 @@ class ComputePipeline:
         if self._software:
             self._shares = _shares(request.line_width, request.segment)
         self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
-        request.gather.target.bind_image()
+        request.gather.bind_images()
         with request.passes.timed("gather"):
-            clear = self._program("gather_clear", ())
-            self._set(clear, argument_base=self._argument_base)
-            self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
-            dispatch(clear, request.target.size[1], self._max_groups)
-            self._barrier()
+            request.gather.target.clear(self._gl)
+            empty = bytes(ROUNDS * self._round_arguments * ARGUMENT_BYTES)
+            self._own["visibility_bits"].write(empty, 4 * self._argument_base)
             features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
             self._run("cull", features, request)
             self._barrier()
@@ -228,7 +227,7 @@ class ComputePipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, GLExtras(self._ctx), self._programs, 32 * self._words)
+            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, 32 * self._words)
         return self._raster
 
     def _bind_nearest(self, size: int) -> None:
