@@ -81,11 +81,11 @@ def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeli
     assert (count > (1 if style.half_width == 0 else 3)).sum() > 50
     wrong = found[..., 3] != count
     assert wrong.mean() < (0.0002 if style.half_width == 0 else 0.01) and np.abs(found[..., 3] - count).max() <= 2
-    # Mean colours.
+    # Mean colours: of segments, where the picture has tangents that are continuous along a line.
     colour = np.sum([np.where(p.drawn[..., None], np.abs(unpacked_tangent(p.ids[..., 1])), 0.0) for p in alone], 0)
     both = (count > 0) & ~wrong
     error = np.abs(found[..., :3] / 255.0 - colour)[both] / count[both][:, None]
-    assert error.mean() < 0.004 and np.quantile(error, 0.99) < 0.06
+    assert error.mean() < 0.02 and np.quantile(error, 0.99) < 0.1
     # In slices: all but the nearest, by distance.
     near = renderer.render(view, style)
     nearest = read(near)

@@ -253,6 +253,7 @@ class FibletRenderer(Drawable[FibletStyle]):
         if self._gatherer is not None:
             self._drop(self._gatherer)
             self._gatherer = None
+        self._features_of_layers = frozenset()
 
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
         # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
