@@ -74,6 +74,8 @@ FEATURES: dict[str, str] = {
     "PAINT_LOGARITHM": "a table spread over logarithms",
     "PAINT_LIGHT": "the light on lines",
     "PAINT_ALPHA": "opacities of their own",
+    "PAINT_OPACITIES": "an opacity per streamline",
+    "PAINT_VALUE_OPACITY": "per-point values as opacities",
     "VALUES_STORED": "a stored per-point array",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
     "VALUES_CURVATURE": "curvature of the streamline",

@@ -65,6 +65,11 @@ class Colouring:
         For values outside `clim`; by default the colour of the nearer end.
     has_alpha : bool, default False
         Whether some colour of ``'point_rgba'`` has an alpha below 1.
+    opacities : numpy.ndarray, optional
+        (n_streamlines,) numbers from 0 to 1; NaN is 0.
+    opacity_source : str, optional
+        Name of a stored per-point array of opacities from 0 to 1; of fiblets. With ``'point_scalar'`` it is `source`:
+        one number at points goes with a picture.
 
     Raises
     ------
@@ -83,6 +88,8 @@ class Colouring:
     below_color: tuple[float, ...] | None = None
     above_color: tuple[float, ...] | None = None
     has_alpha: bool = False
+    opacities: npt.NDArray[Any] | None = None
+    opacity_source: str | None = None
 
     def __post_init__(self) -> None:
         """Check the fields and bring them into one form."""
@@ -101,6 +108,11 @@ class Colouring:
             raise ValueError(f"mode 'point_rgba' needs source: the name of the tubes' colours, not {self.source!r}")
         if self.mode in _TABLE_MODES:
             self._check_table()
+        if self.opacity_source is not None and self.mode == "point_scalar" and self.source != self.opacity_source:
+            raise ValueError(
+                f"opacities of points are {self.opacity_source!r}, but {self.source!r} colours points: one number at "
+                "points goes with a picture; colour by the same, or by streamline, or give one opacity per streamline"
+            )
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
@@ -150,12 +162,16 @@ class Colouring:
         }[self.mode]
         if self.mode in ("point_scalar", "pixel_count") and self.log_scale:
             names = [*names, "scale_logarithm"]
+        if self.opacities is not None:
+            names = [*names, "opacity_streamline"]
+        if self.opacity_source is not None:
+            names = [*names, "opacity_value" if self.mode == "point_scalar" else "opacity_point"]
         return frozenset(names)
 
     @property
     def point_source(self) -> str | VolumeSource | None:
         """Per-point value or colour that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode in ("point_scalar", "point_rgba") else None
+        return self.source if self.mode in ("point_scalar", "point_rgba") else self.opacity_source
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -224,6 +240,13 @@ class Colouring:
         opaque = np.full((len(self.values), 1), 255, dtype=np.uint8)
         return np.hstack([self.values, opaque])
 
+    def streamline_opacities(self) -> npt.NDArray[np.uint8]:
+        """Return (n_streamlines, 4) uint8, whose alpha is the opacity."""
+        values = np.nan_to_num(np.asarray(self.opacities, np.float64))
+        found = np.zeros((len(values), 4), np.uint8)
+        found[:, 3] = np.round(255.0 * np.clip(values, 0.0, 1.0))
+        return found
+
     def check_count(self, n_streamlines: int) -> None:
         """Raise unless values per streamline are as many as streamlines.
 
@@ -232,6 +255,11 @@ class Colouring:
         ValueError
             They are not.
         """
+        if self.opacities is not None and len(self.opacities) != n_streamlines:
+            raise ValueError(
+                f"there are {len(self.opacities)} opacities for {n_streamlines} streamlines; give one per streamline, "
+                "empty ones included"
+            )
         if "colour_streamline" not in self.features or self.values is None:
             return
         if len(self.values) != n_streamlines:
@@ -242,6 +270,8 @@ class Colouring:
 
     def translucent(self) -> bool:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
+        if self.opacities is not None or self.opacity_source is not None:
+            return True
         if self.mode == "streamline_rgba" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
         if self.mode == "point_rgba":

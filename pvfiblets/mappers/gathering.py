@@ -41,6 +41,9 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
         to_light = np.linalg.inv(draw.frame.directions_to_view) @ _SHOULDER
         light = tuple(float(x) for x in to_light / (np.linalg.norm(to_light) or 1.0))
     common: dict[str, Any] = {"light": light, "opacity": opacity, "version": colouring}
+    if opacity is not None:
+        common["opacities"] = textures.get("fibletOpacities")
+        common["value_opacity"] = colouring.opacity_source is not None
     if colouring.mode == "orientation":
         return Paint("direction", **common)
     if colouring.mode == "solid":

@@ -122,8 +122,12 @@ class Paint:
         Unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
     opacity : float, optional
         Of the whole drawable, where colours have opacities of their own; None where all lines have the same.
+    opacities : moderngl.Texture, optional
+        RGBA of 8 bits, row by row: alphas are those of streamlines; with ``opacity``.
+    value_opacity : bool
+        Whether the style's per-point value is an opacity; with ``opacity``.
     version : object
-        Another one if the content of ``colours`` is another.
+        Another one if the content of textures is another.
     """
 
     source: str = "none"
@@ -134,6 +138,8 @@ class Paint:
     logarithm: bool = False
     light: tuple[float, ...] | None = None
     opacity: float | None = None
+    opacities: Any = None
+    value_opacity: bool = False
     version: Any = None
 
     @property
@@ -146,6 +152,8 @@ class Paint:
             "PAINT_LOGARITHM": self.logarithm,
             "PAINT_LIGHT": self.light is not None,
             "PAINT_ALPHA": self.opacity is not None,
+            "PAINT_OPACITIES": self.opacities is not None,
+            "PAINT_VALUE_OPACITY": self.value_opacity,
         }
         return ("PAINTED", *(name for name, on in wanted.items() if on))
 
@@ -158,10 +166,13 @@ class Paint:
         """Bind textures, and set those uniforms that a program has."""
         if self.colours is not None and "paint_colours" in program:
             self.colours.use(GATHERING["paint_colours"])
+        if self.opacities is not None and "paint_opacities" in program:
+            self.opacities.use(GATHERING["paint_opacities"])
         unit = self.absorbance
         set_uniforms(
             program,
             paint_colours=GATHERING["paint_colours"],
+            paint_opacities=GATHERING["paint_opacities"],
             paint_solid=tuple(self.color[:3]),
             paint_entries=self.entries,
             paint_range=self.range,

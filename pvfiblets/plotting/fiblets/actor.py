@@ -16,6 +16,7 @@ from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
+from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
@@ -85,6 +86,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._init_shading()
         self._tone = TONES[0]
         self._transparency: str | int | None = ALL
+        self._opacity_by: Any = None
+        self._opacities = Opacities()
         self._init_filtering()
         self._init_selection()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
@@ -92,6 +95,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._finish(mapper, given)
         self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
+        self.opacity = theme.opacity if given["opacity"] is None else given["opacity"]
         self._take(given)
 
     def __repr__(self) -> str:
@@ -227,6 +231,51 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         super()._show(scalars)
         self._relight()
         self._count_lines()
+
+    # Opacity ------------------------------------------------------------------------------------
+
+    def _read_opacity(self) -> float:
+        return float(self.prop.opacity)
+
+    def _write_opacity(self, opacity: Any) -> None:
+        if isinstance(opacity, float):
+            self.prop.opacity = opacity
+        else:
+            self.opacity_by = opacity
+
+    def _read_opacity_by(self) -> Any:
+        return self._opacity_by
+
+    def _write_opacity_by(self, choice: Any) -> None:
+        fiblets, found = self._fiblets, Opacities()
+        if choice is not None:
+            fiblets, found = find_opacities(fiblets, choice)
+        if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
+            raise ValueError(
+                f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "
+                "opacity per streamline or per point"
+            )
+        before = self._opacity_by, self._opacities, self._fiblets
+        if fiblets is not self._fiblets:
+            self._draw(fiblets)
+        self._opacity_by, self._opacities = choice, found
+        try:
+            self._show(self._scalars)
+        except Exception:
+            self._opacity_by, self._opacities = before[:2]
+            self._draw(before[2])
+            self._show(self._scalars)
+            raise
+
+    def _fade_table(self, table: pv.LookupTable) -> None:
+        if self._opacities.transfer is not None:
+            table.apply_opacity(self._opacities.transfer)
+
+    def _faded(self, colouring: Colouring) -> Colouring:
+        streamlines, points = self._opacities.streamlines, self._opacities.points
+        if streamlines is None and points is None:
+            return colouring
+        return replace(colouring, opacities=streamlines, opacity_source=points)
 
     # Density ------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effect, Switch
-from pvfiblets.plotting.settings import Row, Setting, Settings, truth
+from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
 STYLES = ("surface", "halo", "density")
 TONES = ("log", "sqrt", "linear")
@@ -23,6 +23,13 @@ def _radii(data: Any) -> tuple[float, float]:
 def _clim_span(actor: Any) -> tuple[float, float]:
     scalars = actor.active_scalars
     return scalars.range if scalars is not None and scalars.mapped else actor.clim
+
+
+def _opacity(name: str, value: Any) -> Any:
+    """Return a number as a float; what else there is is looked at when it is set."""
+    if isinstance(value, str) or getattr(value, "ndim", 0) or isinstance(value, (list, tuple)):
+        return value
+    return number(name, value, 0.0, 1.0)
 
 
 THINNEST, WIDEST = 1e-3, 64.0
@@ -54,7 +61,33 @@ class FibletSettings(Settings):
         where=COLOURS,
         check=truth,
     )
-    opacity = shared.opacity("Of all streamlines.")
+    opacity: Setting[float] = Setting(
+        None,
+        "From 0, not to be seen, to 1. Anything else that is set is taken by ``opacity_by``.",
+        argument="Of all streamlines, from 0, not to be seen, to 1; the theme's by default. Or what "
+        "``actor.opacity_by`` takes: ``\"linear\"``, ``\"sigmoid\"`` and the like, opacities along the colour map; "
+        "numbers from 0 to 1, or the name of an array with them, one per streamline or per point.",
+        kind="Any",
+        header="float, str or array_like, optional",
+        where=OWN,
+        check=_opacity,
+        row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
+    )
+    opacity_by: Setting[Any] = Setting(
+        None,
+        "Opacities beside ``opacity``, which they are times.\n\n"
+        "``None`` for none; as in :meth:`pyvista.Plotter.add_mesh` the name of a transfer function\n"
+        "(``'linear'``, ``'geom'``, ``'sigmoid'``, with ``_r`` reversed) along the colour map, from its first\n"
+        "colour to the last, or numbers from 0 to 1 for that; or numbers from 0 to 1, one per streamline\n"
+        "or one per point, or the name of an array of such. Opacities of points and another number that\n"
+        "colours points do not go together.",
+        argument=False,
+        where=LATER,
+        row=Row("Fades by", "Opacity along the colour map.", type="choice", optional=True,
+                choices=[(None, "nothing"), ("linear", "value"), ("linear_r", "value, reversed"), ("geom", "value, steep"),
+                         ("sigmoid", "value, a step")],
+                matters=shared.by_numbers),
+    )  # fmt: skip
     transparency: Setting[str | int | None] = Setting(
         ALL,
         "What an ``opacity`` below 1 shows behind the nearest line.\n\n"

@@ -28,6 +28,10 @@ uniform float paint_unit;          // w over A
 const float MOST_OPAQUE = 0.999;
 #endif
 
+#if FEATURE_PAINT_OPACITIES
+uniform sampler2D paint_opacities; // of each streamline, in alpha, row by row
+#endif
+
 #if FEATURE_PAINT_STREAMLINE || FEATURE_PAINT_TABLE
 vec4 paint_entry(int k) {
     int row = textureSize(paint_colours, 0).x;
@@ -63,6 +67,13 @@ vec4 painted(uint streamline, vec3 tangent, float value) {
     float along = dot(tangent, paint_light);
     along *= along;
     colour.rgb *= PAINT_FLOOR + (1.0 - PAINT_FLOOR) * (1.0 - along * along);
+#endif
+#if FEATURE_PAINT_OPACITIES
+    int row = textureSize(paint_opacities, 0).x;
+    colour.a *= texelFetch(paint_opacities, ivec2(int(streamline) % row, int(streamline) / row), 0).a;
+#endif
+#if FEATURE_PAINT_VALUE_OPACITY
+    colour.a *= isnan(value) ? 0.0 : clamp(value, 0.0, 1.0);
 #endif
     float weight = 1.0;
 #if FEATURE_PAINT_ALPHA
