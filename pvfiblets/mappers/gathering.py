@@ -135,7 +135,7 @@ class Sums:
     def set_uniforms(self, program: Any) -> None:
         """Say how to read the sums."""
         held = self.held
-        program.SetUniformi("fibletSumKind", 0 if held is None or not held.words else 4 if held.painted else 1)
+        program.SetUniform2i("fibletSumShape", (0, 0) if held is None or not held.words else held.shape)
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
         """Return ``passes``, of which the engine tells, and ``buffers``, name and bytes."""

@@ -31,11 +31,11 @@ flat in int fibletLayer;
   float fibletReaching = 1.0;
   if (fibletLayer > 0 && fibletKey != fibletEmpty)
   {
-    fibletSlice = fibletSumOf(fibletPixel, fibletLayer - 1);
+    float fibletHeld = fibletWeightOf(fibletPixel, fibletLayer - 1);
     uint fibletBehind = texelFetch(fibletSliceKeys, fibletPixel, 0)[fibletLayer - 1];
     // Behind the nearest, in steps that a depth buffer tells apart.
     uint fibletLeast = fibletKey + min(1024u * uint(fibletLayer), fibletEmpty - 1u - fibletKey);
-    fibletKey = fibletSlice.a < 0.5 ? fibletEmpty : max(fibletLeast, fibletBehind);
+    fibletKey = fibletHeld < 0.5 ? fibletEmpty : max(fibletLeast, fibletBehind);
   }
   uint fibletLayerKey = fibletKey;
 

@@ -8,8 +8,9 @@
     fibletReaching = fibletThrough;
     for (int k = 0; k < fibletLayer - 1; ++k)
     {
-      fibletReaching *= exp(-fibletUnit * fibletSumOf(fibletPixel, k).a);
+      fibletReaching *= exp(-fibletUnit * fibletWeightOf(fibletPixel, k));
     }
+    fibletSlice = fibletSumOf(fibletPixel, fibletLayer - 1);
     vec3 fibletMean = fibletSlice.rgb / (255.0 * fibletSlice.a);
     ambientColor = ambientIntensity * fibletMean;
     diffuseColor = diffuseIntensity * fibletMean;

@@ -202,8 +202,8 @@ class Gathered:
     painted : bool
         Whether there are colours beside numbers.
     words : bool
-        Words of 32 bits: of each pixel red and green below blue and weight, or the weight alone. Else float32 with these
-        in its channels. A slice has a layer.
+        Words of 32 bits: of each pixel red, green, blue and weight, or the weight alone. Else float32 with these in its
+        channels. A slice has a layer.
 
     Raises
     ------
@@ -213,7 +213,9 @@ class Gathered:
     Attributes
     ----------
     texture : moderngl.TextureArray
-        Of words with colours twice as wide and high as the picture.
+        Of words with colours four times as wide as the picture, or twice as wide and high, where that is too much.
+    shape : tuple of int
+        Columns and rows of a pixel's words.
     framebuffer : moderngl.Framebuffer
         Of its layers.
     keys : moderngl.Texture or None
@@ -224,8 +226,11 @@ class Gathered:
         self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], slices: int, painted: bool, words: bool
     ) -> None:
         self.size, self.slices, self.painted, self.words = size, slices, painted, words
-        side, channels = (2 if painted else 1, 1) if words else (1, 4)
-        self.nbytes = 4 * size[0] * size[1] * slices * side * side * channels
+        self.shape = (1, 1)
+        if words and painted:
+            self.shape = (4, 1) if 4 * size[0] <= int(ctx.info["GL_MAX_TEXTURE_SIZE"]) else (2, 2)
+        channels = 1 if words else 4
+        self.nbytes = 4 * math.prod(size) * slices * math.prod(self.shape) * channels
         self.keys: moderngl.Texture | None = None
         self._key_target: moderngl.Framebuffer | None = None
         held: list[Any] = []
@@ -237,7 +242,7 @@ class Gathered:
                 self._key_target = ctx.framebuffer([self.keys])
                 held.append(self._key_target)
                 self.nbytes += 16 * size[0] * size[1]
-            shape, dtype = (side * size[0], side * size[1]), "u4" if words else "f4"
+            shape, dtype = (self.shape[0] * size[0], self.shape[1] * size[1]), "u4" if words else "f4"
             self.texture = ctx.texture_array((*shape, slices), channels, dtype=dtype)
             self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
             held.append(self.texture)
@@ -293,7 +298,8 @@ class Gathered:
             found[..., 3] = raw
         else:
             for channel in range(4):
-                found[..., channel] = raw[:, channel >> 1 :: 2, channel & 1 :: 2]
+                columns, rows = self.shape
+                found[..., channel] = raw[:, channel // columns :: rows, channel % columns :: columns]
         return found
 
     def release(self) -> None:
@@ -333,6 +339,7 @@ class Gather:
     def bind(self, program: Any) -> None:
         """Bind what programs look at, and tell them where."""
         self.paint.bind(program)
+        set_uniforms(program, word_shape=self.target.shape)
         sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "owner", "ids", "position")}
         sources |= {"slice_keys": self.target.keys, "outside_depth": self.outside}
         for name, texture in sources.items():
@@ -442,7 +449,7 @@ class Gatherer:
         features = [*(["GATHER_WORDS"] if held.words else []), *(["PAINTED"] if held.painted else [])]
         program, array = self._programs.screen("fiblets/gather/greatest.frag", features)
         held.texture.use(GATHERING["gathered"])
-        set_uniforms(program, gathered=GATHERING["gathered"], size=held.size)
+        set_uniforms(program, gathered=GATHERING["gathered"], size=held.size, word_shape=held.shape)
         with self._gl.framebuffers_kept():
             self._ctx.enable_only(moderngl.NOTHING)
             framebuffer.use()

@@ -1,7 +1,7 @@
 // Adds up what all lines show in each pixel, in words of an image with atomics. Nothing is hidden, so that there is one round,
 // and whole numbers are added, so that the order does not matter.
 //
-// The four words of a pixel lie side by side, two in a row: atomics cost what memory they touch costs.
+// The four words of a pixel lie side by side, in a row if a texture may be so wide: atomics cost what memory they touch costs.
 //
 // A wide line or a tube adds once to a pixel: by the segment beside which the pixel lies, and by round ends where the line ends.
 
@@ -18,6 +18,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/gather/slices.glsl"
 
 layout(r32ui, binding = {{ image_gathered }}) uniform uimage2DArray gathered;
+uniform ivec2 word_shape;   // columns and rows of a pixel's words
 
 #if FEATURE_PAINTED
 #include "fiblets/attributes/streamline_index.glsl"
@@ -56,9 +57,11 @@ void plot(Fragment fragment, Segment segment) {
     value = value_along(segment.index, t, uint(whole), at - whole);
 #endif
     uvec4 adds = uvec4(painted(streamline, run_direction(segment.to.local - segment.from.local), value));
-    for (int channel = 0; channel < 4; ++channel) {
-        imageAtomicAdd(gathered, ivec3(2 * fragment.pixel + ivec2(channel & 1, channel >> 1), slice), adds[channel]);
-    }
+    ivec2 word = fragment.pixel * word_shape, next = word_shape.x == 4 ? ivec2(2, 0) : ivec2(0, 1);
+    imageAtomicAdd(gathered, ivec3(word, slice), adds.x);
+    imageAtomicAdd(gathered, ivec3(word + ivec2(1, 0), slice), adds.y);
+    imageAtomicAdd(gathered, ivec3(word + next, slice), adds.z);
+    imageAtomicAdd(gathered, ivec3(word + next + ivec2(1, 0), slice), adds.w);
 #else
     imageAtomicAdd(gathered, ivec3(fragment.pixel, slice), 1u);
 #endif

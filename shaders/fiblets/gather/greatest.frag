@@ -4,8 +4,9 @@
 
 #if FEATURE_GATHER_WORDS
 uniform usampler2DArray gathered;
+uniform ivec2 word_shape;
 #if FEATURE_PAINTED
-float lines_of(ivec2 pixel) { return float(texelFetch(gathered, ivec3(2 * pixel + 1, 0), 0).x); }
+float lines_of(ivec2 pixel) { return float(texelFetch(gathered, ivec3((pixel + 1) * word_shape - 1, 0), 0).x); }
 #else
 float lines_of(ivec2 pixel) { return float(texelFetch(gathered, ivec3(pixel, 0), 0).x); }
 #endif
