@@ -1,4 +1,4 @@
-# One command each: `make demo`, `make serve`, `make test`, `make test-all`, `make lint`, `make fuzz`, `make soak`, `make bench`.
+# One command each: `make demo`, `make serve`, `make test`, `make test-all`, `make lint`, `make fuzz`, `make soak`, `make bench`, `make drivers`.
 # A new machine needs only make and Python >= 3.11 with its venv module.
 
 PYTHON ?= python3
@@ -11,7 +11,7 @@ SHELL := /bin/bash
 # Compiled modules are kept, for the many processes that tests start.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel wheel environment gl shaders browser display clean
+.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel environment gl shaders browser display clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -51,6 +51,12 @@ docs: environment gl
 
 check-wheel: environment gl
 	@PYTHON=$(BIN)/python scripts/wheel_check.sh
+
+drivers: environment gl
+	@PYTHON=$(BIN)/python scripts/drivers.sh
+
+drivers-part: environment
+	@scripts/drivers.sh --part
 
 wheel: environment
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .

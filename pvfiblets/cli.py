@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError
 
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
@@ -82,7 +83,19 @@ def make_parser() -> argparse.ArgumentParser:
         "--step", type=positive, metavar="MM", help="resample to this distance between points (default: keep points)"
     )
     convert.add_argument(
-        "--max-error", type=positive, metavar="MM", help="greatest error of any point (default: a tenth of a step)"
+        "--max-error",
+        type=positive,
+        metavar="MM",
+        help="greatest error of any point (default: a tenth of a step; of uneven or coarse lines 1/4000 of the extent "
+        "if that is less)",
+    )
+    convert.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help="greatest angle between true and drawn directions, at segments longer than a pixel of a full-screen view "
+        f"(default: {DEFAULT_ANGLE:g}); none: any, for smaller files where --max-error is coarse",
     )
     convert.add_argument(
         "--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error, same size"
@@ -112,12 +125,19 @@ def make_parser() -> argparse.ArgumentParser:
     verify = commands.add_parser(
         "verify",
         help="check a .fiblets file against its checksums and against its original",
-        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL. "
-        "Fails if the file is damaged or an error is greater than the file promises.",
+        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL, "
+        "and its directions from theirs. Fails if the file is damaged or an error is greater than the file promises.",
     )
     verify.add_argument("path", metavar="FILE", help="a .fiblets file")
     verify.add_argument(
         "original", metavar="ORIGINAL", nargs="?", help="what it was made from; without it, only checksums"
+    )
+    verify.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help=f"say whether directions are within this angle (default: {DEFAULT_ANGLE:g})",
     )
     _quiet_and_json(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
@@ -328,6 +348,16 @@ def positive(text: str) -> float:
     value = float(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return value
+
+
+def angle(text: str) -> float | None:
+    """Parse degrees above zero and up to 90, or ``none``."""
+    if text == "none":
+        return None
+    value = float(text)
+    if not 0.0 < value <= 90.0:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0 and up to 90 degrees, or none")
     return value
 
 

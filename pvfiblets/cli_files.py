@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json as json_
+import math
 import sys
 import time
 from pathlib import Path
 from typing import Any, Literal
 
 from pvfiblets import formats
+from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError, FormatError
 from pvfiblets.formats.spool import gathered
 from pvfiblets.web.values import plain
@@ -27,6 +29,7 @@ def convert(
     *,
     step: float | None,
     max_error: float | None,
+    max_angle: float | None,
     effort: Literal["fast", "high"],
     per_point: list[str],
     per_point_bits: int,
@@ -45,14 +48,17 @@ def convert(
             target,
             step="auto" if step is None else step,
             max_error=max_error,
+            max_angle=max_angle,
             effort=effort,
             per_point=tuple(per_point),
             per_point_bits=per_point_bits,
             progress=show_progress(quiet, json),
         )
     else:
-        if step is not None or max_error is not None or per_point:
-            raise ValueError(f"--step, --max-error and --per-point are for {COMPRESSED} files; {target} is none")
+        if step is not None or max_error is not None or max_angle != DEFAULT_ANGLE or per_point:
+            raise ValueError(
+                f"--step, --max-error, --max-angle and --per-point are for {COMPRESSED} files; {target} is none"
+            )
         result = rewrite(source, target)
     if json:
         print_json(result)
@@ -79,6 +85,7 @@ def rewrite(source: str, target: str, max_points: int = REWRITTEN_POINTS) -> dic
         "bytes_per_point": size / max(n_points, 1),
         "error_mm": None,
         "error_steps": None,
+        "error_degrees": None,
         "seconds": seconds,
         "points_per_second": n_points / max(seconds, 1e-9),
         "dropped": dropped,
@@ -99,8 +106,8 @@ def info(path: str, *, json: bool) -> None:
         print(f"{key:<16} {readable(value)}")
 
 
-def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
-    """Check a compressed file's checksums and, given the original, every point."""
+def verify(path: str, original: str | None, *, max_angle: float | None, quiet: bool, json: bool) -> None:
+    """Check a compressed file's checksums and, given the original, every point and direction."""
     from pvfiblets.codec.convert import measure_file_error
     from pvfiblets.codec.fiblets_format import verify_file
     from pvfiblets.codec.fibletset import FibletSet
@@ -125,6 +132,8 @@ def verify(path: str, original: str | None, *, quiet: bool, json: bool) -> None:
             raise VerificationError(f"{path} was not made from {original} as it is: {mismatch}") from mismatch
         result.update(original=original, **error.summary())
         result["kept"] = bool(error.max_mm <= fiblets.promise)
+        # Files do not say which angle they were made for, so that this is told and fails nothing.
+        result["directions_kept"] = max_angle is None or not error.max_degrees > max_angle
     if json:
         print_json(result)
     else:
@@ -150,6 +159,9 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
             "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
             "         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()),
         ]
+        if result["points"] and math.isfinite(result["error_degrees"]["max"]):
+            angles = ", ".join(f"{k} {v:.2g}°" for k, v in result["error_degrees"].items())
+            lines.append(f"         directions: {angles}")
     speed = result["points_per_second"] / 1e6
     lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]

@@ -158,7 +158,7 @@ def demo_table(result: dict[str, Any], original: Path, compressed: Path) -> str:
     def row(name: str, size: int) -> str:
         return f"  {name:<28} {size / 1e6:>10.1f} MB {size / points:>8.2f} bytes per point"
 
-    error, steps = result["error_mm"], result["error_steps"]
+    error, steps, angles = result["error_mm"], result["error_steps"], result["error_degrees"]
     return "\n".join(
         [
             "",
@@ -171,6 +171,11 @@ def demo_table(result: dict[str, Any], original: Path, compressed: Path) -> str:
             *(
                 f"  {name:<28} {error[key]:>10.5f} {steps[key]:>10.4f}"
                 for name, key in (("mean", "mean"), ("99.9 % are below", "p999"), ("greatest", "max"))
+            ),
+            f"  {'error of the directions':<28} {'degrees':>10}",
+            *(
+                f"  {name:<28} {angles[key]:>10.3f}"
+                for name, key in (("mean", "mean"), ("99 % are below", "p99"), ("greatest", "max"))
             ),
             "",
             f"  compressed in {result['seconds']:.1f} s; drawn into {result['picture']} "

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.other_libraries import lines_of_grid, streamlines_of
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
 
@@ -19,7 +20,10 @@ __all__ = ["Lines", "flat", "gather", "joined"]
 
 Ints = npt.NDArray[np.int64]
 
-_EXPECTED = "a PolyData with lines, Streamlines, a FibletSet, an (n, 3) array, a list of them or (points, segments)"
+_EXPECTED = (
+    "a PolyData with lines (or an UnstructuredGrid or MultiBlock of such), Streamlines, a FibletSet, a tractogram of "
+    "nibabel, dipy or trx-python, an (n, 3) array, a list of them or (points, segments)"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +120,9 @@ def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Li
     if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
         return _from_streamlines(cast("FibletSet", source).decompress(), keep_single)
     if hasattr(source, "IsA"):
-        return _from_vtk(source, noun, keep_single)
+        return _from_vtk(lines_of_grid(source), noun, keep_single)
+    if (found := streamlines_of(source)) is not None:
+        return _from_streamlines(found, keep_single)
     if isinstance(source, np.ndarray) and source.dtype != object:
         if source.ndim == 3:
             return _from_arrays(list(source), keep_single)
@@ -169,10 +175,10 @@ def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     if not mesh.IsA("vtkPolyData"):
-        whole = "combine()." if mesh.IsA("vtkCompositeDataSet") else ""
+        if mesh.IsA("vtkMultiBlockDataSet"):
+            return _from_streamlines(cast("Streamlines", streamlines_of(mesh)), keep_single)
         raise TypeError(
-            f"{noun} cannot be made from a {type(mesh).__name__}; give its {whole}extract_surface() or "
-            f"{whole}extract_all_edges()"
+            f"{noun} cannot be made from a {type(mesh).__name__}; give its extract_surface() or extract_all_edges()"
         )
     cells = mesh.GetLines()
     n = cells.GetNumberOfCells()

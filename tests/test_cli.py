@@ -15,10 +15,12 @@ from PIL import Image
 
 from pvfiblets import formats
 from pvfiblets.cli import main, make_parser
+from pvfiblets.codec.fibletset import FibletSet
+from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.synthetic import brain_streamlines
 
 CONVERT_KEYS = {
-    "streamlines", "points", "fiblets", "bytes", "bytes_per_point", "error_mm", "error_steps",
+    "streamlines", "points", "fiblets", "bytes", "bytes_per_point", "error_mm", "error_steps", "error_degrees",
     "seconds", "points_per_second", "dropped",
 }  # fmt: skip
 
@@ -69,6 +71,11 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
     assert result["error_mm"]["mean"] == pytest.approx(error.mean(), rel=0.02)
     assert result["error_steps"]["max"] == pytest.approx(error.max() / 0.5, rel=0.02)
+    firsts = FibletSet.open(target).fiblet_points()
+    angles = direction_angles(brain.points, back.points, brain.offsets, firsts)
+    assert result["error_degrees"]["max"] == pytest.approx(angles.max(), rel=0.02)
+    assert result["error_degrees"]["mean"] == pytest.approx(angles.mean(), rel=0.02)
+    assert result["error_degrees"]["p99"] == pytest.approx(np.quantile(angles, 0.99), rel=0.05)
     np.testing.assert_allclose(back.per_point["fa"].ravel(), brain.per_point["fa"], atol=0.003)
 
 
@@ -77,11 +84,23 @@ def test_convert_keeps_the_promise_that_was_asked_for(tractogram, tmp_path, caps
     assert json.loads(capsys.readouterr().out)["error_mm"]["max"] <= 0.004 * 1.01
 
 
+def test_convert_keeps_the_directions_that_were_asked_for(tractogram, tmp_path, capsys):
+    largest = []
+    for angle in ("none", "1.5"):
+        words = ["--max-error", "0.2", "--max-angle", angle, "--json"]
+        assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets"), *words]) == 0
+        largest.append(json.loads(capsys.readouterr().out)["error_degrees"]["max"])
+    assert largest[0] > 2.0 > largest[1]  # these lines turn by more than 1.5 degrees wherever a fiblet could begin
+    assert main(["convert", str(tractogram[0]), str(tmp_path / "a.trk"), "--max-angle", "none"]) == 1
+    assert "--max-angle" in capsys.readouterr().err
+
+
 def test_convert_speaks_to_people_too(tractogram, tmp_path, capsys):
     assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets")]) == 0
     out = capsys.readouterr().out
     assert "300 streamlines" in out
     assert "steps" in out
+    assert "directions: max" in out
     assert "per point" in out
 
 
@@ -91,7 +110,7 @@ def test_convert_out_of_the_compressed_form_is_read_by_nibabel(compressed, tract
     assert main(["convert", str(compressed), str(target), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert set(result) >= CONVERT_KEYS
-    assert result["error_mm"] is None
+    assert result["error_mm"] is result["error_degrees"] is None
     loaded = nib.streamlines.load(target).streamlines
     assert len(loaded) == 300
     np.testing.assert_allclose(loaded.get_data(), tractogram[1].points, atol=0.06)
@@ -112,8 +131,12 @@ def test_info_of_both_forms_agrees(compressed, tractogram, capsys):
 def test_verify_measures_against_the_original(compressed, tractogram, capsys):
     assert main(["verify", str(compressed), str(tractogram[0]), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
-    assert result["kept"] is True
+    assert result["kept"] is result["directions_kept"] is True
     assert 0.0 < result["error_mm"]["max"] <= result["promise_mm"]
+    assert 0.0 < result["error_degrees"]["mean"] < result["error_degrees"]["p99"] < result["error_degrees"]["max"]
+    tight = f"{0.5 * result['error_degrees']['max']}"
+    assert main(["verify", str(compressed), str(tractogram[0]), "--max-angle", tight, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["directions_kept"] is False
     assert main(["verify", str(compressed)]) == 0
 
 

@@ -15,10 +15,20 @@ from PIL import Image
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))
 HEAVY = {
-    "13_more_colours", "15_selected_tracts", "16_furball", "18_halos_of_air", "19_halos_of_a_scan", "20_halos_of_knots",
+    "08_large_and_culled", "13_more_colours", "15_selected_tracts", "16_furball", "18_halos_of_air",
+    "19_halos_of_a_scan", "20_halos_of_knots", "21_depth_of_field", "22_angiogram",
     "23_tracts_in_their_anatomy", "24_inside_a_volume",
 }  # fmt: skip
-"""What others show as well: 03 colours, 11 selections, 08 many lines, 17 halos, 22 volumes. `make docs` draws all."""
+"""What other examples and pages show as well, and larger. `make docs` draws all."""
+
+SMALL = """
+import runpy, sys
+import pyvista
+pyvista.global_theme.window_size = (512, 384)
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+"""What runs an example with windows of a quarter of the usual size, where it gives them none."""
 
 
 def test_examples_are_numbered_without_a_gap():
@@ -35,7 +45,7 @@ def test_examples_are_numbered_without_a_gap():
     ],
 )
 def test_example_runs_and_makes_what_it_names(script, tmp_path):
-    command = [sys.executable, "-W", "error", str(script), str(tmp_path)]
+    command = [sys.executable, "-W", "error", "-c", SMALL, str(script), str(tmp_path)]
     environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
     environment.pop("GALLIVM_PERF", None)  # in large pictures optimised shaders soon make up for their compilation
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)

@@ -22,6 +22,7 @@ from .direction_kernels import (
     _step_index,
     anchor_of,
     first_frame,
+    follows,
     pack_direction,
     quantise,
     take_points,
@@ -29,6 +30,7 @@ from .direction_kernels import (
 )
 from .jit import kernel, parallel_kernel
 from .layout import MAX_POINTS, STEP_LEVELS
+from .turn_kernels import excess, may_turn
 
 __all__ = ["encode_directions", "neighbours"]
 
@@ -159,6 +161,7 @@ def encode_directions(
     top: float,
     steps: Any,
     promise: float,
+    bound: Any,
     end_scale: float,
     tables: Any,
     out: Any,
@@ -175,6 +178,7 @@ def encode_directions(
         anchor, states, fresh = np.empty(3), np.empty((WIDTH, 10)), np.empty((WIDTH + 1, 10))
         parents, chosen = np.zeros((MAX_POINTS, WIDTH), np.uint8), np.zeros((MAX_POINTS, WIDTH), np.uint8)
         scratch = (anchor, states, fresh, parents, chosen)
+        units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)
@@ -194,9 +198,9 @@ def encode_directions(
                 smallest = _smallest_cap(true, n, tables[2])
                 best, mine, used = math.inf, 0, 0
                 # Half the promise first: a low mean is not worth a point near the limit.
-                for bound in (0.25 * give_up, give_up):
+                for largest in (0.25 * give_up, give_up):
                     for cap in range(max(smallest - 1, 0), min(smallest + 3, len(tables[2]))):
-                        score = _beam(true, n, step, cap, bound, tables, near, scratch, trial[1 - mine])
+                        score = _beam(true, n, step, cap, largest, tables, near, scratch, trial[1 - mine])
                         if score < best:
                             best, mine, used = score, 1 - mine, cap
                     if best < math.inf:
@@ -207,7 +211,11 @@ def encode_directions(
                     for i in range(n - 2):
                         codes[first + i] = trial[mine, i]
                     ok[slot] = 1 if _follow(true, n, step, used, tables[0], trial[mine], decoded) <= give_up else 0
+            if not end[slot]:
+                anchor_of(points, origin, first + n, scale, top, anchor)
+            if ok[slot] and bound[1] < math.inf and n + 1 - end[slot] > 1:
+                may_turn(points, first, n, follows(slots, end, slot), bound, units)
+                if excess(units, 0, n, decoded, anchor, not end[slot]) > 1.0:
+                    ok[slot] = 0
             if ok[slot]:
-                if not end[slot]:
-                    anchor_of(points, origin, first + n, scale, top, anchor)
                 radius[slot], end_words[slot] = capsule(decoded, 0, n, end[slot], anchor, end_scale)

@@ -12,7 +12,7 @@ from .encode import Effort, Encoder, FibletChunk
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
-from .parameters import Parameters, Survey, survey
+from .parameters import DEFAULT_ANGLE, Parameters, Survey, survey
 from .quantised import QuantisedPoints, quantise_values
 from .resample import resample
 
@@ -26,6 +26,7 @@ def compress(
     *,
     step: float | Literal["auto"] = "auto",
     max_error: float | None = None,
+    max_angle: float | None = DEFAULT_ANGLE,
     effort: Effort = "fast",
     order: Order = "input",
     per_point: Sequence[str] = (),
@@ -35,7 +36,7 @@ def compress(
     """Compress streamlines into fiblets.
 
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
-    error of about a hundredth of a step; any other line is kept point for point on a lattice, at about two bytes a
+    error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
     point. Which of the two is decided for every 60 points, so that the promise always holds.
 
     Parameters
@@ -46,7 +47,15 @@ def compress(
         'auto' keeps every point. A number resamples each streamline to points that lie this far apart along it, mm, its
         two ends kept.
     max_error : float, optional
-        Promise in mm: no decoded point is farther from its original. Default: a tenth of the median step.
+        Promise in mm: no decoded point is farther from its original. Default: a tenth of the median step. Where steps
+        vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal:
+        half a pixel of a full-screen view.
+    max_angle : float, optional
+        Largest angle between the tangents of the original and of the decoded line, degrees, up to 90, at both ends of
+        every segment longer than a pixel of a full-screen view (a 2000th of the diagonal of the bounds). Fiblets that
+        would exceed it are coded more finely, and fiblets begin where lines bend little, as far as the format allows;
+        :func:`pvfiblets.measure_error` tells the angles that are drawn. None leaves directions to chance, for fewer
+        bytes where `max_error` is coarse.
     effort : {'fast', 'high'}
         'high' looks ahead with a beam while coding: a tenth of the speed for a lower mean error at the same bytes.
     order : {'input', 'hilbert'}
@@ -69,8 +78,9 @@ def compress(
     Raises
     ------
     ValueError
-        For points that are not finite, a step or promise that is not a positive number, an unknown effort
-        or order, or a per-point name that the streamlines do not have (the error lists those they have).
+        For points that are not finite, a step or promise that is not a positive number, an angle that is not between 0
+        and 90, an unknown effort or order, or a per-point name that the streamlines do not have (the error lists those
+        they have).
 
     Notes
     -----
@@ -88,7 +98,7 @@ def compress(
         streamlines = resample(streamlines, step)
     found = survey([streamlines], per_point)
     parameters = Parameters.choose(found, max_error)
-    encoder = Encoder(parameters, effort)
+    encoder = Encoder(parameters, effort, max_angle)
     coded, ids = streamlines, None
     if order == "hilbert":
         ids = hilbert_order(streamlines)

@@ -17,12 +17,13 @@ from .. import formats
 from ..streamlines import Streamlines
 from .archive import Member, write_archive
 from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
+from .decompress import iter_chunks
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import Parameters, survey
+from .parameters import DEFAULT_ANGLE, Parameters, survey
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 from .resample import resample
@@ -37,6 +38,7 @@ def compress_file(
     *,
     step: float | Literal["auto"] = "auto",
     max_error: float | None = None,
+    max_angle: float | None = DEFAULT_ANGLE,
     effort: Effort = "fast",
     order: Order = "input",
     per_point: Sequence[str] = (),
@@ -53,7 +55,7 @@ def compress_file(
         Any format that :func:`pvfiblets.iter_chunks` reads.
     target : str or PathLike
         A name ending in ``.fiblets``; it appears when it is whole.
-    step, max_error, effort, per_point, per_point_bits
+    step, max_error, max_angle, effort, per_point, per_point_bits
         As in :func:`pvfiblets.compress`.
     order : {'input'}
         Another order needs all streamlines at once, and is refused here.
@@ -65,7 +67,8 @@ def compress_file(
     -------
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
-        error_steps{...}, promise_mm, seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped``.
+        error_steps{...}, error_degrees{max, mean, p99}, promise_mm, seconds`` (to read and code), ``points_per_second,
+        seconds_to_measure, dropped``.
 
     Raises
     ------
@@ -88,7 +91,7 @@ def compress_file(
             yield chunk if step == "auto" else resample(chunk, step)
 
     found = survey(shown(chunks(), None, "surveying", progress), per_point)
-    encoder = Encoder(Parameters.choose(found, max_error), effort)
+    encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
     folder = Path(target).resolve().parent
     with (
         tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
@@ -175,8 +178,8 @@ def _compare(
 ) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
     coded = FibletSet.open(target)
-    tally = ErrorTally(coded.promise, coded.step, by_streamline=False)
-    decoded = coded.iter_chunks(CHUNK_POINTS)
+    tally = ErrorTally(coded, by_streamline=False)
+    decoded = iter_chunks(coded, CHUNK_POINTS, np.float64)
     rest: Streamlines | None = None
     seen = 0
     for chunk in shown(originals, total, "measuring", progress):
@@ -194,7 +197,7 @@ def _compare(
                     f"streamline {seen + differs} has {a.counts[differs]} points in the original, {b.counts[differs]} "
                     "in the fiblets: errors can be measured only against what was compressed"
                 )
-            tally.add(a, b.points)
+            tally.add(a, np.asarray(b.points, np.float64))
             rest = _plain(rest, n, len(rest))
             done += n
             seen += n

@@ -16,8 +16,19 @@ from .capsule_kernels import capsule
 from .jit import kernel, parallel_kernel
 from .layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .nearest import CELLS, EXTENT
+from .turn_kernels import excess, may_turn, within
 
-__all__ = ["anchor_of", "encode_directions", "first_frame", "pack_direction", "quantise", "scan", "take_points", "turn"]
+__all__ = [
+    "anchor_of",
+    "encode_directions",
+    "first_frame",
+    "follows",
+    "pack_direction",
+    "quantise",
+    "scan",
+    "take_points",
+    "turn",
+]
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
@@ -25,10 +36,10 @@ _CELL = CELLS / (2.0 * EXTENT)
 
 @parallel_kernel
 def scan(points: Any, offsets: Any, found: Any) -> None:
-    """Bounds, longest squared segment and farthest last slot, by thousands of streamlines.
+    """Bounds, longest squared segment and farthest last fiblet, by thousands of streamlines.
 
     ``found`` is ``(ceil(n_streamlines / 1024), 8)`` float64: least x, y, z; greatest x, y, z; longest segment
-    squared; largest distance along an axis from the last point of a streamline to one of its last slot. A coordinate
+    squared; largest distance along an axis from the last point of a streamline to one of the last 60. A coordinate
     that is not finite makes the row's bounds infinite.
     """
     n = len(offsets) - 1
@@ -54,7 +65,7 @@ def scan(points: Any, offsets: Any, found: Any) -> None:
                 found[row, 6] = max(found[row, 6], squares)
             last = offsets[s + 1] - 1
             if last >= offsets[s]:
-                for i in range(last - (last - offsets[s]) % MAX_POINTS, last):
+                for i in range(max(last - MAX_POINTS + 1, offsets[s]), last):
                     for axis in range(3):
                         apart = abs(np.float64(points[last, axis]) - np.float64(points[i, axis]))
                         found[row, 7] = max(found[row, 7], apart)
@@ -243,6 +254,22 @@ def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
     return int(np.rint(min(max((arc / (n - 1) - lo) / (hi - lo) * STEP_LEVELS, 0.0), float(STEP_LEVELS))))
 
 
+@kernel
+def _apart(points: Any, origin: Any, i: int, decoded: Any) -> float:
+    """Distance of a decoded point (from the origin) from point ``i``."""
+    x = np.float64(points[i, 0]) - origin[0] - decoded[0]
+    y = np.float64(points[i, 1]) - origin[1] - decoded[1]
+    z = np.float64(points[i, 2]) - origin[2] - decoded[2]
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@kernel
+def follows(slots: Any, end: Any, slot: int) -> Any:
+    """Whether a segment leads to a slot's first point, one from its last, and one on from there."""
+    more = end[slot] == 0
+    return slot > 0 and end[slot - 1] == 0, more, more and (slots[slot + 1, 1] > 1 or end[slot + 1] == 0)
+
+
 @parallel_kernel
 def encode_directions(
     points: Any,
@@ -252,6 +279,7 @@ def encode_directions(
     top: float,
     steps: Any,
     promise: float,
+    bound: Any,
     end_scale: float,
     tables: Any,
     out: Any,
@@ -269,6 +297,8 @@ def encode_directions(
         Least and greatest step.
     promise : float
         Largest error accepted, mm.
+    bound : (float, float, float)
+        What bounds turns, as in :func:`.turn_kernels.may_turn`.
     end_scale : float
         Unit of the end vectors, mm.
     tables : tuple
@@ -288,6 +318,7 @@ def encode_directions(
         decoded = np.empty((2, MAX_POINTS, 3))
         trial = np.empty((2, MAX_POINTS), np.uint8)
         following = np.empty(3)
+        units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)
@@ -296,7 +327,7 @@ def encode_directions(
                 decoded[0, 0, axis] = a
                 decoded[1, 0, axis] = a
             best = math.inf
-            mine = 0
+            mine, smallest, step = 0, 0, lo
             if n == 1:
                 best = 0.0
                 shape[slot] = 0
@@ -325,7 +356,18 @@ def encode_directions(
                 for i in range(n - 2):
                     codes[first + i] = trial[mine, i]
             ok[slot] = 1 if best <= give_up else 0
+            if not end[slot]:
+                anchor_of(points, origin, first + n, scale, top, following)
+            if ok[slot] and bound[1] < math.inf and n + 1 - end[slot] > 1:
+                around = follows(slots, end, slot)
+                apart = math.sqrt(best)
+                if around[1]:
+                    apart = max(apart, _apart(points, origin, first + n, following))
+                # The widest cap may be too narrow for a turn.
+                least = 1.0 - tables[2][smallest] if smallest + 1 < len(tables[2]) else -1.0
+                if not within(points, first, n, around, bound, step, apart, least):
+                    may_turn(points, first, n, around, bound, units)
+                    if excess(units, 0, n, decoded[mine], following, around[1]) > 1.0:
+                        ok[slot] = 0
             if ok[slot]:
-                if not end[slot]:
-                    anchor_of(points, origin, first + n, scale, top, following)
                 radius[slot], end_words[slot] = capsule(decoded[mine], 0, n, end[slot], following, end_scale)

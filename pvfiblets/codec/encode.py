@@ -1,12 +1,14 @@
 """Streamlines to fiblet records, chunk by chunk: cut, code, and lay out in pages.
 
-A streamline is cut every 60 points. Each cut is first tried with direction bytes; where those would break the promise
-(steps that vary, bends beyond the cap angles) it is coded on the lattice instead, split further where that saves bytes.
-No point is ever dropped or moved by more than the promise.
+A streamline is cut every 60 points, or a little before where it bends sharply there (:mod:`.turn_reference`). Each cut
+is first tried with direction bytes; where those would break the promise (steps that vary, bends beyond the cap angles)
+or turn a tangent too far it is coded on the lattice instead, split further where that saves bytes. No point is ever
+dropped or moved by more than the promise.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Literal
@@ -16,12 +18,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from . import beam_kernels, direction_kernels, lattice_kernels, nearest
+from . import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
 from .capsules import capsule_ends
 from .direction_codebook import cap_ratios, directions, quaternions
 from .jit import parallel_kernel
-from .layout import CAPS, MAX_POINTS, PAGE, PAGE_BITS, pack, unpack_ends
-from .parameters import Parameters
+from .layout import CAPS, PAGE, PAGE_BITS, pack, unpack_ends
+from .parameters import DEFAULT_ANGLE, Parameters
+from .tangents import PIXELS
 
 __all__ = ["Encoder", "FibletChunk", "search_tables"]
 
@@ -59,6 +62,9 @@ class Encoder:
         Shared numbers of the file; ``largest_radius`` grows as chunks are added.
     effort : {'fast', 'high'}
         Greedy, or looking ahead with a beam.
+    max_angle : float, optional
+        Largest angle between true and drawn tangents, degrees, at the ends of segments longer than a pixel of a
+        full-screen view (:mod:`.turn_reference`); None leaves directions alone.
     pages : list of tuple of int
         Rank, code byte and point at which each page begun so far starts.
     n_fiblets, n_ranks, n_codes, n_points, n_streamlines : int
@@ -67,6 +73,7 @@ class Encoder:
 
     parameters: Parameters
     effort: Effort = "fast"
+    max_angle: float | None = DEFAULT_ANGLE
     pages: list[tuple[int, int, int]] = field(default_factory=list)
     empty: list[npt.NDArray[np.int64]] = field(default_factory=list)
     n_fiblets: int = 0
@@ -78,11 +85,21 @@ class Encoder:
     def __post_init__(self) -> None:
         if self.effort not in ("fast", "high"):
             raise ValueError(f"effort is {self.effort!r}; 'fast' or 'high' is needed")
+        if self.max_angle is not None and not 0.0 < self.max_angle <= 90.0:
+            raise ValueError(f"max_angle is {self.max_angle}; degrees above 0 and up to 90 are needed, or None for any")
 
     @property
     def top(self) -> float:
         """Largest anchor number."""
         return 2.0**self.parameters.anchor_bits - 1.0
+
+    def _bound(self) -> tuple[float, float, float]:
+        """Segments that count are longer than the first, mm; sine of the largest angle, and its chord."""
+        if self.max_angle is None:
+            return math.inf, math.inf, math.inf
+        angle = math.radians(self.max_angle)
+        diagonal = math.hypot(*self.parameters.anchor_scale) * self.top
+        return diagonal / PIXELS, math.sin(angle), 2.0 * math.sin(0.5 * angle)
 
     def add(self, streamlines: Streamlines) -> FibletChunk:
         """Code the next streamlines."""
@@ -90,7 +107,8 @@ class Encoder:
         points = np.ascontiguousarray(streamlines.points)
         offsets = np.asarray(streamlines.offsets, np.int64)
         origin, scale = np.array(p.origin), np.array(p.anchor_scale)
-        slots, rank, end = _cut(offsets)
+        bound = self._bound()
+        slots, rank, end = _cut(points, offsets, bound)
         self._count_empty(offsets)
         m = len(slots)
         ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
@@ -99,7 +117,7 @@ class Encoder:
         encode = direction_kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
         out = (ok, shape, step, cap, radius, end, end_words, codes)
         steps = (p.step_lo, p.step_hi)
-        encode(points, origin, slots, scale, self.top, steps, p.budget, p.end_scale, search_tables(), out)
+        encode(points, origin, slots, scale, self.top, steps, p.budget, bound, p.end_scale, search_tables(), out)
 
         wanted = np.flatnonzero(ok == 0)
         pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
@@ -107,7 +125,7 @@ class Encoder:
         if wanted.size:
             found, bytes_ = np.zeros(len(wanted), np.int64), np.zeros(len(wanted), np.int64)
             lattice_kernels.plan_lattices(
-                points, origin, slots, wanted, scale, self.top, p.lattice, found, bytes_, cuts
+                points, origin, slots, wanted, end, scale, self.top, p.lattice, bound, found, bytes_, cuts
             )
             pieces[wanted], size[wanted] = found, bytes_
         fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
@@ -134,7 +152,7 @@ class Encoder:
                 rows["end_words"],
             )
             lattice_kernels.encode_lattices(
-                points, origin, slots, wanted, scale, self.top, p.lattice, p.end_scale, cuts, end, at, filled
+                points, origin, slots, wanted, scale, self.top, p.lattice, bound, p.end_scale, cuts, end, at, filled
             )
         ranks = np.repeat(rank, pieces)
         begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
@@ -218,17 +236,17 @@ class Encoder:
 
 
 def _cut(
-    offsets: npt.NDArray[np.int64],
+    points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], bound: tuple[float, float, float]
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.uint8]]:
     """Slots of at most 60 points: ``(m, 2)`` first point and count, rank, and whether each ends its streamline."""
-    lengths = np.diff(offsets)
-    filled = np.flatnonzero(lengths > 0)
-    per = -(-lengths[filled] // MAX_POINTS)
-    rank = np.repeat(np.arange(len(filled)), per)
-    nth = np.arange(len(rank)) - np.repeat(np.cumsum(per) - per, per)
-    first = offsets[filled][rank] + MAX_POINTS * nth
-    count = np.minimum(MAX_POINTS, offsets[filled + 1][rank] - first)
-    return np.stack([first, count], axis=1), rank, (nth == per[rank] - 1).astype(np.uint8)
+    per = np.zeros(len(offsets) - 1, np.int64)
+    turn_kernels.cut(points, offsets, bound, per, per, np.empty((0, 2), np.int64))
+    slots, at = np.empty((int(per.sum()), 2), np.int64), np.cumsum(per) - per
+    if len(slots):
+        turn_kernels.cut(points, offsets, bound, per, at, slots)
+    end = np.zeros(len(slots), np.uint8)
+    end[(at + per)[per > 0] - 1] = 1
+    return slots, np.repeat(np.cumsum(per > 0) - 1, per), end
 
 
 def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> npt.NDArray[Any]:

@@ -1,4 +1,4 @@
-"""How far decoded points are from their originals."""
+"""How far decoded points are from their originals, and drawn directions from true ones."""
 
 from __future__ import annotations
 
@@ -9,16 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
+from .decompress import iter_chunks
 from .fibletset import FibletSet
+from .layout import unpack
+from .streamline_ranges import coded_rows
+from .tangents import pixel, tangent_angles
 
 __all__ = ["CodingError", "ErrorTally", "measure_error"]
 
 _BINS = 20_000  # of the histogram that the percentile is read from: five-thousandths of a percent of the promise each
+_PER_DEGREE = 100  # bins of the histogram of angles
 
 
 @dataclass(frozen=True)
 class CodingError:
-    """Distances between original and decoded points.
+    """Distances between original and decoded points, and angles between true and drawn directions.
 
     Attributes
     ----------
@@ -28,6 +33,9 @@ class CodingError:
         The same in median steps (NaN where there is no step).
     streamline_max_mm, streamline_mean_mm : numpy.ndarray
         ``(n_streamlines,)`` by streamline, NaN for those without points; empty where only a summary was asked for.
+    max_degrees, mean_degrees, p99_degrees : float
+        Angle between true and drawn tangents (:mod:`.tangents`): largest, mean and 99th percentile over both ends of
+        all segments longer than a 2000th of the bounds' diagonal. NaN where there is none.
     """
 
     max_mm: float
@@ -38,33 +46,45 @@ class CodingError:
     p999_steps: float
     streamline_max_mm: npt.NDArray[np.float64]
     streamline_mean_mm: npt.NDArray[np.float64]
+    max_degrees: float
+    mean_degrees: float
+    p99_degrees: float
 
     def summary(self) -> dict[str, dict[str, float]]:
-        """``{'error_mm': {max, mean, p999}, 'error_steps': {...}}``."""
+        """``{'error_mm': {max, mean, p999}, 'error_steps': {...}, 'error_degrees': {max, mean, p99}}``."""
         return {
             "error_mm": {"max": self.max_mm, "mean": self.mean_mm, "p999": self.p999_mm},
             "error_steps": {"max": self.max_steps, "mean": self.mean_steps, "p999": self.p999_steps},
+            "error_degrees": {"max": self.max_degrees, "mean": self.mean_degrees, "p99": self.p99_degrees},
         }
 
 
 class ErrorTally:
-    """Gathers errors chunk by chunk; in bounded memory, unless they are wanted by streamline."""
+    """Gathers errors of a set chunk by chunk; in bounded memory, unless they are wanted by streamline."""
 
-    def __init__(self, promise: float, step: float, *, by_streamline: bool = True) -> None:
-        self._step = step
+    def __init__(self, fiblets: FibletSet, *, by_streamline: bool = True) -> None:
+        self._step = fiblets.step
+        self._dtype = fiblets.point_dtype()
+        self._pixel = pixel(fiblets.bounds)
+        self._firsts = _FirstPoints(fiblets)
         self._by_streamline = by_streamline
         self._largest = 0.0
-        self._edge = max(promise, np.finfo(float).tiny) * 1.25
+        self._edge = max(fiblets.promise, np.finfo(float).tiny) * 1.25
         self._histogram = np.zeros(_BINS + 1, np.int64)
         self._sum = 0.0
         self._n = 0
         self._maxima: list[npt.NDArray[np.float64]] = []
         self._means: list[npt.NDArray[np.float64]] = []
+        self._angles = np.zeros(180 * _PER_DEGREE + 1, np.int64)
+        self._angle_sum = 0.0
+        self._largest_angle = 0.0
 
-    def add(self, original: Streamlines, decoded: npt.NDArray[Any]) -> None:
-        """Take in streamlines and their decoded points, in the same order."""
+    def add(self, original: Streamlines, decoded: npt.NDArray[np.float64]) -> None:
+        """Take in streamlines and their decoded points, ``(n, 3)`` float64, in the same order."""
         offsets = np.asarray(original.offsets, np.int64)
-        delta = original.points.astype(np.float64) - decoded.astype(np.float64)
+        self._add_angles(original.points, decoded, offsets)
+        # Points come in the set's own type by default, and its rounding is part of their error.
+        delta = original.points.astype(np.float64) - decoded.astype(self._dtype).astype(np.float64)
         distance = np.sqrt((delta**2).sum(1))
         bins = np.minimum(distance * (_BINS / self._edge), _BINS).astype(np.int64)
         self._histogram += np.bincount(bins, minlength=_BINS + 1)
@@ -83,17 +103,64 @@ class ErrorTally:
         self._maxima.append(largest)
         self._means.append(mean)
 
+    def _add_angles(
+        self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]
+    ) -> None:
+        degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
+        tangent_angles(true, drawn, offsets, self._firsts.of_next(len(true)), self._pixel, degrees, uses)
+        bins = np.ceil(degrees * _PER_DEGREE).astype(np.int64)
+        self._angles += np.bincount(bins, uses, minlength=len(self._angles)).astype(np.int64)
+        self._angle_sum += float(degrees @ uses)
+        self._largest_angle = max(self._largest_angle, float(degrees.max(initial=0.0)))
+
     def result(self) -> CodingError:
-        """The errors so far; the percentile is exact to 1/20000 of the promise, rounded up."""
+        """The errors so far; percentiles are rounded up: to 1/16000 of the promise, to a hundredth of a degree."""
         maxima = np.concatenate(self._maxima) if self._maxima else np.empty(0)
         means = np.concatenate(self._means) if self._means else np.empty(0)
         if self._n == 0:
-            return CodingError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, maxima, means)
+            return CodingError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, maxima, means, *[float("nan")] * 3)
         largest, mean = self._largest, self._sum / self._n
         place = int(np.searchsorted(np.cumsum(self._histogram), 0.999 * self._n))
         p999 = largest if place >= _BINS else min(largest, (place + 1) * self._edge / _BINS)
         scale = 1.0 / self._step if self._step > 0.0 else float("nan")
-        return CodingError(largest, mean, p999, largest * scale, mean * scale, p999 * scale, maxima, means)
+        steps = (largest * scale, mean * scale, p999 * scale)
+        return CodingError(largest, mean, p999, *steps, maxima, means, *self._angle_figures())
+
+    def _angle_figures(self) -> tuple[float, float, float]:
+        """Largest, mean and 99th percentile, degrees."""
+        counted = np.cumsum(self._angles)
+        if counted[-1] == 0:
+            return float("nan"), float("nan"), float("nan")
+        p99 = int(np.searchsorted(counted, 0.99 * counted[-1])) / _PER_DEGREE
+        return self._largest_angle, self._angle_sum / float(counted[-1]), min(p99, self._largest_angle)
+
+
+class _FirstPoints:
+    """Whether points are the first of their fiblets, for chunks of consecutive streamlines."""
+
+    def __init__(self, fiblets: FibletSet) -> None:
+        self._fiblets = fiblets
+        self._fiblet = 0
+        self._point = 0
+        self._all: npt.NDArray[np.bool_] | None = None
+        if not fiblets.in_order:
+            coded = np.zeros(fiblets.n_points, bool)
+            coded[fiblets.fiblet_points()] = True
+            self._all = np.empty_like(coded)
+            self._all[coded_rows(fiblets)] = coded
+
+    def of_next(self, n: int) -> npt.NDArray[np.bool_]:
+        """``(n,)`` of the next ``n`` points, which belong to whole streamlines."""
+        if self._all is not None:
+            self._point += n
+            return self._all[self._point - n : self._point]
+        counts = unpack("last", self._fiblets.decoding[self._fiblet : self._fiblet + n]).astype(np.int64) + 1
+        starts = np.cumsum(counts) - counts
+        starts = starts[starts < n]
+        self._fiblet += len(starts)
+        firsts = np.zeros(n, bool)
+        firsts[starts] = True
+        return firsts
 
 
 def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
@@ -109,7 +176,7 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     Returns
     -------
     CodingError
-        In mm, in steps, and per streamline.
+        In mm, in steps, per streamline, and of directions in degrees.
 
     Raises
     ------
@@ -125,11 +192,11 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     if not np.array_equal(offsets, streamlines.offsets):
         first = int(np.flatnonzero(offsets != np.asarray(streamlines.offsets))[0]) - 1
         raise ValueError(f"streamline {first} has another number of points in the fiblets than in the original")
-    tally = ErrorTally(fiblets.promise, fiblets.step)
+    tally = ErrorTally(fiblets)
     done = 0
-    for decoded in fiblets.iter_chunks():
+    for decoded in iter_chunks(fiblets, dtype=np.float64):
         a, b = offsets[done], offsets[done + len(decoded)]
         part = Streamlines(streamlines.points[a:b], offsets[done : done + len(decoded) + 1] - a)
-        tally.add(part, decoded.points)
+        tally.add(part, np.asarray(decoded.points, np.float64))
         done += len(decoded)
     return tally.result()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -379,16 +380,13 @@ class FibletSet:
         OSError
             If the place cannot be written to.
         UnknownFormatError
-            If the format can only be read, such as ``.trk.gz``.
+            If no format has this suffix, or it can only be read, such as ``.trk.gz``.
         """
         from ..formats import registry
         from .storage import save
 
-        try:
-            suffix = registry.suffix_of(path)
-        except registry.UnknownFormatError:
-            suffix = ".fiblets"
-        if suffix != ".fiblets":
+        path = Path(path).expanduser()
+        if path.suffix and registry.suffix_of(path) != ".fiblets":
             from .extract import save_as
 
             return save_as(self, path)
@@ -406,7 +404,7 @@ class FibletSet:
         """
         from .storage import open_fiblets
 
-        return open_fiblets(path, cls)
+        return open_fiblets(Path(path).expanduser(), cls)
 
     def verify(self) -> None:
         """Check that all records agree with each other.

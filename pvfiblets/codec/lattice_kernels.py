@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numba
 import numpy as np
 
 from .capsule_kernels import capsule
-from .direction_kernels import quantise, take_points
+from .direction_kernels import follows, quantise, take_points
 from .jit import kernel, parallel_kernel
 from .layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
+from .turn_kernels import excess, may_turn
 
 __all__ = ["encode_lattices", "plan_lattices"]
 
@@ -19,6 +21,7 @@ LATTICE_LIMIT = 2.0**30
 MAX_HALVINGS = 15
 TREE_DEPTH = 6
 NONE = 1 << 30
+TURNED_TOO_FAR = 1 << 16  # bytes, for which any split is better that turns fewer segments too far
 _NODES = 1 << (TREE_DEPTH + 1)
 
 
@@ -76,14 +79,47 @@ def _anchor(true: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
 
 
 @kernel
-def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) -> Any:
+def _turned(true: Any, a: int, b: int, edge: float, turns: Any) -> float:
+    """:func:`.turn_kernels.excess` of ``true[a:b]`` on a lattice of this edge about the anchor in ``drawn[a]``."""
+    units, drawn, following, leads = turns
+    for axis in range(3):
+        for i in range(a + 1, b):
+            drawn[i, axis] = drawn[a, axis] + edge * np.rint((true[i, axis] - drawn[a, axis]) / edge)
+    return excess(units, a, b, drawn, following, leads)
+
+
+@kernel
+def _halvings(true: Any, a: int, b: int, h: float, turns: Any) -> Any:
+    """Least halvings of the edge that turn no segment too far, and the excess; those of least excess if none does."""
+    found, least = 0, math.inf
+    for halvings in range(MAX_HALVINGS + 1):
+        over = _turned(true, a, b, h * 0.5**halvings, turns)
+        if over < least:
+            found, least = halvings, over
+        if over <= 1.0 or b - a < 2:
+            break
+    return found, least
+
+
+@kernel
+def _about(true: Any, a: int, b: int, total: int, scale: Any, top: float, drawn: Any, following: Any) -> bool:
+    """Anchors of ``true[a:b]`` and of what follows, into ``drawn[a]`` and ``following``; whether anything does."""
+    _anchor(true, a, scale, top, drawn[a])
+    if b < total:
+        _anchor(true, b, scale, top, following)
+    return b < total
+
+
+@kernel
+def _plan(true: Any, count: int, total: int, scale: Any, top: float, h: float, units: Any, cuts: Any) -> Any:
     """Cheapest split by repeated halving: sizes of the pieces into ``cuts``; their number and their bytes of codes."""
     low = np.zeros(_NODES, np.int64)
     high = np.zeros(_NODES, np.int64)
     size = np.zeros(_NODES, np.int64)
     whole = np.zeros(_NODES, np.uint8)
     box = np.zeros(_NODES, np.int64)
-    anchor, lo, n = np.empty(3), np.empty(3, np.int64), np.empty(3, np.int64)
+    lo, n = np.empty(3, np.int64), np.empty(3, np.int64)
+    drawn, following = np.empty((MAX_POINTS, 3)), np.empty(3)
     # Nodes of a heap: children of k are 2k and 2k + 1. A node that needs one byte a point is never split further.
     low[1], high[1] = 0, count
     last = 1
@@ -93,10 +129,15 @@ def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) ->
         if high[node] == low[node]:
             whole[node] = 1
             continue
-        _anchor(true, low[node], scale, top, anchor)
-        box[node] = _box(true, low[node], high[node], anchor, h, lo, n)
+        leads = _about(true, low[node], high[node], total, scale, top, drawn, following)
+        halvings, over = _halvings(true, low[node], high[node], h, (units, drawn, following, leads))
+        box[node] = _box(true, low[node], high[node], drawn[low[node]], h * 0.5**halvings, lo, n)
         size[node] = _size(box[node], high[node] - low[node])
-        if box[node] >> 3 == LATTICE8 or 2 * node + 1 >= _NODES:
+        if over > 1.0:
+            size[node] += TURNED_TOO_FAR
+        if low[node] > 0 and units[low[node], 4] < 0.0:
+            size[node] += TURNED_TOO_FAR
+        if (box[node] >> 3 == LATTICE8 and over <= 1.0) or 2 * node + 1 >= _NODES:
             whole[node] = 1
             continue
         middle = low[node] + (high[node] - low[node]) // 2
@@ -123,7 +164,7 @@ def _plan(true: Any, count: int, scale: Any, top: float, h: float, cuts: Any) ->
         if whole[node]:
             cuts[pieces] = high[node] - low[node]
             pieces += 1
-            total += size[node] - RECORD_BYTES
+            total += _size(box[node], high[node] - low[node]) - RECORD_BYTES
         else:
             stack[depth] = 2 * node + 1
             stack[depth + 1] = 2 * node
@@ -137,9 +178,11 @@ def plan_lattices(
     origin: Any,
     slots: Any,
     wanted: Any,
+    end: Any,
     scale: Any,
     top: float,
     h: float,
+    bound: Any,
     pieces: Any,
     size: Any,
     cuts: Any,
@@ -150,11 +193,14 @@ def plan_lattices(
     the numbers of points of its pieces. See :func:`.reference.plan_lattice`.
     """
     for w in numba.prange(len(wanted)):
-        first, n = slots[wanted[w], 0], slots[wanted[w], 1]
-        true = np.empty((MAX_POINTS, 3))
-        take_points(points, origin, first, n, true)
+        slot = wanted[w]
+        first, n = slots[slot, 0], slots[slot, 1]
+        total = n if end[slot] else n + 1
+        true, units = np.empty((MAX_POINTS + 1, 3)), np.empty((MAX_POINTS, 5))
+        take_points(points, origin, first, total, true)
+        may_turn(points, first, n, follows(slots, end, slot), bound, units)
         mine = cuts[first : first + n]
-        pieces[w], size[w] = _plan(true, n, scale, top, h, mine)
+        pieces[w], size[w] = _plan(true, n, total, scale, top, h, units, mine)
 
 
 @kernel
@@ -164,20 +210,23 @@ def _put(codes: Any, at: int, value: int, width: int) -> None:
 
 
 @kernel
-def _encode(true: Any, a: int, b: int, scale: Any, top: float, h: float, codes: Any, at: int, decoded: Any) -> Any:
-    """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written."""
-    anchor, lo, n = np.empty(3), np.empty(3, np.int64), np.empty(3, np.int64)
-    _anchor(true, a, scale, top, anchor)
-    for axis in range(3):
-        decoded[a, axis] = anchor[axis]
+def _encode(true: Any, a: int, b: int, h: float, codes: Any, at: int, turns: Any) -> Any:
+    """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written.
+
+    Its anchor stands in the second of ``turns``, where its other points are filled in; the edge is halved further than
+    directions ask for as long as that costs no byte.
+    """
     if b - a == 1:
         return DIRECTION, 0, 0, 0, 0
-    found = _box(true, a, b, anchor, h, lo, n)
-    halvings = 0
-    while halvings < MAX_HALVINGS:
-        if _box(true, a, b, anchor, h * 0.5 ** (halvings + 1), lo, n) != found:
+    decoded = turns[1]
+    anchor, lo, n = decoded[a], np.empty(3, np.int64), np.empty(3, np.int64)
+    halvings, least = _halvings(true, a, b, h, turns)
+    found = _box(true, a, b, anchor, h * 0.5**halvings, lo, n)
+    for finer in range(halvings + 1, MAX_HALVINGS + 1):
+        if _box(true, a, b, anchor, h * 0.5**finer, lo, n) != found:
             break
-        halvings += 1
+        if _turned(true, a, b, h * 0.5**finer, turns) <= max(1.0, least):
+            halvings = finer
     edge = h * 0.5**halvings
     _box(true, a, b, anchor, edge, lo, n)
     kind, width = found >> 3, found & 7
@@ -214,6 +263,7 @@ def encode_lattices(
     scale: Any,
     top: float,
     h: float,
+    bound: Any,
     end_scale: float,
     cuts: Any,
     end: Any,
@@ -232,23 +282,21 @@ def encode_lattices(
         first, n = slots[slot, 0], slots[slot, 1]
         more = 0 if end[slot] else 1
         true = np.empty((MAX_POINTS + 1, 3))
-        decoded = np.empty((MAX_POINTS + 1, 3))
+        decoded, units, following = np.empty((MAX_POINTS, 3)), np.empty((MAX_POINTS, 5)), np.empty(3)
         take_points(points, origin, first, n + more, true)
-        following = np.empty(3)
+        may_turn(points, first, n, follows(slots, end, slot), bound, units)
         fiblet, byte = at[w, 0], at[w, 1]
         a = 0
         while a < n:
             b = a + cuts[first + fiblet - at[w, 0]]
+            leads = _about(true, a, b, n + more, scale, top, decoded, following)
             kind[fiblet], shape[fiblet], step[fiblet], cap[fiblet], used = _encode(
-                true, a, b, scale, top, h, codes, byte, decoded
+                true, a, b, h, codes, byte, (units, decoded, following, leads)
             )
             counts[fiblet] = b - a
             code_start[fiblet] = byte
             point_start[fiblet] = first + a
-            ends = b == n + more
-            if not ends:
-                _anchor(true, b, scale, top, following)
-            radius[fiblet], end_words[fiblet] = capsule(decoded, a, b, ends, following, end_scale)
+            radius[fiblet], end_words[fiblet] = capsule(decoded, a, b, not leads, following, end_scale)
             fiblet += 1
             byte += used
             a = b

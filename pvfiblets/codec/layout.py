@@ -1,7 +1,9 @@
 """The fiblet record: the one place that states how a fiblet is laid out in bits.
 
-Everything that packs or unpacks a record (NumPy reference, compiled kernels, shaders, the file format) takes the fields
-from here; :func:`glsl_source` writes the same table as GLSL, so that a shader cannot disagree with Python.
+Everything that packs or unpacks a record (NumPy reference, compiled kernels, shaders, the file format) takes the bits
+of fields from here; :func:`glsl_source` writes the same table as GLSL, so that a shader cannot disagree with Python.
+How many words there are is also said where they are read: ``decode_kernels``, ``copy_kernels``, ``query.passing`` and
+the shaders ``fiblets/data`` take two words of an anchor and three to decode by.
 
 A fiblet is at most 60 consecutive points of one streamline (paper: Schertzer et al. 2022, section 3.2.2). What culling
 reads is kept apart from what decoding reads, so that a cull pass never drags codes through memory:

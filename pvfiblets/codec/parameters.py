@@ -12,9 +12,13 @@ import numpy.typing as npt
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
 
-__all__ = ["DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
+__all__ = ["DEFAULT_ANGLE", "DEFAULT_PROMISE_EXTENT", "DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
 
+DEFAULT_ANGLE = 10.0  # degrees between true and drawn tangents
 DEFAULT_PROMISE_STEPS = 0.1
+DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the bounds' diagonal: half a pixel of a full-screen view
+EVEN_SHARE = 0.9  # of the segments within STEP_BAND of the median: steps are constant, and directions code nearly all
+COARSE = 1.0 / 20.0  # of the bounds' diagonal: errors of longer steps show, constant or not
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
@@ -164,7 +168,8 @@ class Parameters:
         found : Survey
             The data.
         max_error : float, optional
-            Promise in mm; default a tenth of the median step, or the finest that anchors hold if that is coarser.
+            Promise in mm. Default: a tenth of the median step; where steps vary or are coarse, no more than a 4000th of
+            the bounds' diagonal. The finest that anchors hold if that is coarser.
 
         Raises
         ------
@@ -182,7 +187,7 @@ class Parameters:
         finest = _anchor_error(extent, 32) * 2.0 + float(np.spacing(np.abs(lower) + extent).max()) * 4.0
         finest = max(finest, np.finfo(np.float64).tiny * 2.0**60)
         if max_error is None:
-            promise = max(DEFAULT_PROMISE_STEPS * step, finest)
+            promise = max(_default_promise(moving, step, float(np.sqrt((extent**2).sum()))), finest)
             if step == 0.0:  # no segment has a length: as fine as 16-bit anchors are
                 promise = max(finest, _anchor_error(extent, 16) / _ANCHOR_SHARE) if found.n_points else 1e-6
         elif max_error < finest:
@@ -217,6 +222,19 @@ class Parameters:
 
 def _anchor_error(extent: Vector, bits: int) -> float:
     return float(np.sqrt((extent**2).sum())) / (2.0**bits - 1.0) / 2.0
+
+
+def _default_promise(moving: Vector, step: float, diagonal: float) -> float:
+    """Greatest error in mm, for segments of these lengths in bounds of this diagonal.
+
+    Direction codes err by some hundredths of a step, and where steps are constant a finer promise would take a second
+    byte a point. Lattice codes err by all that they may: there a tenth of a long step shows.
+    """
+    promise = DEFAULT_PROMISE_STEPS * step
+    even = moving.size and float((np.abs(moving - step) <= STEP_BAND * step).mean()) >= EVEN_SHARE
+    if even and step <= COARSE * diagonal:
+        return promise
+    return min(promise, DEFAULT_PROMISE_EXTENT * diagonal)
 
 
 def _step_range(moving: Vector, step: float) -> tuple[float, float]:

@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from .direction_codebook import cap_ratios, directions, quaternions
 from .layout import DIRECTION_SCALE, STEP_LEVELS, WIDE_HEADER, Kind
+from .turn_reference import Turns
 
 __all__ = [
     "DirectionPiece",
@@ -43,6 +44,7 @@ Array = npt.NDArray[np.float64]
 RECORD_BYTES = 22
 LATTICE_LIMIT = 2**30  # lattice coordinates stay clear of int32's end, on the GPU too
 MAX_HALVINGS = 15
+TURNED_TOO_FAR = 2**16  # bytes, for which any split is better that turns fewer segments too far
 TREE_DEPTH = 6  # halving 60 points six times leaves single points
 
 
@@ -275,17 +277,44 @@ def _box(points: Array, anchor: Array, h: float) -> _Box | None:
     return _Box(lo, n, width, width if narrow else Kind.WIDE)
 
 
-def plan_lattice(points: Array, anchors: Array, h: float) -> list[int]:
+def _turned(points: Array, anchor: Array, edge: float, turns: Turns, following: Array | None) -> float:
+    """By how many times the lattice turns a segment farther than it may; see :meth:`.turn_reference.Turns.excess`."""
+    decoded = anchor + edge * _lattice(points, anchor, edge)
+    decoded[0] = anchor
+    return turns.excess(decoded, following)
+
+
+def _halvings(
+    points: Array, anchor: Array, h: float, turns: Turns | None, following: Array | None
+) -> tuple[int, float]:
+    """Least halvings of the edge that turn no segment too far, and the excess; those of least excess if none does."""
+    if turns is None:
+        return 0, 0.0
+    found, least = 0, np.inf
+    for halvings in range(MAX_HALVINGS + 1):
+        over = _turned(points, anchor, h * 0.5**halvings, turns, following)
+        if over < least:
+            found, least = halvings, over
+        if over <= 1.0 or len(points) < 2:
+            break
+    return found, least
+
+
+def plan_lattice(points: Array, anchors: Array, h: float, turns: Turns | None = None) -> list[int]:
     """Split points into lattice fiblets so that their bytes are fewest among all splits by repeated halving.
+
+    Fewer fiblets that turn a segment too far come before fewer bytes.
 
     Parameters
     ----------
     points : numpy.ndarray
         ``(n, 3)``, ``n <= 60``.
     anchors : numpy.ndarray
-        ``(n, 3)``: each point as an anchor would hold it.
+        ``(n, 3)``: each point as an anchor would hold it; ``(n + 1, 3)`` where another point of the streamline follows.
     h : float
         Edge of the lattice, mm.
+    turns : Turns, optional
+        How far each segment that leads on from the points may be turned; as far as they like by default.
 
     Returns
     -------
@@ -297,11 +326,13 @@ def plan_lattice(points: Array, anchors: Array, h: float) -> list[int]:
         count = b - a
         if count == 0:
             return 0, []
-        box = _box(points[a:b], anchors[a], h)
-        if count == 1 or (box is not None and box.kind == Kind.LATTICE8):
-            return RECORD_BYTES + count - 1, [count]
+        following = anchors[b] if b < len(anchors) else None
+        halvings, over = _halvings(points[a:b], anchors[a], h, None if turns is None else turns[a:b], following)
+        box = _box(points[a:b], anchors[a], h * 0.5**halvings)
         whole = box.size(count) if box is not None else 2**30
-        if depth == TREE_DEPTH:
+        whole += TURNED_TOO_FAR if over > 1.0 else 0
+        whole += TURNED_TOO_FAR if turns is not None and a > 0 and turns.first[a : a + 1].min(initial=0.0) < 0.0 else 0
+        if (box is not None and box.kind == Kind.LATTICE8 and over <= 1.0) or depth == TREE_DEPTH:
             return whole, [count]
         middle = a + count // 2
         left, cuts_left = best(a, middle, depth + 1)
@@ -311,8 +342,12 @@ def plan_lattice(points: Array, anchors: Array, h: float) -> list[int]:
     return best(0, len(points), 0)[1]
 
 
-def encode_lattice(points: Array, anchor: Array, h: float) -> LatticePiece:
-    """Code points as lattice steps; the edge is halved for as long as that costs no byte.
+def encode_lattice(
+    points: Array, anchor: Array, h: float, turns: Turns | None = None, following: Array | None = None
+) -> LatticePiece:
+    """Code points as lattice steps; the edge is halved until no segment turns too far, and on while that costs no byte.
+
+    ``following`` is the anchor of the point that follows in the streamline.
 
     Raises
     ------
@@ -321,14 +356,16 @@ def encode_lattice(points: Array, anchor: Array, h: float) -> LatticePiece:
     """
     if len(points) == 1:
         return LatticePiece(Kind.DIRECTION, 0, 0, 0, np.empty(0, np.uint8), anchor[None])
-    box, halvings = _box(points, anchor, h), 0
+    halvings, least = _halvings(points, anchor, h, turns, following)
+    box = _box(points, anchor, h * 0.5**halvings)
     if box is None:
         raise ValueError("the steps between these points need more than 4 bytes each")
-    while halvings < MAX_HALVINGS:
-        finer = _box(points, anchor, h * 0.5 ** (halvings + 1))
+    for more in range(halvings + 1, MAX_HALVINGS + 1):
+        finer = _box(points, anchor, h * 0.5**more)
         if finer is None or finer.width != box.width or finer.kind != box.kind:
             break
-        box, halvings = finer, halvings + 1
+        if turns is None or _turned(points, anchor, h * 0.5**more, turns, following) <= max(1.0, least):
+            box, halvings = finer, more
     edge = h * 0.5**halvings
     k = _lattice(points, anchor, edge)
     k[0] = 0.0

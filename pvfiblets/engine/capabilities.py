@@ -189,14 +189,13 @@ def pipelines(ctx: moderngl.Context) -> PipelineTable:
 
 def _inspect(ctx: moderngl.Context, name: str) -> PipelineInfo:
     version, extension = _NEEDS[name]
-    needs = f"OpenGL {_number(version)}" + (f" and {extension}" if extension else "")
+    either = f"{MESH} or {MESH_EXT}" if extension == MESH else extension
+    needs = f"OpenGL {_number(version)}" + (f" and {either}" if either else "")
     missing = []
     if ctx.version_code < version:
         missing.append(f"OpenGL is {_number(ctx.version_code)}, needed is {_number(version)}")
-    if extension and extension not in ctx.extensions:
-        missing.append(f"{extension} is missing")
-        if extension == MESH and MESH_EXT in ctx.extensions:
-            missing.append(f"{MESH_EXT} is there, but the shaders are written for the other")
+    if extension and extension not in ctx.extensions and not (extension == MESH and MESH_EXT in ctx.extensions):
+        missing.append(f"{either} is missing")
     return PipelineInfo(name, not missing, "; ".join(missing) or None, needs)
 
 

@@ -29,27 +29,55 @@ __all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras"]
 
 _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 
-# Name: types of the arguments (none returns anything), and what is needed beyond OpenGL 3.3.
+# Name: types of the arguments, and what is needed beyond OpenGL 3.3.
 _FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glActiveTexture": ((_UINT,), 330),
+    "glAttachShader": ((_UINT, _UINT), 330),
     "glBindFramebuffer": ((_UINT, _UINT), 330),
     "glBindTexture": ((_UINT, _UINT), 330),
+    "glBindVertexArray": ((_UINT,), 330),
     "glBlitFramebuffer": ((*[_INT] * 8, _UINT, _UINT), 330),
     "glClearBufferfv": ((_UINT, _INT, _POINTER), 330),
     "glClearBufferuiv": ((_UINT, _INT, _POINTER), 330),
+    "glCompileShader": ((_UINT,), 330),
+    "glCreateProgram": ((), 330),
+    "glCreateShader": ((_UINT,), 330),
+    "glDeleteProgram": ((_UINT,), 330),
+    "glDeleteShader": ((_UINT,), 330),
     "glDeleteTextures": ((_INT, _POINTER), 330),
+    "glDeleteVertexArrays": ((_INT, _POINTER), 330),
     "glDrawMeshTasksEXT": ((_UINT, _UINT, _UINT), "GL_EXT_mesh_shader"),
     "glFramebufferTexture2D": ((_UINT, _UINT, _UINT, _UINT, _INT), 330),
     "glFramebufferTextureLayer": ((_UINT, _UINT, _UINT, _INT, _INT), 330),
     "glGenTextures": ((_INT, _POINTER), 330),
+    "glGenVertexArrays": ((_INT, _POINTER), 330),
+    "glGetActiveUniform": ((_UINT, _UINT, _INT, _POINTER, _POINTER, _POINTER, ctypes.c_char_p), 330),
     "glGetFramebufferAttachmentParameteriv": ((_UINT, _UINT, _UINT, _POINTER), 330),
     "glGetInteger64v": ((_UINT, _POINTER), 330),
+    "glGetProgramInfoLog": ((_UINT, _INT, _POINTER, ctypes.c_char_p), 330),
+    "glGetProgramiv": ((_UINT, _UINT, _POINTER), 330),
+    "glGetShaderInfoLog": ((_UINT, _INT, _POINTER, ctypes.c_char_p), 330),
+    "glGetShaderiv": ((_UINT, _UINT, _POINTER), 330),
+    "glGetUniformBlockIndex": ((_UINT, ctypes.c_char_p), 330),
+    "glGetUniformLocation": ((_UINT, ctypes.c_char_p), 330),
+    "glLinkProgram": ((_UINT,), 330),
+    "glShaderSource": ((_UINT, _INT, _POINTER, _POINTER), 330),
     "glTexBuffer": ((_UINT, _UINT, _UINT), 330),
     "glTexImage2D": ((_UINT, _INT, _INT, _INT, _INT, _INT, _UINT, _UINT, _POINTER), 330),
     "glTexParameteri": ((_UINT, _UINT, _INT), 330),
     "glUniform1i": ((_INT, _INT), 330),
+    "glUniformBlockBinding": ((_UINT, _UINT, _UINT), 330),
     "glUseProgram": ((_UINT,), 330),
+    **{
+        f"glProgramUniform{n}{kind}v": ((_UINT, _INT, _INT, _POINTER), 410)
+        for n in range(1, 5)
+        for kind in ("f", "i", "ui")
+    },
 }
+
+_RETURNS = {
+    "glCreateProgram": _UINT, "glCreateShader": _UINT, "glGetUniformBlockIndex": _UINT, "glGetUniformLocation": _INT,
+}  # fmt: skip
 
 INTEGERS: dict[str, tuple[int, int | str]] = {
     "GL_DRAW_FRAMEBUFFER_BINDING": (0x8CA6, 330),
@@ -178,9 +206,9 @@ class GLExtras:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._functions: dict[str, Callable[..., None]] = {}
+        self._functions: dict[str, Callable[..., Any]] = {}
 
-    def function(self, name: str) -> Callable[..., None]:
+    def function(self, name: str) -> Callable[..., Any]:
         """Return an OpenGL function.
 
         Parameters
@@ -203,7 +231,7 @@ class GLExtras:
             prototype = ctypes.CFUNCTYPE
             if sys.platform == "win32":
                 prototype = ctypes.WINFUNCTYPE
-            found = self._functions[name] = prototype(None, *types)(address)
+            found = self._functions[name] = prototype(_RETURNS.get(name), *types)(address)
         return found
 
     def _require(self, what: str, needs: int | str) -> None:
@@ -280,6 +308,10 @@ class GLExtras:
             Passed over if the linked program has no such uniform.
         unit : int
         """
+        if not isinstance(program, (moderngl.Program, moderngl.ComputeShader)):  # a MeshProgram
+            if name in program:
+                program[name] = unit
+            return
         uniform = program.get(name, None)
         if isinstance(uniform, moderngl.Uniform):
             self.function("glUseProgram")(program.glo)

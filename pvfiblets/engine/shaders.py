@@ -49,6 +49,7 @@ FEATURES: dict[str, str] = {
     "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",
     "SUBGROUPS": "counting across invocations by the driver's own operations",
     "PER_PRIMITIVE": "segments handed to the fragments by a mesh stage",
+    "MESH_EXT": "mesh shaders of GL_EXT_mesh_shader, not of GL_NV_mesh_shader",
     "SCENE_DEPTH": "other things in the scene hide fiblets too",
     "SECOND_ROUND": "fiblets drawn over others that were drawn first, out of turn",
     "CLIPPING": "fiblets that cross the edges of the picture",
@@ -368,7 +369,12 @@ class Programs:
                 for stage, name in stages.items()
             }
             try:
-                program = self._ctx.program(**sources, varyings=tuple(varyings))
+                if "MESH_EXT" in request[1]:
+                    from .mesh_program import MeshProgram
+
+                    program: Any = MeshProgram(self._ctx, sources, BLOCKS)
+                else:
+                    program = self._ctx.program(**sources, varyings=tuple(varyings))
             except moderngl.Error as error:
                 shown = "\n\n".join(f"{stage}:\n{_numbered(source)}" for stage, source in sources.items())
                 raise EngineError(f"{', '.join(stages.values())} do not link: {error}\n{shown}") from error

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FormatError
@@ -62,6 +63,7 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     UnknownFormatError
         If no format has this suffix.
     """
+    path = Path(path).expanduser()
     streamlines: Streamlines = module_for(path, "read").read(path, progress=progress)
     return streamlines
 
@@ -90,6 +92,7 @@ def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterato
     """
     if max_points < 1:
         raise ValueError(f"max_points is {max_points}, expected at least 1")
+    path = Path(path).expanduser()
     yield from module_for(path, "iter_chunks").iter_chunks(path, max_points)
 
 
@@ -104,6 +107,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         ``groups`` (lists of names), ``affine``, ``dimensions``, ``voxel_sizes``,
         ``voxel_order``, ``header``.
     """
+    path = Path(path).expanduser()
     return {"format": suffix_of(path), **module_for(path, "info").info(path)}
 
 
@@ -128,6 +132,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
     ValueError
         If a name or value does not fit the format, with the fix.
     """
+    path = Path(path).expanduser()
     module = module_for(path, "write")
     module.write(path, streamlines)
     holds = getattr(module, "HOLDS", None)
@@ -161,4 +166,4 @@ def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None
     """
     from pvfiblets.formats import attachments
 
-    return attachments.attach(streamlines, path, name)
+    return attachments.attach(streamlines, Path(path).expanduser(), name)

@@ -48,8 +48,9 @@ class Slices(ShaderEffect):
         """Say how many slices there are, and how to read them."""
         kept.set_uniforms(program)
         program.SetUniformi("fibletLayerCount", 1 if kept.held is None else self.count)
-        varied = kept.paint is not None and kept.paint.opacity is not None
-        program.SetUniformf("fibletAbsorbance", kept.paint.absorbance if varied else 0.0)
+        paint = kept.paint
+        varied = paint is not None and paint.opacity is not None
+        program.SetUniformf("fibletAbsorbance", paint.absorbance if paint is not None and varied else 0.0)
 
 
 def _paint(draw: Draw) -> Paint:

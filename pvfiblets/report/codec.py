@@ -16,7 +16,7 @@ from .baselines.directions import PaperFiblets, QFib
 from .baselines.linearised import linearised
 from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from .data_sets import SMALL, DataSet, data_sets
-from .errors_and_times import Turns, distances, error_figures, median_step
+from .errors_and_times import Turns, direction_figures, distances, error_figures, median_step
 from .record import Axes, Figure, LeftOut, Record
 from .study import Options
 
@@ -25,7 +25,7 @@ __all__ = ["STUDY", "CodecStudy", "Variant", "variants"]
 BOUNDS = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
 QUICK_BOUNDS = (0.05, 0.1, 0.2)
 LOOK_AHEAD_BOUNDS = (0.05, 0.1, 0.2)  # it takes ten times as long
-DEFAULT_BOUND = 0.1
+DEFAULT = "default"  # the promise that the set's steps and extent give
 RECORD_POINTS = (15, 30)  # besides 60
 QUICK_POINTS = 20_000
 
@@ -56,14 +56,16 @@ class _Fiblets:
         return points
 
 
-def _fiblets(error_bound: float, effort: Any, record: int | None = None) -> Callable[[float], Any]:
+def _fiblets(error_bound: float | None, effort: Any, record: int | None = None) -> Callable[[float], Any]:
     def make(step: float) -> Callable[[Points, Offsets], _Fiblets]:
         from pvfiblets.codec.compress import compress
+        from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
         def pack(points: Points, offsets: Offsets) -> _Fiblets:
             cut = offsets if record is None else recut(offsets, record)
-            max_error = error_bound * step if step > 0.0 else None
-            made = compress(Streamlines(points, cut), max_error=max_error, effort=effort)
+            max_error = error_bound * step if error_bound is not None and step > 0.0 else None
+            angle = DEFAULT_ANGLE if error_bound is None else None  # a bound of distances alone, as other methods have
+            made = compress(Streamlines(points, cut), max_error=max_error, max_angle=angle, effort=effort)
             # Only the last fiblet of a streamline has an end vector. Cut streamlines have too many.
             return _Fiblets(made, made.nbytes - made.ends.itemsize * (len(cut) - len(offsets)))
 
@@ -84,8 +86,8 @@ def recut(offsets: Offsets, record: int) -> Offsets:
 def variants(quick: bool) -> list[Variant]:
     """Return all variants, the most important first: where time runs out, the last are left out."""
     found = [
-        Variant("fiblets", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "fast"), ours=True, default=True),
-        Variant("fiblets, look-ahead", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "high"), ours=True),
+        Variant("fiblets", DEFAULT, _fiblets(None, "fast"), ours=True, default=True),
+        Variant("fiblets, look-ahead", DEFAULT, _fiblets(None, "high"), ours=True),
         Variant("QFib", "8 bits", lambda _: QFib(8)),
         Variant("QFib", "16 bits", lambda _: QFib(16)),
         Variant("paper's fiblets", "", lambda _: PaperFiblets()),
@@ -97,21 +99,19 @@ def variants(quick: bool) -> list[Variant]:
     found += [
         Variant("fiblets", f"{error_bound} steps", _fiblets(error_bound, "fast"), ours=True)
         for error_bound in (QUICK_BOUNDS if quick else BOUNDS)
-        if error_bound != DEFAULT_BOUND
     ]
     found += [
         Variant("dipy linearised", f"{tolerance} steps", _dipy(tolerance))
         for tolerance in ((0.1,) if quick else (0.02, 0.1, 0.5))
     ]
     found += [
-        Variant(f"fiblets of {record} points", f"{DEFAULT_BOUND} steps", _fiblets(DEFAULT_BOUND, "fast", record), True)
+        Variant(f"fiblets of {record} points", DEFAULT, _fiblets(None, "fast", record), True)
         for record in ((30,) if quick else RECORD_POINTS)
     ]
     if not quick:
         found += [
             Variant("fiblets, look-ahead", f"{error_bound} steps", _fiblets(error_bound, "high"), ours=True)
             for error_bound in LOOK_AHEAD_BOUNDS
-            if error_bound != DEFAULT_BOUND
         ]
     return found
 
@@ -136,12 +136,17 @@ class CodecStudy:
     )
     notes = (
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
-        "distance between consecutive points. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
+        "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
+        "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
+        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; a fiblet is drawn with that "
+        "of its first segment at its first point. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
         "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
         "read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
-        "*fiblets*: greedy encoder, with the error bound as the setting; *look-ahead*: effort high; *fiblets of 30 "
+        "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
+        "vary or are coarse a 4000th of the bounds' diagonal at most, and directions within 10°; others do not bound "
+        "directions); *look-ahead*: effort high; *fiblets of 30 "
         "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/baselines/directions.py says what it leaves open), with the file's "
         "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
@@ -199,17 +204,19 @@ def measured(
     packed = pack(points, offsets)
     numbers = {"compress": turns.add(lambda: pack(points, offsets))}
     if hasattr(packed, "points"):
-        apart = distances(points, packed.points())
+        decoded = packed.points()
+        firsts = packed.fiblets.fiblet_points() if isinstance(packed, _Fiblets) else None
+        apart, angles = distances(points, decoded), direction_figures(points, decoded, offsets, firsts)
         numbers["decompress"] = turns.add(packed.points)
     else:
-        apart = packed.distances(points, offsets)
+        apart, angles = packed.distances(points, offsets), {}
     record = Record(
         data=data.name,
         group=data.group,
         approximation="points of streamlines",
         method=variant.name,
         setting=variant.setting,
-        errors=error_figures(apart, step),
+        errors=error_figures(apart, step) | angles,
         costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
         ours=variant.ours,
         default=variant.default,

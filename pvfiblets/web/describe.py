@@ -14,7 +14,8 @@ from pvfiblets.web.document import volume_in
 MOST_CHARTS = 64
 TITLES = {
     "facts": "File", "promise_mm": "error promise, mm", "error_mm": "measured error, mm", "step_mm": "step, mm",
-    "error_steps": "measured error, steps", "bounds": "bounds, mm", "bounds_mm": "bounds, mm", "explain": "Drawing",
+    "error_steps": "measured error, steps", "error_degrees": "error of directions, degrees",
+    "bounds": "bounds, mm", "bounds_mm": "bounds, mm", "explain": "Drawing",
     "gpu_bytes": "GPU memory, bytes", "milliseconds": "last redraw, ms",
 }  # fmt: skip
 WIDE = 1e3  # limits whose ends are farther apart than this, as a ratio, are for typing and not for a slider

@@ -114,8 +114,8 @@ class LayerQueries:
         Returns
         -------
         dict
-            ``name, kind, path``; ``facts`` of the file or data; of lines ``promise_mm``, ``error_mm`` and
-            ``error_steps`` where they were measured, ``streamlines`` and ``fiblets`` as ``{"shown" or "drawn",
+            ``name, kind, path``; ``facts`` of the file or data; of lines ``promise_mm``, ``error_mm``, ``error_steps``
+            and ``error_degrees`` where they were measured, ``streamlines`` and ``fiblets`` as ``{"shown" or "drawn",
             "total"}``; ``bounds``; ``milliseconds`` of the last redraw; ``gpu_bytes``; ``explain``.
         """
         layer = self.layer(layer_id)

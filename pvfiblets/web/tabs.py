@@ -226,7 +226,7 @@ def _selection(app: Any) -> None:
                     with html.Tr():
                         html.Th("{{ c }}", v_for="c in selection.columns", key="c")
                 with html.Tbody():
-                    with html.Tr(v_for="row in selection.rows", key="row[0]"):
+                    with html.Tr(v_for="(row, at) in selection.rows", key="at"):
                         html.Td("{{ cell }}", v_for="(cell, k) in row", key="k")
         html.Div("{{ selection.more }}", v_if="selection.more", classes="pv-small px-3 py-1")
         with html.Div(v_if="selection.profiles && selection.profiles.length", classes="pa-2"):

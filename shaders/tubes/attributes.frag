@@ -14,18 +14,13 @@
 #include "tubes/ray.glsl"
 #include "codec/layout.glsl"
 #include "frame/tangent.glsl"
+#include "tubes/node_values.glsl"
 #if FEATURE_EDGES
 #include "frame/pixel_derivative.glsl"
 #include "frame/edges.glsl"
 #endif
 
 uniform usampler2D hits;
-#if FEATURE_TUBE_VALUES
-uniform samplerBuffer value_texels;      // value and derivative of each node
-#endif
-#if FEATURE_TUBE_COLOURS
-uniform samplerBuffer colour_texels;     // RGBA of each node, then its derivatives
-#endif
 
 layout(location = 0) out uint out_depth;
 layout(location = 1) out uint out_owner;
@@ -64,14 +59,6 @@ float deepest(vec4 p0, vec4 p1, vec4 p2, vec3 at) {
     }
     return 0.5 * (lo + hi);
 }
-
-#if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
-// The same two quadratics as of positions and radii, of values n and derivatives m by the segment's parameter.
-vec4 blended(vec4 n_i, vec4 m_i, vec4 n_j, vec4 m_j, bool second, float t) {
-    vec4 a2 = n_i + tube_control_share * m_i, b2 = n_j - tube_control_share * m_j, middle = 0.5 * (a2 + b2);
-    return second ? quadratic(middle, b2, n_j, t) : quadratic(n_i, a2, middle, t);
-}
-#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -124,19 +111,11 @@ void main() {
     out_depth = key_along(ray, s, seen, l);
     out_owner = hit.x;
     out_ids = uvec2(s.ids.x, packed_tangent(tangent, 0u));
-    out_position = vec2(0.5 * (t + (second ? 1.0 : 0.0)), 0.0);
+    out_position.x = 0.5 * (t + (second ? 1.0 : 0.0));
     out_normal = packed_direction(normal);
-#if FEATURE_TUBE_VALUES || FEATURE_TUBE_COLOURS
-    uvec4 nodes = texelFetch(segment_texels, int(hit.x));
-    float chord = tube_by_length != 0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0;
-#endif
-#if FEATURE_TUBE_VALUES
-    vec2 v_i = texelFetch(value_texels, int(nodes.x)).xy, v_j = texelFetch(value_texels, int(nodes.y)).xy;
-    out_position.y = blended(vec4(v_i.x), vec4(v_i.y * chord), vec4(v_j.x), vec4(v_j.y * chord), second, t).x;
-#endif
+    Nodes nodes = nodes_of(hit.x, s, second, t);
+    out_position.y = value_of(nodes);
 #if FEATURE_TUBE_COLOURS
-    vec4 c_i = texelFetch(colour_texels, 2 * int(nodes.x)), c_j = texelFetch(colour_texels, 2 * int(nodes.y));
-    vec4 d_i = chord * texelFetch(colour_texels, 2 * int(nodes.x) + 1), d_j = chord * texelFetch(colour_texels, 2 * int(nodes.y) + 1);
-    out_colour = clamp(blended(c_i, d_i, c_j, d_j, second, t), 0.0, 1.0);
+    out_colour = colour_of(nodes);
 #endif
 }

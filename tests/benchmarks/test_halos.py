@@ -22,6 +22,7 @@ def bench():
         yield modules
 
 
+@pytest.mark.exhaustive
 def test_one_command_measures_halos_beside_plain_lines_and_points(tmp_path):
     command = ["--rows", "lines-30", "points-50-anaglyph", "--places", "2", "--frames", "2"]
     path, told = run(tmp_path, "halos", *command, "--size", *SIZE)

@@ -15,7 +15,7 @@ from pvfiblets.streamlines import Streamlines
 
 from .scripts import imported
 
-FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "100"))
+FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "60"))
 PER_ROUND = max(FRAMES // 5, 10)
 
 MOST_OBJECTS = 30
@@ -69,6 +69,7 @@ def test_resident_memory_stays_after_the_first_rounds(walked):
     assert memory[-1] - memory[1] < MOST_GROWTH, memory
 
 
+@pytest.mark.exhaustive
 def test_the_same_seed_does_the_same(bench):
     log = []
     for _ in range(2):

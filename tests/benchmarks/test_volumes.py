@@ -51,6 +51,7 @@ def ball(n=24):
 # ------------------------------------------------------------------------------------------------------------ commands
 
 
+@pytest.mark.exhaustive
 def test_one_command_measures_volumes_beside_vtks(tmp_path):
     command = ["--quick", "--data", "vessels-16", "--modes", "mip", "--effects"]
     command += ["--methods", "plotter", "vtk-gpu", "--frames", "2", "--size", "64", "--still", "96", "--pixels", "200"]

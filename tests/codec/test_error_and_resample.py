@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
+from pvfiblets.codec.decompress import iter_chunks
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
@@ -28,10 +29,11 @@ def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch
     per = [distance[a:b] for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)]
     np.testing.assert_allclose(error.streamline_max_mm, [d.max() if len(d) else np.nan for d in per])
     np.testing.assert_allclose(error.streamline_mean_mm, [d.mean() if len(d) else np.nan for d in per])
-    chunks = list(fiblets.iter_chunks(100))
-    monkeypatch.setattr(type(fiblets), "iter_chunks", lambda self: iter(chunks))
+    chunks = list(iter_chunks(fiblets, 100, np.float64))
+    monkeypatch.setattr("pvfiblets.codec.error.iter_chunks", lambda fiblets, dtype: iter(chunks))
     again = pf.measure_error(lines, fiblets)
     assert (again.max_mm, again.p999_mm) == (error.max_mm, error.p999_mm)
+    assert (again.max_degrees, again.p99_degrees) == (error.max_degrees, error.p99_degrees)
     assert again.mean_mm == pytest.approx(error.mean_mm, rel=1e-12)
 
 
@@ -90,6 +92,9 @@ def test_compress_resamples_only_when_asked() -> None:
         ({"max_error": 0.0}, r"max_error is 0.0; a positive length"),
         ({"max_error": float("inf")}, r"max_error is inf"),
         ({"max_error": 1e-12}, r"the finest promise is"),
+        ({"max_angle": 0.0}, r"max_angle is 0.0; degrees above 0 and up to 90"),
+        ({"max_angle": 120.0}, r"max_angle is 120.0; .* or None for any"),
+        ({"max_angle": float("nan")}, r"max_angle is nan"),
         ({"effort": "slow"}, r"effort is 'slow'; 'fast' or 'high'"),
         ({"per_point": ["fa"]}, r"no per-point array 'fa'; the streamlines have: none"),
         ({"per_point": "fa"}, r"a list of names is needed: \['fa'\]"),

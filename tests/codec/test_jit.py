@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import pvfiblets
 
 CODE = """
@@ -16,8 +18,8 @@ print(kernels.quantise(3.0, 1.0, 100.0), len(kernels.quantise.stats.cache_hits))
 """
 
 
-def run(folder: Path) -> list[str]:
-    environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "kept")}
+def run(folder: Path, **more: str) -> list[str]:
+    environment = {**os.environ, "PYTHONPATH": str(folder), **(more or {"NUMBA_CACHE_DIR": str(folder / "kept")})}
     return subprocess.run(
         [sys.executable, "-c", CODE], env=environment, cwd=folder, capture_output=True, text=True, check=True
     ).stdout.split()
@@ -33,3 +35,65 @@ def test_a_change_in_another_module_compiles_anew(tmp_path: Path) -> None:
     other = tmp_path / "pvfiblets" / "codec" / "nearest.py"
     other.write_text(other.read_text() + "\n# changed\n")
     assert run(tmp_path) == ["3.0", "0"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
+def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path: Path) -> None:
+    home = {"XDG_CACHE_HOME": str(tmp_path / "home"), "NUMBA_CACHE_DIR": ""}
+    for name in ("one", "other"):
+        shutil.copytree(
+            Path(pvfiblets.__file__).parent,
+            tmp_path / name / "pvfiblets",
+            ignore=shutil.ignore_patterns("__pycache__", "shaders"),
+        )
+    old = tmp_path / "home" / "pvfiblets" / "kernels" / "0123456789abcdef"
+    old.mkdir(parents=True)
+    os.utime(old, (0, 0))
+    assert run(tmp_path / "one", **home) == ["3.0", "0"]
+    assert run(tmp_path / "other", **home) == ["3.0", "1"]
+    assert not old.exists(), "kernels of sources of long ago stay for ever"
+    assert not list(tmp_path.glob("o*/pvfiblets/**/*.nbi"))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
+def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path: Path) -> None:
+    shutil.copytree(
+        Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
+    )
+    (tmp_path / "file").write_text("")
+    home = {"XDG_CACHE_HOME": str(tmp_path / "file"), "NUMBA_CACHE_DIR": ""}
+    assert run(tmp_path, **home) == ["3.0", "0"]
+    assert run(tmp_path, **home) == ["3.0", "1"]
+
+
+FORKS = """
+import multiprocessing
+import numpy as np
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+
+lines = brain_streamlines(40, seed=1)
+
+def work(_):
+    fiblets = pvfiblets.compress(lines)
+    return fiblets.decompress().points, pvfiblets.density(fiblets, voxel_size=8.0).values
+
+wanted = work(0)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    for found in pool.map_async(work, range(3)).get(120):
+        for ours, theirs in zip(found, wanted, strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+print("done")
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot")
+def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path) -> None:
+    """GNU's OpenMP ended or hung them; pools of processes then waited for ever."""
+    script = tmp_path / "forks.py"
+    script.write_text(FORKS)
+    environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}
+    done = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, check=False, timeout=150
+    )
+    assert done.stdout.split() == ["done"], done.stderr

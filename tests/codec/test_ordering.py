@@ -78,6 +78,14 @@ def _blocks(lines: Streamlines, fiblets: pf.FibletSet, size: int) -> list[Stream
     return [fiblets.decompress(np.arange(a, b)) for a, b in lines.blocks(size)]
 
 
+def test_streamlines_of_one_cell_keep_their_order() -> None:
+    """So that the same input makes the same file everywhere."""
+    ends = np.repeat(np.random.default_rng(0).uniform(0.0, 100.0, (7, 3)), 300, axis=0)
+    order = ordering.ends_order(ends, ends + 1e-9)
+    cells = order // 300
+    assert (np.diff(order)[np.diff(cells) == 0] > 0).all()
+
+
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines_can_be_ordered(name: str) -> None:
     lines = extremes()[name]

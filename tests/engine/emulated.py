@@ -55,8 +55,15 @@ uint mesh;
 void put_vertex(uint vertex, vec4 at) {
     for (uint a = 0u; a < 4u; ++a) meshes[mesh + 4u * vertex + a] = floatBitsToUint(at[a]);
 }
-void put_index(uint slot, uint vertex) { meshes[mesh + INDICES + slot] = vertex; }
-void put_count(uint primitives) { meshes[mesh + COUNT] = primitives; }
+void put_triangle(uint primitive, uvec3 vertices) {
+    for (uint i = 0u; i < 3u; ++i) meshes[mesh + INDICES + 3u * primitive + i] = vertices[i];
+}
+void put_line(uint primitive, uvec2 vertices) {
+    for (uint i = 0u; i < 2u; ++i) meshes[mesh + INDICES + 2u * primitive + i] = vertices[i];
+}
+void put_counts(uint vertices, uint primitives) {
+    if (gl_LocalInvocationIndex == 0u) meshes[mesh + COUNT] = primitives;
+}
 void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
     write_varyings(varyings, piece, from, to);
     uint at = mesh + HANDED_AT + 24u * primitive;
@@ -88,7 +95,7 @@ void main() {
     uint at = gl_WorkGroupID.y * 16u, k = gl_WorkGroupID.x;
     mesh = (gl_WorkGroupID.y * gl_NumWorkGroups.x + k) * MESH_WORDS;
     if (k >= tasks[at]) {
-        if (gl_LocalInvocationIndex == 0u) put_count(0u);
+        put_counts(0u, 0u);
         return;
     }
     Survivors survivors;
@@ -169,7 +176,7 @@ class EmulatedMesh(MeshPipeline):
         super().draw(job)
 
     def _compiled(self, job, features):
-        every = frozenset([*self._features(job), *features]) - {"PER_PRIMITIVE"}
+        every = frozenset([*self._features(job), *features]) - {"PER_PRIMITIVE", "MESH_EXT"}
         serial = self.name == "mesh-serial"
         key = serial, bool(job.wide), every
         if key not in self.kept:

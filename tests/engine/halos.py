@@ -119,9 +119,11 @@ def read_halos(gbuffer):
     w, h = gbuffer.size
     get = lambda texture, dtype: np.frombuffer(texture.read(), dtype).reshape(h, w, -1)  # noqa: E731
     key, owner = get(gbuffer.depth, "<u4")[..., 0], get(gbuffer.owner, "<u4")[..., 0]
-    ids, position = get(gbuffer.ids, "<u4"), get(gbuffer.position, "<f4").astype(float)
-    ink = get(gbuffer.across, "<f2")[..., 0].astype(float)
     drawn = key != EMPTY
+    ids = get(gbuffer.ids, "<u4")
+    # What is not drawn is undefined: on some drivers no number.
+    position = np.where(drawn[..., None], get(gbuffer.position, "<f4"), 0.0).astype(float)
+    ink = np.where(drawn, get(gbuffer.across, "<f2")[..., 0], 0.0).astype(float)
     assert gbuffer.relief == "ink"
     assert (owner[~drawn] == EMPTY).all()
     assert np.isfinite(position[drawn][:, 0]).all()

@@ -40,7 +40,7 @@ def read(gbuffer):
     picture = Picture(
         get(gbuffer.depth, "<u4")[..., 0],
         get(gbuffer.ids, "<u4"),
-        get(gbuffer.position, "<f4"),
+        np.where((get(gbuffer.depth, "<u4") != EMPTY), get(gbuffer.position, "<f4"), np.float32(0.0)),
         get(gbuffer.owner, "<u4")[..., 0],
     )
     drawn = picture.drawn

@@ -8,8 +8,8 @@ import pytest
 from pvfiblets import compress
 from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.synthetic import brain_streamlines
+from tests.drivers import MESH
 
 from .pictures import SIZE, read
 from .visibility_bits import planned
@@ -46,11 +46,9 @@ def in_view(fiblets, view, slack):
     return int(inside.sum())
 
 
-@pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", "mesh", "mesh-serial"])
+@pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", *MESH])
 @pytest.mark.parametrize("planes", [[], PLANES], ids=["no planes", "planes"])
 def test_counts_are_those_of_the_records(gl, brain, camera, name, planes):
-    if not next(info for info in pipelines(gl) if info.name == name).available:
-        pytest.skip(f"this OpenGL has no pipeline {name}")
     made = FibletRenderer(gl, brain, pipeline=name)
     n = brain.n_fiblets
     assert made.explain()["fiblets"] == {"total": n, "in_frustum": None, "drawn": None, "visible": None}

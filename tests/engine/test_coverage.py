@@ -154,6 +154,7 @@ def test_the_same_camera_loses_no_pixel_and_turns_lose_few(gl, brain, orbit, par
     assert lost[6] < 2e-3, "what a turn loses is back in the next picture"
 
 
+@pytest.mark.exhaustive
 def test_a_teleport_through_the_data_is_repaired_by_the_next_picture(gl, brain, camera):
     covering = FibletRenderer(gl, brain, culling="coverage")
     plain = FibletRenderer(gl, brain, culling=None)

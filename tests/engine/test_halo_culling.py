@@ -87,6 +87,24 @@ def test_what_stands_before_all_is_found_at_once(gl, camera):
 
 
 @pytest.mark.usefixtures("few_are_many")
+def test_strips_whose_lines_lie_beside_the_picture_are_not_culled(gl, camera):
+    """Strips 12 mm wide reach into a picture that ends 4 mm beside their axes, and are the only ones there."""
+    height = np.linspace(-14.0, 14.0, 700)
+    points = np.stack([np.stack([20.0 + 0.01 * height, np.full(700, y), height], axis=1) for y in (-3.0, 3.0)], axis=1)
+    drawn = HaloLines(points.reshape(-1, 3), np.arange(0, 1401, 2))
+    width = 32.0 * SIZE[1] / SIZE[0]
+    view = View(SIZE, camera(SIZE, eye=(0, 0, 60), up=(0, 1, 0), height=width))
+    some = styled(line_width=11.0, strip_width=12.0, **PLAIN)
+    culled, whole = HaloRenderer(gl, drawn), HaloRenderer(gl, drawn, culling=None)
+    a, b = read_halos(culled.render(view, some)), read_halos(whole.render(view, some))
+    assert culled.explain()["culling"] == "two-phase"
+    assert a.shown.sum() > 100
+    assert_same(a, b)
+    for made in (culled, whole):
+        made.release()
+
+
+@pytest.mark.usefixtures("few_are_many")
 def test_what_is_flat_is_not_culled(gl, camera):
     """Equal depths show in the order of the data, which lists of what shows do not keep."""
     crowd = wandering(60, 12, seed=3, step=3.0)

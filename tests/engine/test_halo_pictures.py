@@ -101,6 +101,14 @@ def test_long_segments_that_recede(gl, camera, min_width):
         assert_shows(draw_halos(gl, drawn, view, some), drawn, view, some)
 
 
+def test_depth_cueing_ends_at_the_eye(shows, camera):
+    """What lies behind the eye counts as beside it: a line that comes from behind is as wide as the reference's."""
+    drawn = of_lines([[-2, -40, -1], [-2, 30, 4]], [[3, -60, 0], [1.5, 20, -2]], [[-20, 40, -9], [20, 40, 9]])
+    view = View(SIZE, camera(SIZE, eye=(0, 0, 0), target=(0, 30, 0), near=1.0, far=100.0, angle=60.0))
+    _, wanted, _ = shows(drawn, view, look(width_cue=0.9, **PLAIN))
+    assert (wanted.kind == LINE).sum() > 300
+
+
 def test_smooth_edges(shows, view):
     """Ink goes from 1 to 0 over a pixel about a line's edge, on both sides of it."""
     for drawn in (wandering(), scattered()):

@@ -11,12 +11,12 @@ import pytest
 from pvfiblets.codec import layout
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, passes, shaders
 from pvfiblets.engine.bindings import BLOCKS
-from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.engine.fiblets import upload
 from pvfiblets.engine.fiblets.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
 from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
 from pvfiblets.engine.shaders import assemble
+from tests.drivers import MESH
 
 from .pictures import SIZE, assert_same, draw, read
 
@@ -180,12 +180,10 @@ def several_pages(fabricate, random_lines):
 
 
 @pytest.mark.every("value")
-@pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", "mesh", "mesh-serial"])
+@pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", *MESH])
 @pytest.mark.parametrize("culling", ["two-phase", None])
 def test_pictures_do_not_depend_on_limits(gl, several_pages, camera, name, culling):
     """A chunk for every page, few work groups an axis: every byte of the pictures, camera turning, is the same."""
-    if not next(info for info in pipelines(gl) if info.name == name).available:
-        pytest.skip(f"this OpenGL has no pipeline {name}")
     whole = FibletRenderer(gl, several_pages, pipeline=name, culling=culling)
     pieces = FibletRenderer(
         gl, several_pages, pipeline=name, culling=culling, max_buffer_bytes=ONE_PAGE + 12, max_groups=16

@@ -161,7 +161,13 @@ def assert_alike(picture, expected):
 @pytest.mark.parametrize(
     ("kind", "where", "width"),
     [
-        pytest.param(kind, where, (1.0, 3.0)[(kind + i) % 2], id=f"{name}-{where}-{('thin', 'wide')[(kind + i) % 2]}")
+        pytest.param(
+            kind,
+            where,
+            (1.0, 3.0)[(kind + i) % 2],
+            id=f"{name}-{where}-{('thin', 'wide')[(kind + i) % 2]}",
+            marks=[] if (kind + i) % 3 == 0 else [pytest.mark.exhaustive],
+        )
         for kind, name in ((1, "lattice8"), (2, "lattice16"), (3, "wide-lattice"))
         for i, where in enumerate(("outside", "inside", "parallel", "planes", "far"))
     ],
@@ -192,7 +198,7 @@ def brain():
     return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
 
 
-@pytest.mark.every("pair")
+@pytest.mark.every("value")
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("values", [None, "fa", "arc_length", "curvature"])
 @pytest.mark.parametrize("tolerance", [0.0, 3.0], ids=["near", "far"])
@@ -286,6 +292,7 @@ def test_tasks_keep_what_the_compute_pipeline_plans(gl, monkeypatch, fabricate, 
     assert np.array_equal(kept, wanted)
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("culling", ["two-phase", "coverage"])
 def test_culling_in_the_task_stage(gl, monkeypatch, camera, serial, culling):

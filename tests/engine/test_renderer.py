@@ -41,7 +41,7 @@ def test_paging_changes_nothing(gl, fabricate, random_lines, camera):
         assert (pieces.depth == whole.depth).all()
         assert (pieces.owner == whole.owner).all()
         assert (pieces.ids[drawn] == whole.ids[drawn]).all()
-        assert np.abs(pieces.position - whole.position)[drawn].max() < 1e-3
+        assert np.abs(pieces.position[drawn] - whole.position[drawn]).max() < 1e-3
 
 
 def test_redraws_only_when_something_changed(gl, fabricate, random_lines, camera):

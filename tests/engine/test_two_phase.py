@@ -127,7 +127,7 @@ def test_much_is_hidden(both, onion, camera, request, style, guess):
     if not guess:
         request.getfixturevalue("unpredicted")
     pair, size = both(onion), (400, 300)
-    for angle in (0.0, 1.14, 2.28, 7.0, 67.0, 68.14):
+    for angle in (0.0, 1.14, 67.0, 68.14):
         pair.draw(View(size, camera(size, **orbit(angle, 110.0, 30.0))), STYLES[style])
     assert pair.hidden > (0.6 if style == "three pixels" else 0.15) * pair.tested
 
@@ -219,8 +219,8 @@ def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, lo
     lines = random_lines(60, seed=5, spread=25.0)
     fiblets = fabricate(lines * 5, kind=kind, low=low, per_fiblet=7)
     pair = both(fiblets)
-    for i in range(8):
-        picture = pair.draw(View(SMALL, camera(SMALL, **orbit(40.0 * i, 120.0))), FibletStyle(1.0 + 3.0 * (i % 2)))
+    for i in range(4):
+        picture = pair.draw(View(SMALL, camera(SMALL, **orbit(80.0 * i, 120.0))), FibletStyle(1.0 + 3.0 * (i % 2)))
         assert (picture.ids[picture.drawn][:, 0] < len(lines)).all()
 
 
@@ -255,20 +255,22 @@ def random_views(rng, count, camera):
 
 
 @pytest.mark.usefixtures("unpredicted")
-@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.exhaustive)])
-def test_random_cameras(both, brain, onion, camera, seed):
+@pytest.mark.parametrize(("seed", "count"), [(0, 6), pytest.param(1, 24, marks=pytest.mark.exhaustive)])
+def test_random_cameras(both, brain, onion, camera, seed, count):
     rng = np.random.default_rng(seed)
     for fiblets in (brain, onion):
         pair = both(fiblets)
-        for view, style in random_views(rng, 12, camera):
+        for view, style in random_views(rng, count, camera):
             pair.draw(view, style)
         assert pair.hidden > 0.02 * pair.tested
-        assert pair.pixels > 20000
+        assert pair.pixels > 1500 * count
 
 
 MUTATIONS = {
     "the nearest depth instead of the farthest": (
-        "culling/pyramid_lookup.glsl", "key = max(key, texelFetch", "key = min(key - 1u, texelFetch",
+        "culling/pyramid_lookup.glsl",
+        "key = max(key, texelFetch",
+        "key = min(key - 1u, texelFetch",
     ),
     "rectangles too small": ("culling/hidden.glsl", "+ half_line_width + MARGIN", "- 3.0"),
 }

@@ -182,6 +182,47 @@ def test_planes_boxes_and_regions_add_up(cast, matrix):
     assert (wanted > 0.1).any()
 
 
+@pytest.mark.parametrize("mode", ["composite", "isosurface"])
+def test_planes_that_rays_run_along_keep_what_is_before_them(cast, camera, mode):
+    """A parallel camera looks along a plane, so that no ray ever meets it: each is kept whole or not at all."""
+    n = 9
+    affine = np.diag([3.75, 3.75, 3.75, 1.0])
+    affine[:3, 3] = -15.0
+    numbers = np.ones((n, n, n), np.float32)
+    numbers[:, 0] = 0.0
+    fog = RaycastVolume(numbers, affine)
+    casting = LIGHT if mode == "composite" else RaycastOptions(values=(0.5,))
+    matrix = camera(SIZE, eye=(0, -50, 0), target=(0, 0, 0), near=1, far=150, height=36.0)
+    through = reference.rays(matrix, SIZE, fog)
+    z = through.points(through.near)[..., 2]
+    for sign in (1.0, -1.0):
+        shown, _ = cast(fog, casting, matrix, clip_planes=[[0.0, 0.0, sign, -sign * 4.3]])
+        wanted = np.isfinite(z) & (sign * (z - 4.3) > 0.0)
+        assert wanted.sum() > 200
+        np.testing.assert_array_equal(shown["there"], wanted)
+
+
+@pytest.mark.parametrize("step", [0.5, 0.9])
+def test_empty_nodes_are_left_before_what_follows_begins(cast, camera, step):
+    """A surface just behind the border of an empty node: rays that skip the node stop short of it."""
+    numbers = np.zeros((41, 41, 41), np.float32)
+    numbers[17:] = 1.0  # nodes of eight: what lies up to voxel 16 is empty
+    affine = np.eye(4)
+    affine[:3, 3] = -20.0
+    stairs = RaycastVolume(numbers, affine)
+    fog = Transfer([[1, 0.5, 0, 0.0], [1, 0.5, 0, 0.9]], (0.0, 1.0))
+    matrix = camera(SIZE, eye=(-60, -9, 4), target=(0, 0, 0), near=1, far=150)
+    light = ({"mode": "composite", "transfer": fog, "integrator": i} for i in ("riemann", "simpson", "preintegrated"))
+    for options in ({"mode": "isosurface", "values": (0.05,)}, {"mode": "mip"}, *light):
+        plain, _ = cast(stairs, RaycastOptions(**options, step=step, octree=False), matrix)
+        skipped, renderer = cast(stairs, RaycastOptions(**options, step=step), matrix)
+        assert plain["there"].sum() > 500
+        assert (plain["there"] == skipped["there"]).all()
+        # Where on a plateau the peak stands is a matter of the last digit.
+        for what in {"place", "alpha"} & set(plain) if options["mode"] != "mip" else ():
+            assert np.abs(plain[what] - skipped[what])[plain["there"]].max() < 2e-3, (options, what)
+
+
 def test_a_scene_without_cuts_has_nothing_of_them(gl, camera):
     matrix = camera(SIZE, eye=(0, -50, 0), target=(0, 0, 0), near=1, far=150)
     renderer = VolumeRenderer(gl, FOG)

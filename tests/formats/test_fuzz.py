@@ -94,7 +94,7 @@ def test_what_must_not_be_is_found(how, tmp_path):
     script = tmp_path / "bad.py"
     script.write_text(
         "import sys\nsys.path.insert(0, sys.argv.pop(1))\nimport fuzzing\n"
-        "fuzzing.SECONDS, fuzzing.BY_THE_CLOCK = 1, 20\nfirst = []\n"
+        "fuzzing.SECONDS, fuzzing.BY_THE_CLOCK = 1, 5\nfirst = []\n"
         f"def bad(path):\n    if not first:\n        first.append(1)\n        return\n    {bad}\n"
         "fuzzing.READERS['lines'] = bad\nfuzzing.main(*sys.argv[1:])\n"
     )

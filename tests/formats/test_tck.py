@@ -221,7 +221,8 @@ def test_no_file_line_and_windows_newlines(tmp_path):
 def test_float64_is_written_only_where_float32_is_too_coarse(tmp_path):
     near = Streamlines(np.array([A, B]), [0, 2])
     far = Streamlines(np.array([A, B]) + 1e6, [0, 2])
-    for s, kind in ((near, "float32"), (far, "float64")):
+    below = Streamlines(np.array([A, B]) - 1e6, [0, 2])
+    for s, kind in ((near, "float32"), (far, "float64"), (below, "float64")):
         formats.write(tmp_path / "a.tck", s)
         assert formats.info(tmp_path / "a.tck")["dtype"] == kind
         assert np.abs(formats.read(tmp_path / "a.tck").points - s.points).max() < 1e-3

@@ -24,6 +24,15 @@ from .scenes import SCENES, prepare
 from .what import KINDS
 
 SCRIPT = Path(__file__).with_name("scenes.py")
+ALIKE = {
+    "colours: logarithm", "wide lines, shaded", "tubes, shaded", "illuminated", "ink", "clip: planes of VTK",
+    "clip: outside a box", "clip: plane and ball", "selection outlined", "pipeline: tessellation",
+    "picture: refined, moving", "spline tubes: colours", "spline tubes: solver", "spline tubes: planes",
+    "halo lines: tapered", "halo lines: bent", "halo lines: colours", "volume: local mip", "volume: gentle light",
+    "volume: nearest", "volume: jitter", "volume: no octree", "volume: sparse", "volume: cut",
+}  # fmt: skip
+"""Scenes whose like is among the others, by the same code: one setting of several."""
+EACH = [pytest.param(name, marks=[pytest.mark.exhaustive] if name in ALIKE else []) for name in SCENES]
 
 pytestmark = [
     pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot"),
@@ -33,14 +42,16 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory, _headless):
-    """What every scene is made of, by name."""
+def seen(tmp_path_factory, _headless, request):
+    """What every scene that a test asks for is made of, by name."""
     renderer = _headless._context.info["GL_RENDERER"]
     if "llvmpipe" not in renderer:
         pytest.skip(f"what a picture is made of depends on the OpenGL; plain.py has llvmpipe's, this is {renderer}")
     folder = tmp_path_factory.mktemp("left-out")
     prepare(folder)
-    names = list(SCENES)
+    items = (item for item in request.session.items if item.path == request.path and hasattr(item, "callspec"))
+    asked = {item.callspec.params["name"] for item in items}
+    names = [name for name in SCENES if name in asked]
 
     def run(chosen: list[str]) -> list[str]:
         done = subprocess.run(
@@ -69,7 +80,7 @@ def test_every_scene_is_expected():
     assert set(SCENES) == set(PLAIN) | set(CHANGED)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", EACH)
 def test_nothing_unasked_is_there(seen, name):
     found = seen[name]
     assert "error" not in found, found["error"]
@@ -78,7 +89,7 @@ def test_nothing_unasked_is_there(seen, name):
         assert there == wanted, f"{kind}: unasked {sorted(there - wanted)}, missing {sorted(wanted - there)}"
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", EACH)
 def test_all_memory_is_told_kept_and_given_back(seen, name):
     """The bytes of ``explain()`` are those of OpenGL; a frame makes nothing anew; a closed plotter leaves nothing."""
     found = seen[name]
@@ -87,7 +98,7 @@ def test_all_memory_is_told_kept_and_given_back(seen, name):
     assert found["left"] == 0
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", EACH)
 def test_all_switches_that_were_on_are_told_and_no_others(seen, name):
     """``explain()`` of an actor names them; effects on whole pictures are no actor's."""
     told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)

@@ -8,6 +8,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pvfiblets import compress, regions
+from pvfiblets.plotting.region_sources import slab
 from pvfiblets.synthetic import brain_streamlines
 
 SIZE = (240, 200)
@@ -110,6 +111,17 @@ def test_a_cut_by_planes_is_one_by_planes_of_vtk(scene, brain, name, look):
     # The planes of both are told in float64, and differ in a last digit: a pixel on the very edge may.
     assert (cut != other).any(axis=2).sum() <= 2
     assert (other != whole).any()
+
+
+@pytest.mark.parametrize(
+    ("normal", "origin", "middle"),
+    [("z", 7.5, 7.5), ("-z", 7.5, -7.5), ((0, 0, 3), 7.5, 7.5), ((0, 0, 2), (90.0, -4.0, -6.0), -6.0)],
+)
+def test_a_slab_lies_where_its_origin_says(normal, origin, middle):
+    """One number counts along the normal, of whatever length; a point is a point of its middle."""
+    z = np.linspace(-20.0, 20.0, 401) + 0.01
+    points = np.column_stack([np.full_like(z, 3.0), np.full_like(z, -11.0), z])
+    np.testing.assert_array_equal(slab(normal, origin, 5.0).contains(points), np.abs(z - middle) <= 2.5)
 
 
 def test_a_cut_follows_where_the_actor_is(scene, brain):

@@ -211,6 +211,9 @@ UNIT = ((4, 4, 4), np.eye(4))  # voxel (1, 2, 3) is [0.5, 1.5) x [1.5, 2.5) x [2
         (lone((-9, 1, 1), (9, 1, 1)), {(i, 1, 1): 1.0 for i in range(4)}),
         (lone((1, 1, 3.5), (1, 1, 9)), {}),  # the grid's upper face is outside
         (lone((1, 1, -0.5), (1, 1, -9)), {(1, 1, 0): 0.0}),  # its lower one is inside
+        (lone((3.5, 1, 1), (3.5, 2.5, 1)), {}),  # along the upper face
+        (lone((1, 3.5, 3), (1, 3.5, 1)), {}),
+        (lone((-0.5, 1, 1), (-0.5, 1.5, 1)), {(0, 1, 1): 0.5, (0, 2, 1): 0.0}),  # along the lower one
         # Without length: where the points are.
         (lone((2, 2, 2), (2, 2, 2)), {(2, 2, 2): 0.0}),
         (lone((2, 2, 2)), {(2, 2, 2): 0.0}),

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pvfiblets.errors import FormatError
+from pvfiblets.report.drawing import timing
 from pvfiblets.report.errors_and_times import Turns, distances, error_figures, median_step
 from pvfiblets.report.pareto import mark_fronts, pareto
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
@@ -34,6 +35,16 @@ def a_report():
     )  # fmt: skip
     away = StudyResult("volume", "Volume", "", unavailable="no graphics")
     return Report({"name": "m", "versions": {"numpy": "2"}, "quick": True}, [study, away])
+
+
+def test_a_time_is_the_median_of_its_repeats():
+    """Of 1, 2 and 9 seconds it is 2: one call that something disturbed does not show."""
+    ends = iter([0.0, 1.0, 1.0, 10.0, 10.0, 12.0])
+    turns = Turns(lambda: next(ends), "test")
+    turns.add(lambda: None)
+    turns.run(3)
+    assert turns.timing(0, 4.0) == Timing(2.0, 1.0, 9.0, 3, 4.0, "point", "test")
+    assert timing([9.0, 1.0, 2.0, 2.5, 1.5], 4.0, "segment", "test") == Timing(2.0, 1.0, 9.0, 5, 4.0, "segment", "test")
 
 
 def test_a_report_comes_back_whole_from_its_file(tmp_path):

@@ -29,6 +29,7 @@ def small(monkeypatch):
     monkeypatch.setattr(volumes_occlusion, "QUICK_SAMPLES", (4, 256))
 
 
+@pytest.mark.exhaustive
 def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     left = []
     options = little()

@@ -40,7 +40,12 @@ def home(tmp_path):
 def test_references_out_of_the_root_are_refused_with_one_sentence(home, suffix):
     outside = home.parent
     said = set()
-    for named in (f"{outside}/secret.raw", "../secret.raw", "link.raw", f"{outside}/none.raw", "../none.raw"):
+    beside = outside / f"{home.name}-of-another"  # begins with the root's name
+    beside.mkdir()
+    (beside / "secret.raw").write_bytes(bytes(8))
+    (home / "aside.raw").symlink_to(beside / "secret.raw")
+    names = ["../secret.raw", "link.raw", f"{outside}/none.raw", "../none.raw", f"../{beside.name}/secret.raw"]
+    for named in (f"{outside}/secret.raw", *names, f"{beside}/secret.raw", "aside.raw"):
         (home / f"a{suffix}").write_text(HEADERS[suffix].format(named))
         with pytest.raises(PermissionError) as caught:
             Files(home).load(type("Named", (), {"demo": None, "path": f"a{suffix}"})())

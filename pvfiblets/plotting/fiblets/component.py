@@ -92,7 +92,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         per_point : iterable of str
             Per-point arrays of ``source`` to keep besides ``scalars``.
         max_error : float, optional
-            Greatest distance (mm) of a drawn from a given point; a tenth of a step by default.
+            Greatest distance (mm) of a drawn from a given point; by default as :func:`pvfiblets.compress` has it.
         progress : bool, default: False
             Show a progress bar while reading, compressing, and copying to the GPU.
         **options

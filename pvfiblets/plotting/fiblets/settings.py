@@ -27,7 +27,7 @@ def _clim_span(actor: Any) -> tuple[float, float]:
 
 def _opacity(name: str, value: Any) -> Any:
     """Return a number as a float; what else there is is looked at when it is set."""
-    if isinstance(value, str) or getattr(value, "ndim", 0) or isinstance(value, (list, tuple)):
+    if isinstance(value, (str, list, tuple)) or getattr(value, "ndim", 0) > 0:
         return value
     return number(name, value, 0.0, 1.0)
 

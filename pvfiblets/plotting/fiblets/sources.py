@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-import pyvista as pv
 
 from pvfiblets import formats
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.query.measures import Distance, measure
@@ -38,14 +39,14 @@ def as_fiblets(
     Parameters
     ----------
     source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
-        What to draw.
+        What to draw; also what :func:`pvfiblets.other_libraries.streamlines_of` takes.
     scalars : str, array or volume, optional
         If this names, or is, per-point data of ``source``, that is kept; for volumes see
         :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
     per_point : iterable of str
         Further per-point arrays to keep, for a later change of the actor's ``scalars``.
     max_error : float, optional
-        Greatest distance (mm) between a given and a drawn point; a tenth of a step by default.
+        Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
     progress : bool, default: False
         Show a progress bar.
     **options
@@ -66,7 +67,7 @@ def as_fiblets(
     volume = as_volume(scalars)
     scalars = scalars if volume is None else volume
     if isinstance(source, (str, os.PathLike)):
-        path = Path(source)
+        path = Path(source).expanduser()
         if path.suffix.lower() == ".fiblets":
             source = FibletSet.open(path)
         else:
@@ -79,6 +80,8 @@ def as_fiblets(
             )
         return with_point_values(source, scalars)
     streamlines = as_streamlines(source)
+    if not len(streamlines):
+        warnings.warn("the source holds no streamlines: nothing is drawn", UserWarning, stacklevel=6)
     keep = list(per_point)
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
@@ -161,14 +164,15 @@ def as_streamlines(source: Any) -> Streamlines:
     """
     if isinstance(source, Streamlines):
         return source[:]
-    if isinstance(source, pv.DataSet) or hasattr(source, "IsA"):
-        dataset = pv.wrap(source)
-        if not isinstance(dataset, pv.PolyData):
-            raise TypeError(
-                f"source is a {type(dataset).__name__}; of VTK's datasets only PolyData with "
-                "lines can be drawn as fiblets"
+    found = streamlines_of(source)
+    if found is not None:
+        cells = found.dropped.get("cells that are not lines", 0)
+        if not len(found) and cells:
+            raise ValueError(
+                f"source is a {type(source).__name__} without lines, but with {cells:,} other cells (vertices, "
+                "polygons); give it lines, such as extract_all_edges() makes, or draw it by add_mesh()"
             )
-        return Streamlines.from_polydata(dataset)
+        return found
     if isinstance(source, np.ndarray) and source.ndim == 2:
         source = [source]
     if isinstance(source, (Sequence, Iterable)) and not isinstance(source, (str, bytes)):
@@ -177,7 +181,4 @@ def as_streamlines(source: Any) -> Streamlines:
             if line.ndim != 2 or line.shape[1] != 3:
                 raise TypeError(f"item {index} of source has shape {line.shape}; expected (n, 3) points")
         return Streamlines.from_list(arrays)
-    raise TypeError(
-        f"source is a {type(source).__name__}; expected a path, FibletSet, Streamlines, PolyData "
-        "with lines, or a list of (n, 3) arrays"
-    )
+    raise TypeError(f"source is a {type(source).__name__}; expected {EXPECTED}")

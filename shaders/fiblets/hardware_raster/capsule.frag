@@ -4,7 +4,7 @@
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
-#extension GL_NV_mesh_shader : require
+#include "fiblets/mesh/extension.glsl"
 #endif
 
 #include "codec/layout.glsl"

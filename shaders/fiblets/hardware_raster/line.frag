@@ -3,7 +3,7 @@
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
-#extension GL_NV_mesh_shader : require
+#include "fiblets/mesh/extension.glsl"
 #endif
 
 #include "fiblets/hardware_raster/shade.glsl"

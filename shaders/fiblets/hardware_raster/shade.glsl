@@ -9,7 +9,9 @@
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif
-#if FEATURE_PER_PRIMITIVE
+#if FEATURE_MESH_EXT
+#define VARYING perprimitiveEXT in
+#elif FEATURE_PER_PRIMITIVE
 #define VARYING flat perprimitiveNV in
 #else
 #define VARYING flat in

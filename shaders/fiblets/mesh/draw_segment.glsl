@@ -7,10 +7,8 @@ void draw_segment(uint slot, uint count, Varyings varyings, vec3 from, vec3 to, 
     bool any = mask_segment(varyings.segment, start, cap) && piece_of(from, to, start, cap, piece);
 #if FEATURE_WIDE_LINES
     for (int corner = 0; corner < 4; ++corner) put_vertex(4u * slot + uint(corner), any ? corner_of(piece, corner) : NOWHERE);
-    for (uint i = 0u; i < 3u; ++i) {
-        put_index(3u * primitive + i, 4u * slot + i);
-        put_index(3u * primitive + 3u + i, 4u * slot + 1u + i);
-    }
+    put_triangle(primitive, 4u * slot + uvec3(0u, 1u, 2u));
+    put_triangle(primitive + 1u, 4u * slot + uvec3(1u, 2u, 3u));
     put_varyings(primitive, varyings, piece, from, to);
     put_varyings(primitive + 1u, varyings, piece, from, to);
 #else
@@ -24,8 +22,7 @@ void draw_segment(uint slot, uint count, Varyings varyings, vec3 from, vec3 to, 
     if (slot == 0u) put_vertex(0u, line.first);
     put_vertex(first + 1u, line.last);
 #endif
-    put_index(2u * primitive, first);
-    put_index(2u * primitive + 1u, first + 1u);
+    put_line(primitive, uvec2(first, first + 1u));
     put_varyings(primitive, varyings, piece, from, to);
 #endif
 }

@@ -22,4 +22,14 @@ const uint PRIMITIVES = 2u;  // of a segment
 const uint PRIMITIVES = 1u;
 #endif
 
+uint vertices_of(uint segments) {
+#if FEATURE_WIDE_LINES
+    return 4u * segments;
+#elif FEATURE_CLIPPING
+    return 2u * segments;
+#else
+    return segments + 1u;
+#endif
+}
+
 const vec4 NOWHERE = vec4(2.0, 2.0, 2.0, 1.0);

@@ -10,9 +10,10 @@ void draw_share(uint f, uint share) {
     begin_polyline(f);
     uint first = (SHARES - 1u - share) * SHARE, end = min(polyline.count, first + SHARE);
     if (first >= end) {
-        put_count(0u);
+        put_counts(0u, 0u);
         return;
     }
+    put_counts(vertices_of(end - first), PRIMITIVES * (end - first));
     vec3 to = walk_point;
     next_point(1u);
     for (uint i = 0u; i < end; ++i) {
@@ -26,5 +27,4 @@ void draw_share(uint f, uint share) {
                                      vec2(before, value_of_point(i + 1u)), goes_on(i + 1u) ? ahead : vec3(0.0));
         draw_segment(i - first, end - first, varyings, from, to, i == 0u && polyline.begin, i + 1u == polyline.count && polyline.end);
     }
-    put_count(PRIMITIVES * (end - first));
 }

@@ -149,9 +149,10 @@ void draw_share(uint f, uint share) {
 #endif
     uint first = (SHARES - 1u - share) * SHARE, end = min(group.count, first + SHARE);
     if (first >= end) {
-        if (gl_LocalInvocationIndex == 0u) put_count(0u);
+        put_counts(0u, 0u);
         return;
     }
+    put_counts(vertices_of(end - first), PRIMITIVES * (end - first));
     if (!group.whole && group.spans == 0.0 && !group.begin && f > 0u) {  // a single point: the segment that leads to it
         decode_together(f - 1u);
         group.behind = anchor_local(f) - prefix_point[fiblet_last(decoding_words(f - 1u))];
@@ -173,5 +174,4 @@ void draw_share(uint f, uint share) {
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
         draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }
-    if (gl_LocalInvocationIndex == 0u) put_count(PRIMITIVES * (end - first));
 }

@@ -25,7 +25,7 @@ import abc
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import moderngl
 
@@ -213,7 +213,7 @@ class RasterPipeline(abc.ABC):
         self._n_fiblets = n_fiblets
         self._target: RasterTarget | None = None
         self._seen: SeenTexture | None = None
-        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray | None] = {}
 
     @property
     def buffers(self) -> dict[str, Memory]:
@@ -229,8 +229,12 @@ class RasterPipeline(abc.ABC):
     def _prepare(self, program: moderngl.Program) -> None:
         """Tell a new program what it needs to be told once."""
 
+    def _array(self, program: moderngl.Program) -> moderngl.VertexArray | None:
+        """Return what a program draws with, none where it needs none."""
+        return self._ctx.vertex_array(program, [])
+
     @abc.abstractmethod
-    def _draw(self, array: moderngl.VertexArray, program: moderngl.Program, chunk: Chunk, request: DrawRequest) -> None:
+    def _draw(self, array: Any, program: Any, chunk: Chunk, request: DrawRequest) -> None:
         """Draw one chunk with a program; its uniform block is bound."""
 
     def draw(self, request: DrawRequest) -> None:
@@ -313,10 +317,10 @@ class RasterPipeline(abc.ABC):
         """Draw all chunks with one program."""
         ctx = self._ctx
         program = self._programs.render(self._stages(request), [*self._features(request), *features])
-        array = self._arrays.get(program)
-        if array is None:
-            array = self._arrays[program] = ctx.vertex_array(program, [])
+        if program not in self._arrays:
+            self._arrays[program] = self._array(program)
             self._prepare(program)
+        array = self._arrays[program]
         self._bind(program, request, features)
         ctx.enable_only(moderngl.DEPTH_TEST if request.gather is None else moderngl.BLEND)
         ctx.depth_func = "<"
@@ -377,7 +381,8 @@ class RasterPipeline(abc.ABC):
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         for array in self._arrays.values():
-            array.release()
+            if array is not None:
+                array.release()
         self._arrays.clear()
         if self._target is not None:
             self._target.release()

@@ -1,4 +1,4 @@
-"""The mesh pipelines (GL_NV_mesh_shader): a task stage culls, a mesh stage decodes.
+"""The mesh pipelines (GL_NV_mesh_shader or GL_EXT_mesh_shader): a task stage culls, a mesh stage decodes.
 
 Paper: Schertzer et al. 2022, sections 3.3, 3.4 and 4.5, figure 2. The sources are in ``shaders/fiblets/mesh``.
 
@@ -13,16 +13,18 @@ What stands before and after is the same: a task work group tests :data:`TASK_FI
 which of them are left; fragments are those of the other raster pipelines. Data come from the storage buffers that the
 compute pipeline reads, so that nothing else is uploaded.
 
-Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, of which 65,535 are promised: 16.7 million
-fiblets. More are drawn by several calls.
+Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, of which 65,535 are promised, as many as
+GL_EXT_mesh_shader promises along an axis: 16.7 million fiblets. More are drawn by several calls.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import moderngl
 
+from ...capabilities import MESH, MESH_EXT
 from ...moderngl_extras import GLExtras
 from ...shaders import Programs
 from ..chunks import Chunk
@@ -32,6 +34,7 @@ from .hardware_raster import RasterPipeline
 
 __all__ = ["MeshPipeline"]
 
+PROMISED_TASKS = 65535
 _BALLOT = 0x8  # of GL_SUBGROUP_SUPPORTED_FEATURES_KHR
 _TASK_STAGE = 0x80  # of GL_SUBGROUP_SUPPORTED_STAGES_KHR
 
@@ -42,7 +45,7 @@ class MeshPipeline(RasterPipeline):
     Parameters
     ----------
     ctx : moderngl.Context
-        With GL_NV_mesh_shader.
+        With GL_NV_mesh_shader, which is taken where both are, or GL_EXT_mesh_shader.
     gl : GLExtras
     programs : Programs
     n_fiblets : int
@@ -66,13 +69,17 @@ class MeshPipeline(RasterPipeline):
         super().__init__(ctx, gl, programs, n_fiblets)
         self.name = "mesh-serial" if serial else "mesh"
         self._max_tasks = self._most_tasks(max_tasks)
-        if self._has_ballots():
-            self.features = ("PER_PRIMITIVE", "SUBGROUPS")
-        else:
-            self.features = ("PER_PRIMITIVE",)
+        self.features = (
+            "PER_PRIMITIVE",
+            *(("MESH_EXT",) if self._by_ext() else ()),
+            *(("SUBGROUPS",) if self._has_ballots() else ()),
+        )
+
+    def _by_ext(self) -> bool:
+        return MESH_EXT in self._ctx.extensions and MESH not in self._ctx.extensions
 
     def _most_tasks(self, wanted: int | None) -> int:
-        most = self._gl.get_integer("GL_MAX_DRAW_MESH_TASKS_COUNT_NV")
+        most = PROMISED_TASKS if self._by_ext() else self._gl.get_integer("GL_MAX_DRAW_MESH_TASKS_COUNT_NV")
         return min(most, wanted or most)
 
     def _has_ballots(self) -> bool:
@@ -92,13 +99,16 @@ class MeshPipeline(RasterPipeline):
             "fragment": "fiblets/hardware_raster/capsule.frag" if request.wide else "fiblets/hardware_raster/line.frag",
         }
 
-    def _prepare(self, program: moderngl.Program) -> None:
+    def _prepare(self, program: Any) -> None:
         """Do nothing: bindings stand in the sources."""
+
+    def _array(self, program: Any) -> moderngl.VertexArray | None:
+        return None if self._by_ext() else super()._array(program)
 
     def _draw(
         self,
-        array: moderngl.VertexArray,  # noqa: ARG002
-        program: moderngl.Program,
+        array: moderngl.VertexArray | None,  # noqa: ARG002
+        program: Any,
         chunk: Chunk,
         request: DrawRequest,  # noqa: ARG002
     ) -> None:

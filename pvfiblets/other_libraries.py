@@ -1,0 +1,208 @@
+"""Streamlines from the objects of other libraries: nibabel, dipy, trx-python, and VTK's datasets other than PolyData.
+
+None of them is imported: what an object is, is told by what it has. Coordinates become RAS+ millimetres with voxel
+centres at integer indices, wherever the object says where it is.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.streamlines import Streamlines
+
+__all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
+
+EXPECTED = (
+    "a path, FibletSet, Streamlines, PolyData with lines, MultiBlock or UnstructuredGrid of such, a Tractogram or "
+    "tractogram file of nibabel, a StatefulTractogram or Streamlines of dipy, a TrxFile, or a list of (n, 3) arrays"
+)
+
+_LINES = (3, 4)  # VTK_LINE, VTK_POLY_LINE
+
+
+def streamlines_of(source: Any) -> Streamlines | None:
+    """Return the streamlines that an object of another library holds, with its data; None if it is of no known kind.
+
+    Parameters
+    ----------
+    source : object
+        nibabel's ``Tractogram``, ``LazyTractogram``, ``TrkFile``, ``TckFile`` or ``ArraySequence`` (dipy's
+        ``Streamlines``), dipy's ``StatefulTractogram``, trx-python's ``TrxFile``, or a PolyData, UnstructuredGrid or
+        MultiBlock with line cells. The names of a MultiBlock's blocks become groups.
+
+    Returns
+    -------
+    Streamlines or None
+
+    Raises
+    ------
+    TypeError
+        If a dataset of VTK cannot hold lines, or a block of a MultiBlock is such a one.
+    ValueError
+        If a tractogram does not say where its voxels are, and has an affine to be told it.
+    """
+    if isinstance(source, Streamlines):
+        return source
+    if hasattr(source, "IsA"):
+        return _of_vtk(source)
+    if hasattr(source, "to_rasmm") and hasattr(source, "voxel_order"):  # dipy's StatefulTractogram
+        moved = copy.deepcopy(source)
+        moved.to_rasmm()
+        moved.to_center()
+        return _sequences(
+            moved.streamlines, moved.data_per_point, moved.data_per_streamline, affine=moved.affine,
+            space=_space(moved.dimensions, moved.voxel_sizes, moved.voxel_order),
+        )  # fmt: skip
+    if hasattr(source, "data_per_vertex") and hasattr(source, "groups"):  # trx-python's TrxFile
+        header = source.header
+        return _sequences(
+            source.streamlines, source.data_per_vertex, source.data_per_streamline, affine=header["VOXEL_TO_RASMM"],
+            space={"dimensions": tuple(int(n) for n in header["DIMENSIONS"])},
+            groups={name: np.asarray(ids, np.int64) for name, ids in source.groups.items()},
+        )  # fmt: skip
+    if hasattr(source, "tractogram") and hasattr(source, "header"):  # nibabel's TrkFile, TckFile
+        found = _of_tractogram(source.tractogram)
+        header = source.header if isinstance(source.header, Mapping) else {}
+        if "dimensions" in header and "voxel_sizes" in header:
+            found.space = _space(header["dimensions"], header["voxel_sizes"], header.get("voxel_order", b""))
+            found.affine = np.asarray(source.affine, np.float64)
+        return found
+    if hasattr(source, "affine_to_rasmm") and hasattr(source, "streamlines"):
+        return _of_tractogram(source)
+    if hasattr(source, "get_data") and hasattr(source, "total_nb_rows"):
+        return _sequences(source)
+    return None
+
+
+def _space(dimensions: Any, sizes: Any, order: Any) -> dict[str, Any]:
+    order = order.decode() if isinstance(order, bytes) else str(order)
+    return {
+        "dimensions": tuple(int(n) for n in dimensions),
+        "voxel_sizes": tuple(float(n) for n in sizes),
+        "voxel_order": order or "RAS",
+    }
+
+
+def _of_tractogram(tractogram: Any) -> Streamlines:
+    """From nibabel's Tractogram, whole or lazy."""
+    affine = tractogram.affine_to_rasmm
+    if affine is None:
+        raise ValueError(
+            "the tractogram's affine_to_rasmm is None, so that nobody knows where its points are; set it, "
+            "numpy.eye(4) if they are in RAS+ mm"
+        )
+    if all(hasattr(held, "get_data") for held in (tractogram.streamlines, *tractogram.data_per_point.values())):
+        found = _sequences(tractogram.streamlines, tractogram.data_per_point, tractogram.data_per_streamline)
+    else:
+        found = _of_items(tractogram)
+    affine = np.asarray(affine, np.float64)
+    if not np.array_equal(affine, np.eye(4)):
+        kind = found.points.dtype
+        found.points = (found.points.astype(np.float64) @ affine[:3, :3].T + affine[:3, 3]).astype(kind)
+    return found
+
+
+def _of_items(tractogram: Iterable[Any]) -> Streamlines:
+    """From a tractogram that makes its items one by one."""
+    lines: list[npt.NDArray[Any]] = []
+    per_point: dict[str, list[Any]] = {}
+    per_streamline: dict[str, list[Any]] = {}
+    for item in tractogram:
+        lines.append(np.asarray(item.streamline))
+        for name, values in item.data_for_points.items():
+            per_point.setdefault(name, []).append(np.asarray(values))
+        for name, values in item.data_for_streamline.items():
+            per_streamline.setdefault(name, []).append(np.asarray(values))
+    return Streamlines.from_list(
+        lines,
+        per_point={name: _flat(np.concatenate(parts)) for name, parts in per_point.items()},
+        per_streamline={name: _flat(np.stack(parts)) for name, parts in per_streamline.items()},
+    )
+
+
+def _sequences(
+    lines: Any, per_point: Mapping[str, Any] | None = None, per_streamline: Mapping[str, Any] | None = None, **rest: Any
+) -> Streamlines:
+    """From nibabel's ArraySequence of points, one of each value per point, and arrays per streamline."""
+    counts = np.fromiter((len(line) for line in lines), np.int64, count=len(lines))
+    points = np.asarray(lines.get_data()).reshape(-1, 3)
+    return Streamlines(
+        np.array(points),  # the object may be changed later, and ours must not
+        offsets_from_counts(counts),
+        {name: _flat(np.array(values.get_data())) for name, values in (per_point or {}).items()},
+        {name: _flat(np.array(values)) for name, values in (per_streamline or {}).items()},
+        **rest,
+    )
+
+
+def _flat(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Columns of one number as an array of numbers."""
+    return values.reshape(len(values)) if values.ndim == 2 and values.shape[1] == 1 else values
+
+
+def _of_vtk(source: Any) -> Streamlines:
+    import pyvista as pv
+
+    dataset = pv.wrap(source)
+    if isinstance(dataset, pv.PolyData):
+        return Streamlines.from_polydata(dataset)
+    if isinstance(dataset, pv.UnstructuredGrid):
+        return Streamlines.from_polydata(lines_of_grid(dataset))
+    if isinstance(dataset, pv.MultiBlock):
+        return _of_blocks(dataset)
+    raise TypeError(
+        f"source is a {type(dataset).__name__}, which has no lines; of VTK's datasets PolyData, UnstructuredGrid and "
+        "MultiBlock hold some; extract_all_edges() makes lines of a dataset's edges"
+    )
+
+
+def _of_blocks(blocks: Any) -> Streamlines:
+    """From the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
+    import pyvista as pv
+
+    parts: list[Streamlines] = []
+    for i, block in enumerate(blocks):
+        if isinstance(block, pv.MultiBlock) or (block is not None and block.n_points):
+            part = _of_vtk(block)
+            if len(part):
+                part.groups[blocks.get_block_name(i) or f"block {i}"] = np.arange(len(part))
+                parts.append(part)
+    dropped: set[str] = set()
+    for held in ("per_point", "per_streamline"):
+        names = [set(getattr(part, held)) for part in parts]
+        common = set.intersection(*names) if names else set()
+        dropped |= set().union(*names) - common
+        for part in parts:
+            setattr(part, held, {name: values for name, values in getattr(part, held).items() if name in common})
+    whole = Streamlines.concatenate(parts)
+    if dropped:
+        whole.dropped[f"arrays that some blocks lack ({', '.join(sorted(dropped))})"] = len(dropped)
+    return whole
+
+
+def lines_of_grid(source: Any) -> Any:
+    """Return a PolyData of an UnstructuredGrid's line cells, with their data; anything else as it is."""
+    if not source.IsA("vtkUnstructuredGrid"):
+        return source
+    import pyvista as pv
+
+    grid = pv.wrap(source)
+    wanted = np.flatnonzero(np.isin(grid.celltypes, _LINES))
+    cells = grid.GetCells()
+    starts = np.array(pv.convert_array(cells.GetOffsetsArray()), np.int64)
+    ids = np.array(pv.convert_array(cells.GetConnectivityArray()), np.int64)
+    counts = np.diff(starts)[wanted]
+    offsets = offsets_from_counts(counts)
+    rows = np.arange(offsets[-1]) - np.repeat(offsets[:-1] - starts[wanted], counts)
+    mesh = pv.PolyData(np.array(grid.points), lines=np.insert(ids[rows], offsets[:-1], counts))
+    for name, values in grid.point_data.items():
+        mesh.point_data[name] = np.array(values)
+    for name, values in grid.cell_data.items():
+        mesh.cell_data[name] = np.array(values)[wanted]
+    return mesh
