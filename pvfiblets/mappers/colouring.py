@@ -11,7 +11,9 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 
-Mode = Literal["orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"]
+Mode = Literal[
+    "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"
+]  # fmt: skip
 
 _TABLE_MODES = ("streamline_scalar", "point_scalar", "pixel_count")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
@@ -55,8 +57,8 @@ class Colouring:
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
-        Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range of
-        `values`.
+        Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range
+        of `values`.
     log_scale : bool, default False
         Spread the table over the logarithms; `clim` must be positive.
     nan_color : sequence of 3 or 4 floats, default (0.5, 0.5, 0.5, 1)
@@ -188,7 +190,7 @@ class Colouring:
         return np.concatenate([self.lut, [below, above, _bytes(self.nan_color)]]).astype(np.uint8)
 
     def scaled_range(self, clim: tuple[float, float] | None = None) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale); for other ends if given."""
+        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale), or of other ends."""
         clim = self.clim if clim is None else clim
         if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")

@@ -288,8 +288,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             buffer = engine.render(view, style, outside=outside)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
             draw = Draw(
-                context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor, self._colouring, dict(textures)
-            )
+                context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor,
+                self._colouring, dict(textures),
+            )  # fmt: skip
             textures |= prepare_effects(slot, self._effects, draw)
             units = context.texture_units(len(textures))
             for unit, texture in zip(units, textures.values(), strict=True):

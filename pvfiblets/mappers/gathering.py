@@ -1,6 +1,7 @@
 """What effects share that show all lines of a pixel: the sums that the engine makes of them, as textures and uniforms.
 
-The engine adds up what lines add (`pvfiblets.engine.fiblets.gathering`); which colours they have is the mapper's to say.
+The engine adds up what lines add (`pvfiblets.engine.fiblets.gathering`); which colours they have is the mapper's to
+say.
 """
 
 from __future__ import annotations

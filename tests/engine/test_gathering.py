@@ -44,7 +44,8 @@ def test_lines_are_counted_as_numpy_counts_them(gl, fabricate, random_lines, cam
     assert renderer.most_lines() == found.max()
     renderer.release()
     expected, clear = counted(fiblets.lines, matrix, SIZE)
-    assert clear.mean() > 0.6 and expected[clear].max() >= 3
+    assert clear.mean() > 0.6
+    assert expected[clear].max() >= 3
     assert (found[clear] == expected[clear]).all()
     assert abs(found.sum() - expected.sum()) < 0.002 * expected.sum()
 
@@ -64,7 +65,10 @@ def test_all_pipelines_add_up_the_same(gl, fabricate, random_lines, camera):
                 assert wrong.mean() < 1e-4  # tangents are handed on in 32 bits: colours may be rounded the other way
 
 
-@pytest.mark.parametrize("style", [FibletStyle(), FibletStyle(7.0), FibletStyle(radius=1.5)], ids=["thin", "wide", "tube"])
+STYLES = {"thin": FibletStyle(), "wide": FibletStyle(7.0), "tube": FibletStyle(radius=1.5)}
+
+
+@pytest.mark.parametrize("style", STYLES.values(), ids=STYLES)
 @pytest.mark.parametrize("pipeline", ["compute", "geometry"])
 def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeline, style):
     """Gentle lines that do not cross themselves: each adds once to every pixel that it takes."""
@@ -80,12 +84,14 @@ def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeli
     found = renderer.gather(view, style, Paint("direction")).read()[0]
     assert (count > (1 if style.half_width == 0 else 3)).sum() > 50
     wrong = found[..., 3] != count
-    assert wrong.mean() < (0.0002 if style.half_width == 0 else 0.01) and np.abs(found[..., 3] - count).max() <= 2
+    assert wrong.mean() < (0.0002 if style.half_width == 0 else 0.01)
+    assert np.abs(found[..., 3] - count).max() <= 2
     # Mean colours: of segments, where the picture has tangents that are continuous along a line.
     colour = np.sum([np.where(p.drawn[..., None], np.abs(unpacked_tangent(p.ids[..., 1])), 0.0) for p in alone], 0)
     both = (count > 0) & ~wrong
     error = np.abs(found[..., :3] / 255.0 - colour)[both] / count[both][:, None]
-    assert error.mean() < 0.02 and np.quantile(error, 0.99) < 0.1
+    assert error.mean() < 0.02
+    assert np.quantile(error, 0.99) < 0.1
     # In slices: all but the nearest, by distance.
     near = renderer.render(view, style)
     nearest = read(near)
@@ -124,7 +130,8 @@ def test_distances_are_those_of_the_camera(camera, height):
     along = (points - eye) @ (-eye / np.linalg.norm(eye))
     d = distance(found, depth * 4294967295.0)
     slope, offset = np.polyfit(along, d, 1)
-    assert slope > 0 and np.abs(d - slope * along - offset).max() < 1e-6 * np.ptp(d) + 1e-9
+    assert slope > 0
+    assert np.abs(d - slope * along - offset).max() < 1e-6 * np.ptp(d) + 1e-9
     corners = np.array([[x, y, z] for x in (-50, 50) for y in (-40, 40) for z in (-30, 30)])
     far = ((corners - eye) @ (-eye / np.linalg.norm(eye))).max()
     assert found.far == pytest.approx(slope * far + offset, rel=1e-6)
@@ -144,9 +151,8 @@ def test_filters_planes_and_others_leave_lines_out(gl, fabricate, random_lines, 
     assert (found[clear] == expected[clear]).all()
     renderer.filtering = None
     whole = renderer.gather(view, EVERY_POINT).read()[0, ..., 3]
-    halves = [
-        renderer.gather(View(SIZE, matrix, [(side, 0.0, 0.0, 0.0)]), EVERY_POINT).read()[0, ..., 3] for side in (1.0, -1.0)
-    ]
+    cut = [View(SIZE, matrix, [(side, 0.0, 0.0, 0.0)]) for side in (1.0, -1.0)]
+    halves = [renderer.gather(half, EVERY_POINT).read()[0, ..., 3] for half in cut]
     assert 0.98 * whole.sum() < sum(half.sum() for half in halves) < 1.05 * whole.sum()
     # Behind something at one depth: what is left is what is in front of it.
     key = np.uint32(np.median(read(renderer.render(view, EVERY_POINT)).depth[whole > 0]))
@@ -178,7 +184,7 @@ def test_colours_of_streamlines_and_tables(gl, fabricate, camera):
         weight = np.round(-np.log(1 - 0.5 * colour[3] / 255) / unit)
         assert (weighed[here] == [*(colour[:3] * weight), weight]).all()
     # A value through a table: arc length from 0 to 80 mm in four colours.
-    table = np.array([[10, 0, 0, 255], [20, 0, 0, 255], [30, 0, 0, 255], [40, 0, 0, 255], [0] * 4, [0] * 4, [0] * 4], np.uint8)
+    table = np.array([*([red, 0, 0, 255] for red in (10, 20, 30, 40)), [0] * 4, [0] * 4, [0] * 4], np.uint8)
     mapped = gl.texture((7, 1), 4, table.tobytes(), alignment=1)
     style = FibletStyle(values="arc_length", tolerance=0.0)
     value = read(renderer.render(view, style)).position[..., 1]

@@ -1,4 +1,4 @@
-"""``style="density"`` and ``scalars="density"``: pictures against counts of what was drawn, and what they leave alone."""
+"""``style="density"`` and ``scalars="density"``: pictures against counts, and what they leave alone."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ def test_brightness_tells_the_number_of_lines(plotter, bundles, tone, peeling):
         plotter.enable_depth_peeling()
     actor = plotter.add_fiblets(bundles, style="density", color="white", line_width=5, **PLAIN)
     actor.density_tone = tone
-    assert actor.style == "density" and actor.copy().density_tone == tone
+    assert actor.style == "density"
+    assert actor.copy().density_tone == tone
     expected = [255 * TONES[tone](n, 16) for n in (1, 4, 16)]
     assert np.abs(np.array(rows_of(seen(plotter)))[:, 0] - expected).max() <= 2
     actor.clim = (0, 64)  # lines of full brightness
@@ -62,7 +63,8 @@ def test_directions_keep_their_colours_and_numbers_theirs(plotter, bundles):
     actor.scalars = np.repeat([0.0, 1.0], [5, 16])
     actor.cmap = ["red", "blue"]
     low, middle, high = rows_of(seen(plotter))
-    assert low[2] == middle[2] == 0 and high[0] == 0
+    assert low[2] == middle[2] == 0
+    assert high[0] == 0
     actor.style = "surface"
     assert np.abs(np.array(rows_of(seen(plotter))) - [[255, 0, 0], [255, 0, 0], [0, 0, 255]]).max() <= 2
 
@@ -79,7 +81,9 @@ def test_a_map_and_a_bar_tell_streamlines_per_pixel(plotter, bundles, style):
     actor.log_scale = True
     column = seen(plotter)[:, 100, 0]  # one line has the first colour, black
     assert table.scalar_range == (1.0, 16.0)
-    assert set(column) <= {0.0, 127.0, 128.0, 255.0} and column.max() == 255 and (np.abs(column - 127.5) < 1).any()
+    assert set(column) <= {0.0, 127.0, 128.0, 255.0}
+    assert column.max() == 255
+    assert (np.abs(column - 127.5) < 1).any()
     actor.log_scale, actor.clim = False, (0, 32)
     rows = np.array(rows_of(seen(plotter)))[:, 0]
     assert table.scalar_range == (0.0, 32.0)

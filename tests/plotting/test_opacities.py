@@ -35,9 +35,11 @@ def test_one_opacity_per_streamline(plotter):
     assert np.abs(columns(plotter)[:, 1, 0] - [51, 127.5, 255]).max() <= 2
     actor.opacity = 0.5  # times
     assert np.abs(columns(plotter)[:, 1, 0] - [25.5, 64, 127.5]).max() <= 2
-    assert list(actor.opacity_by) == [0.2, 0.5, 1.0] and actor.opacity == 0.5
+    assert list(actor.opacity_by) == [0.2, 0.5, 1.0]
+    assert actor.opacity == 0.5
     twin = actor.copy()
-    assert list(twin.opacity_by) == [0.2, 0.5, 1.0] and twin.opacity == 0.5
+    assert list(twin.opacity_by) == [0.2, 0.5, 1.0]
+    assert twin.opacity == 0.5
     actor.opacity_by, actor.opacity = None, 1.0
     assert np.abs(columns(plotter)[:, 1, 0] - 255).max() <= 1
 

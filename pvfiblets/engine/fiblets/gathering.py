@@ -1,8 +1,8 @@
 """All lines of each pixel, added up: how many there are, and their colours, whole or in slices by distance.
 
 The picture of a renderer holds the nearest line of each pixel. Here every line in view adds to the pixels that it takes
-(``shaders/fiblets/gather``). What it adds are whole numbers: the sums are the same in whatever order lines are drawn, and
-by whichever pipeline. There are two ways to look at them:
+(``shaders/fiblets/gather``). What it adds are whole numbers: the sums are the same in whatever order lines are drawn,
+and by whichever pipeline. There are two ways to look at them:
 
 density
     One sum a pixel, of all lines: their number, and with colours their mean colour.
@@ -219,7 +219,8 @@ class Gathered:
     framebuffer : moderngl.Framebuffer
         Of its layers.
     keys : moderngl.Texture or None
-        rgba32ui, if there are several slices: depth keys of the nearest line and of where each slice but the first begins.
+        rgba32ui, if there are several slices: depth keys of the nearest line, and of where each slice but the first
+        begins.
     """
 
     def __init__(
@@ -257,7 +258,8 @@ class Gathered:
         except moderngl.Error as error:
             for thing in held:
                 thing.release()
-            raise GPUMemoryError(f"no memory for {self.nbytes} bytes of sums of {size[0]} x {size[1]} pixels") from error
+            width, height = size
+            raise GPUMemoryError(f"no memory for {self.nbytes} bytes of sums of {width} x {height} pixels") from error
 
 
     def find_keys(self, ctx: moderngl.Context, programs: Programs, nearest: GBuffer, distances: SliceDistances) -> None:

@@ -207,8 +207,8 @@ class FibletRenderer(Drawable[FibletStyle]):
         sliced : bool
             Whether the nearest line is left out and the others are parted by how far behind it they are.
         outside : callable, optional
-            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is to
-            be done. Lines behind it are left out.
+            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is
+            to be done. Lines behind it are left out.
         state : object
             Another one where that depth may be another.
 
@@ -246,7 +246,12 @@ class FibletRenderer(Drawable[FibletStyle]):
 
     def most_lines(self) -> float:
         """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
-        return 0.0 if self._gatherer is None else self._gatherer.greatest()
+        if self._gatherer is None:
+            return 0.0
+        with self._programs.noting() as features:
+            found = self._gatherer.greatest()
+        self._features_of_layers |= features
+        return found
 
     def drop_gathered(self) -> None:
         """Give back what :meth:`gather` keeps; twice is harmless."""

@@ -85,7 +85,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._init_colours(scalars, given, theme)
         self._init_shading()
         self._tone = TONES[0]
-        self._transparency: str | int | None = ALL
+        self._transparency: str | int | None = None  # until it is told
         self._opacity_by: Any = None
         self._opacities = Opacities()
         self._init_filtering()

@@ -69,8 +69,8 @@ def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacitie
     values = np.asarray(choice)
     if values.ndim != 1 or values.dtype.kind not in "buif" or len(values) < 1:
         raise ValueError(
-            f"opacity has shape {values.shape} and type {values.dtype}; give a number, {fiblets.n_streamlines} numbers, "
-            f"one per streamline, {fiblets.n_points}, one per point, or some for the colour map, the lowest first"
+            f"opacity has shape {values.shape} and type {values.dtype}; give a number, {fiblets.n_streamlines} numbers "
+            f"(one per streamline), {fiblets.n_points} (one per point), or some for the colour map, the lowest first"
         )
     values = values.astype(np.float64)
     check_range("opacity", values)

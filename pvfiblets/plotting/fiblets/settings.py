@@ -84,8 +84,8 @@ class FibletSettings(Settings):
         argument=False,
         where=LATER,
         row=Row("Fades by", "Opacity along the colour map.", type="choice", optional=True,
-                choices=[(None, "nothing"), ("linear", "value"), ("linear_r", "value, reversed"), ("geom", "value, steep"),
-                         ("sigmoid", "value, a step")],
+                choices=[(None, "nothing"), ("linear", "value"), ("linear_r", "value, reversed"),
+                         ("geom", "value, steep"), ("sigmoid", "value, a step")],
                 matters=shared.by_numbers),
     )  # fmt: skip
     transparency: Setting[str | int | None] = Setting(
@@ -125,8 +125,8 @@ class FibletSettings(Settings):
         "``clim`` is how many have full brightness; without, as many as the fullest pixel of the\n"
         "picture holds. Lines are a pixel wide, without light. With ``scalars=\"density\"`` a colour map and a\n"
         "scalar bar tell streamlines per pixel.",
-        argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in white "
-        "halos.",
+        argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in "
+        "white halos.",
         choices=STYLES,
         where=LATER,
         row=Row("Style", "Halo: black lines in white halos, best on a white background.", "Lines",
