@@ -65,6 +65,9 @@ nibabel.save(nibabel.Nifti1Image(np.zeros((28, 32, 24), np.int16), affine), "T1.
 np.savetxt("sift2.txt", np.linspace(0, 2, 400))
 """,
     "docs/effects.md": "",
+    "docs/seeing-inside.md": BRAIN + """
+pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
+""",
     "docs/tubes.md": "",
     "docs/halos.md": "",
     "docs/volumes.md": "",
