@@ -16,6 +16,8 @@ from importlib import import_module
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError
 
+# Those of pvfiblets.plotting.fiblets.looks, without loading it.
+LOOKS = ("plain", "illuminated", "tubes", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
 
 # What bad input and a bad environment raise. Anything else is a mistake in this program, and its
@@ -283,6 +285,7 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
         "least 20%%)",
     )
+    _look(parser)
     _antialias(parser)
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
     add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
@@ -316,11 +319,20 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--color", help="one colour for all, such as white or #ff8800")
     parser.add_argument("--cmap", help="colour map, such as viridis")
     parser.add_argument("--clim", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colour map")
+    _look(parser)
     parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="of lines (default: 1)")
-    parser.add_argument("--opacity", type=float, default=1.0, metavar="SHARE", help="0 to 1 (default: %(default)s)")
+    parser.add_argument("--opacity", type=float, metavar="SHARE", help="0 to 1 (default: 1)")
     parser.add_argument("--background", default="black", metavar="COLOR", help="behind it all (default: %(default)s)")
     parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
     _antialias(parser)
+
+
+def _look(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--look",
+        choices=LOOKS,
+        help="of lines: widths, light and shading that give a finished picture together; other options go before it",
+    )
 
 
 def _antialias(parser: argparse.ArgumentParser) -> None:

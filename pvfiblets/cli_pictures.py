@@ -59,9 +59,10 @@ def fill(
     cmap: str | None,
     clim: list[float] | None,
     line_width: float | None,
-    opacity: float,
+    opacity: float | None,
     background: str,
     no_lighting: bool,
+    look: str | None = None,
     antialias: str | int | None = None,
 ) -> None:
     """Put files into a plotter's scene and point the camera."""
@@ -71,6 +72,9 @@ def fill(
         plotter.picture.antialias = antialias
     plotter.set_background(background)
     text = "black" if sum(plotter.background_color.float_rgb) > 1.5 else "white"
+    # What is not said is left to the look.
+    said = {"look": look, "line_width": line_width, "opacity": opacity, "lighting": False if no_lighting else None}
+    said = {name: value for name, value in said.items() if value is not None}
     for path in paths:
         if not Path(path).exists():
             raise FileNotFoundError(2, "No such file or directory", path)
@@ -85,9 +89,7 @@ def fill(
             color=color,
             cmap=cmap,
             clim=clim,
-            line_width=line_width,
-            opacity=opacity,
-            lighting=not no_lighting,
+            **said,
             scalar_bar_args={"color": text, **UPRIGHT},
             render=False,
             progress=sys.stderr.isatty(),

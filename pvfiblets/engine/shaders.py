@@ -118,7 +118,6 @@ FEATURES: dict[str, str] = {
     "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",
     "TUBE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
     "PICTURE_SAMPLES": "a picture of several samples a pixel",
-    "PICTURE_POINT": "what lines cover of the middles of pixels",
     "PICTURE_DEPTH": "the depths of a picture, beside its colours",
     "PICTURE_TONE": "other tones for a picture, beside depth of field",
     "TONE_REINHARD": "tones by Reinhard's operator",

@@ -87,12 +87,16 @@ class Style:
     ----------
     values : str or VolumeSource, optional
         The value to write beside each pixel, of those that the drawable has. None costs nothing.
+    exact : bool
+        Whether pixels show just what covers their middles. Otherwise what is thinner than a pixel is widened to one, or
+        many of its pixels would be missed; the mean of many pictures, of other middles each, misses none.
     edges : bool
         Whether to write where the edges run of what each pixel shows (``GBuffer.edges``), for smoothing them. Volumes
         have none.
     """
 
     values: str | VolumeSource | None = field(default=None, kw_only=True)
+    exact: bool = field(default=False, kw_only=True)
     edges: bool = field(default=False, kw_only=True)
 
     @property

@@ -23,13 +23,22 @@ class EdgeSmoothing:
     Parameters
     ----------
     renderer : vtkRenderer
+
+    Attributes
+    ----------
+    sample : bool
+        Whether the picture is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not
+        smoothed, and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
+        for thin lines, which makes slanted ones thinner, does not count.
+    widened : bool
+        Whether any is drawn otherwise in the picture of one sample: mappers say so.
     """
 
     def __init__(self, renderer: Any) -> None:
         self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
-        self._sample = False
+        self.sample = self.widened = False
         smoothers[self._address] = self
 
     def begin(self, *, sample: bool = False) -> None:
@@ -38,16 +47,10 @@ class EdgeSmoothing:
         Parameters
         ----------
         sample : bool
-            Whether it is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not smoothed;
-            but a line that is drawn wider than it is, because it is thinner than a pixel, is there only where it covers
-            a pixel's middle.
+            See `sample`.
         """
         self._noted.clear()
-        self._sample = sample
-
-    def wants(self, narrower: float) -> bool:
-        """Say whether lines that are thinner by some pixels than they are drawn are to be noted."""
-        return narrower > 0.0 or not self._sample
+        self.sample, self.widened = sample, False
 
     def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:
         """Remember what a mapper has drawn for this picture, and in which part of it that may be."""
@@ -64,7 +67,7 @@ class EdgeSmoothing:
     ) -> None:
         """Smooth the picture, once."""
         noted, self._noted = list(self._noted.values()), {}
-        effects.smooth(colour, depth, viewport, noted, alike=not self._others(), point=self._sample)
+        effects.smooth(colour, depth, viewport, noted, alike=not self._others())
 
     def _others(self) -> bool:
         """Say whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""

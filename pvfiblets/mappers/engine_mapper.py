@@ -28,7 +28,7 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import frame_of, others_before, pixel_scale, smoothers, world_planes
+from pvfiblets.mappers.scene import Frame, frame_of, others_before, pixel_scale, smoothers, world_planes
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
@@ -277,8 +277,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._has_edges else None
         narrower = self._narrower(pixel_scale(renderer, viewport))
-        if smoother is not None:  # in every frame: what wants them in some only would be made anew again and again
-            style = replace(style, edges=True)
+        if smoother is not None:  # edges in every frame: what wants them in some only would be made anew all the time
+            style = replace(style, edges=True, exact=smoother.sample)
+            smoother.widened |= smoother.sample and self._widened(style, frame)
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
@@ -299,11 +300,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, self._colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
-        if smoother is not None and smoother.wants(narrower):
+        if smoother is not None and not smoother.sample:
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)
-        if is_shifted(renderer.GetActiveCamera()):  # one sample of a pixel is not what users point at
+        if is_shifted(renderer.GetActiveCamera()) or style.exact:  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
@@ -330,6 +331,10 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     def _narrower(self, pixel_scale: float) -> float:  # noqa: ARG002
         """Return the pixels by which lines are thinner than they are drawn."""
         return 0.0
+
+    def _widened(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
+        """Say whether some lines may be drawn into other pixels than those whose middles they cover."""
+        return False
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
         """Return the style, with the values that the colours need and what effects want."""

@@ -13,6 +13,7 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engines import EngineOptions, engine_renderer
 from pvfiblets.mappers.picking import nearest_pixel
+from pvfiblets.mappers.scene import Frame
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
@@ -96,10 +97,15 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._actor_modified()
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
-        return FibletStyle(line_width=max(1.0, self._line_width * pixel_scale), min_width=max(1.0, pixel_scale))
+        return FibletStyle(line_width=self._line_width * pixel_scale, min_width=max(1.0, pixel_scale))
 
     def _narrower(self, pixel_scale: float) -> float:
         return 0.0 if self._thickness > 0.0 else max(1.0 - self._line_width * pixel_scale, 0.0)
+
+    def _widened(self, style: FibletStyle, frame: Frame) -> bool:
+        if style.radius is None:
+            return style.line_width <= 1.0
+        return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width
 
     @property
     def filtering(self) -> Any:

@@ -20,6 +20,7 @@ from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.scene import Frame
 from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 from pvfiblets.mappers.shading import background
 
@@ -244,6 +245,9 @@ class HaloMapper(EngineMapper[HaloOptions]):
         from pvfiblets.engine.halos import HaloDrawStyle
 
         return HaloDrawStyle(look=replace(self._look, min_width=self._look.min_width * pixel_scale))
+
+    def _widened(self, style: HaloDrawStyle, frame: Frame) -> bool:  # noqa: ARG002
+        return style.look.min_width < 1.0
 
 
 def _behind(draw: Draw) -> tuple[Colour, Colour]:

@@ -306,7 +306,8 @@ class Picture:
         if refinement is None:
             return
         if tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
-            refinement.end(renderer, self._state(renderer))
+            widened = self._smoothing is not None and self._smoothing.widened
+            refinement.end(renderer, self._state(renderer), widened=widened)
             if self.drawn is not None:
                 self.drawn()
 

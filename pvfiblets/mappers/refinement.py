@@ -9,7 +9,8 @@ on the picture and before what lies over it. A frame is one of three:
   is one, until there are enough.
 - *mean*: of the camera as it is, in whose place the mean of the samples is shown.
 
-The last frame is of the camera as it is: the last sample, or a frame of the mean after it. So G-buffers and depths are
+The last frame is of the camera as it is: the last sample, or a frame of the mean after it, such as where lines are
+thinner in samples. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
 
 A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
@@ -189,7 +190,7 @@ class Refinement:
             sums.show(colour, viewport)
             sums.forget_kept()
 
-    def end(self, renderer: Any, state: Hashable) -> None:
+    def end(self, renderer: Any, state: Hashable, *, widened: bool) -> None:
         """Note what has been drawn.
 
         Parameters
@@ -197,11 +198,13 @@ class Refinement:
         renderer : vtkRenderer
         state : hashable
             What the picture is made of, now that drawing may have changed it.
+        widened : bool
+            Whether pictures of one sample show wider lines than a sample does.
         """
         self.put_back()
         self._exact = True
         if self._frame is _Frame.SAMPLE and self._name == _WHOLE:
-            self._exact = self._left[0] == MIDDLE
+            self._exact = self._left[0] == MIDDLE and not widened
             # A sample that nothing came of will not come another time.
             self._left = self._left[1:] if self._painted else []
             self._taken += self._painted

@@ -73,6 +73,14 @@ class Frame:
         scaled: Matrix = linear / np.abs(linear).max()
         return scaled
 
+    def least_scale(self, bounds: Sequence[float]) -> float:
+        """Return the fewest pixels that a mm across the view takes anywhere within bounds; 0 if that is not known."""
+        corners = np.array([[x, y, z, 1.0] for x in bounds[:2] for y in bounds[2:4] for z in bounds[4:]])
+        matrix = self.model_view_projection
+        farthest = float((corners @ matrix[3]).max())
+        axes = np.linalg.norm(matrix[:2, :3], axis=1) * np.array(self.viewport[2:]) / 2.0
+        return float(axes.min()) / farthest if farthest > 0.0 else 0.0
+
     def rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[float, float, float, float]:
         """Return the part of the viewport in which anything within bounds can be seen.
 
@@ -103,9 +111,7 @@ class Frame:
         right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
         return float(left), float(lower), float(right), float(upper)
 
-    def pixel_rectangle(
-        self, bounds: Sequence[float], slack: float, margin: float
-    ) -> tuple[int, int, int, int]:
+    def pixel_rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[int, int, int, int]:
         """Return the same as x, y, width, height in whole pixels of the viewport."""
         left, lower, right, upper = self.rectangle(bounds, slack, margin)
         width, height = self.viewport[2:]

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from pvfiblets.mappers.line_tubes import normals_to_view
 from pvfiblets.mappers.scene import pixel_scale
 from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
+from pvfiblets.mappers.spacing import line_spacing_of
 
 if TYPE_CHECKING:
     from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
@@ -25,8 +26,16 @@ __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silho
 
 Colour = tuple[float, float, float]
 
-LEAST_HALO = 2.5
-"""Pixels of the window by default: as wide as a thin line's halo must be to be told from it."""
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""Shares of red, green and blue (Rec. 709)."""
+
+HALO_WIDTH, LEAST_HALO, MOST_HALO = 0.5, 1.25, 5.0
+"""Default width of a halo: by the distance between lines; at least and at most so many pixels of the window."""
+HALO_DEPTH = 8.0
+"""Default depth of a halo, by its width: what crosses is set apart, and bundles and sheets stay together."""
+OCCLUSION_RADIUS, LEAST_OCCLUSION, MOST_OCCLUSION = 16.0, 8.0, 0.05
+"""Default radius of occlusion: by the distance between lines; at least so many pixels, at most this share of the data's
+diagonal."""
 
 MAX_OUTLINE = 16.0
 """Pixels of the window; an outline's cost grows with the square of its width."""
@@ -54,19 +63,24 @@ class Ink(ShaderEffect):
 
     Parameters
     ----------
-    color : tuple of 3 floats, default (0, 0, 0)
-        RGB between 0 and 1.
+    color : tuple of 3 floats, optional, default (0, 0, 0)
+        RGB between 0 and 1. None: black on a light background, white on a dark one.
     """
 
-    color: Colour = (0.0, 0.0, 0.0)
+    color: Colour | None = (0.0, 0.0, 0.0)
     features = frozenset({"ink"})
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "color", _colour(self.color, "color of ink"))
+        if self.color is not None:
+            object.__setattr__(self, "color", _colour(self.color, "color of ink"))
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour."""
-        program.SetUniform3f("fibletInk", self.color)
+        color = self.color
+        if color is None:
+            light = float(np.mean(background(draw.renderer), axis=0) @ LUMINANCE) > 0.5
+            color = (0.0, 0.0, 0.0) if light else (1.0, 1.0, 1.0)
+        program.SetUniform3f("fibletInk", color)
 
 
 @dataclass(frozen=True)
@@ -76,7 +90,8 @@ class AmbientOcclusion(ShaderEffect):
     Parameters
     ----------
     radius : float, optional
-        mm: what is farther away does not count. By default a 20th of the diagonal of the data's bounds.
+        mm: what is farther away does not count. By default 16 times the distance between lines, but at least 8 pixels,
+        and at most a 20th of the diagonal of the data's bounds.
     samples : int, default 16
         Pixels looked at around each, 1 to 256.
     strength : float, default 1.0
@@ -113,7 +128,7 @@ class AmbientOcclusion(ShaderEffect):
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
         """Run them."""
-        radius = extent(draw) / 20.0 if self.radius is None else self.radius
+        radius = self.reach(draw)
         directions = draw.frame.directions_to_view
         surface = draw.buffer.relief == "normal"
         texture = kept.draw(
@@ -126,6 +141,13 @@ class AmbientOcclusion(ShaderEffect):
             normals_to_view=normals_to_view(directions) if surface else None,
         )
         return {"fibletOcclusionMap": texture}
+
+    def reach(self, draw: Draw) -> float:
+        """Return the radius in mm."""
+        if self.radius is not None:
+            return self.radius
+        most, spacing = MOST_OCCLUSION * extent(draw), spacing_in(draw)
+        return most if spacing is None else min(max(OCCLUSION_RADIUS * spacing, LEAST_OCCLUSION * pixel_in(draw)), most)
 
 
 @dataclass(frozen=True)
@@ -182,11 +204,11 @@ class Halos(ShaderEffect):
     Parameters
     ----------
     width : float, optional
-        mm from a line's edge to its halo's, at most 24 pixels of the window. By default a 250th of the diagonal of the
-        data's bounds, or what 2.5 pixels of the window take in the middle of the data, if that is more.
+        mm from a line's edge to its halo's, at most 24 pixels of the window. By default half the distance between lines
+        (`pvfiblets.mappers.spacing`), but from 1.25 to 5 pixels of the window in the middle of the data.
     depth : float, optional
         mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each
-        other alone. By default a 20th of the diagonal.
+        other alone. By default 8 times the width.
     color : tuple of 3 floats, optional
         RGB between 0 and 1; by default the renderer's background.
 
@@ -227,9 +249,9 @@ class Halos(ShaderEffect):
         """Return width and depth in mm."""
         width = self.width
         if width is None:
-            pixel = _pixel_scale(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
-            width = max(extent(draw) / 250.0, LEAST_HALO * pixel)
-        return width, extent(draw) / 20.0 if self.depth is None else self.depth
+            pixel, spacing = pixel_in(draw), spacing_in(draw)
+            width = min(max(HALO_WIDTH * (spacing or 0.0), LEAST_HALO * pixel), MOST_HALO * pixel)
+        return width, HALO_DEPTH * width if self.depth is None else self.depth
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour, and widen the rectangle in which anything can be."""
@@ -310,6 +332,20 @@ def extent(draw: Draw) -> float:
     bounds = np.asarray(draw.fiblets.bounds, np.float64)
     diagonal = float(np.linalg.norm(draw.frame.model[:3, :3] @ (bounds[1::2] - bounds[::2])))
     return diagonal if math.isfinite(diagonal) and diagonal > 0.0 else 1.0
+
+
+def spacing_in(draw: Draw) -> float | None:
+    """Return the distance between lines in mm of the world; None where it is not known."""
+    spacing = line_spacing_of(draw.fiblets)
+    if spacing is None:
+        return None
+    bounds = np.asarray(draw.fiblets.bounds, np.float64)
+    return spacing * extent(draw) / (float(np.linalg.norm(bounds[1::2] - bounds[::2])) or 1.0)
+
+
+def pixel_in(draw: Draw) -> float:
+    """Return the mm of a pixel of the window in the middle of the data."""
+    return _pixel_scale(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
 
 
 def distances(draw: Draw) -> tuple[float, float]:

@@ -19,6 +19,7 @@ from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engines import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import nearest_pixel
+from pvfiblets.mappers.scene import Frame
 
 if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -161,3 +162,6 @@ class TubeMapper(EngineMapper[TubeOptions]):
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> TubeStyle:  # noqa: ARG002
         return TubeStyle(min_width=self.options.min_width * pixel_scale)
+
+    def _widened(self, style: TubeStyle, frame: Frame) -> bool:  # noqa: ARG002
+        return style.min_width < 1.0

@@ -312,11 +312,18 @@ class Given(dict[str, Any]):
         The drawable's `Settings`.
     given : mapping, optional
         By name; those that are no settings are left to others.
+
+    Attributes
+    ----------
+    named : frozenset of str
+        Those that were given, and are not None.
     """
 
     def __init__(self, settings: type[Settings], given: Mapping[str, Any] | None = None) -> None:
         self._known = arguments(settings)
         given = given or {}
+        said = (name for name, value in given.items() if name in self._known and value is not None)
+        self.named: frozenset[str] = given.named if isinstance(given, Given) else frozenset(said)
         super().__init__((name, one.given(given.get(name, one.default))) for name, one in self._known.items())
 
     def at(self, where: Place) -> dict[str, Any]:

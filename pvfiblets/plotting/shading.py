@@ -115,10 +115,13 @@ class Shading(SurfaceShading):
         if style == self._style:
             return
         self._style = style
-        self._mapper.set_effect("ink", Ink() if style == "halo" else None)
+        inks = {"halo": Ink(), "ink": Ink(None)}
+        self._mapper.set_effect("ink", inks.get(style))
         self._relight()
         self._count_lines()
-        if style != "halo" or not self.halos:
+        if style == "ink":
+            self.halos = {"color": _BACKGROUND}
+        elif style != "halo" or not self.halos:
             self.halos = style == "halo"
 
     def _count_lines(self) -> None:

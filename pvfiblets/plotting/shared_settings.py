@@ -141,8 +141,9 @@ def lighting(what: str, default: bool | None) -> Setting[bool]:
 AMBIENT_OCCLUSION: Setting[dict[str, Any] | bool] = Setting(
     False,
     "Darkness where others stand over a line or tube.\n\n"
-    "``radius`` (mm): what is farther does not darken; ``None``, the default, is a 20th of the\n"
-    "data's diagonal. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.",
+    "``radius`` (mm): what is farther does not darken; ``None``, the default, is 16 times the\n"
+    "distance between lines, at least 8 pixels, and at most a 20th of the data's diagonal, which it\n"
+    "is of tubes. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.",
     argument=False,
     where=Effect("pvfiblets.mappers.shading:AmbientOcclusion"),
     row=Row("Ambient occlusion", "Darken what others stand over.", "Shading"),

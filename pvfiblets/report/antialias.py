@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .data_sets import files_of
 from .drawing import LATE, clock_of, timing
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options, Unavailable
@@ -20,13 +23,15 @@ __all__ = [
     "OURS", "STUDY", "AntialiasStudy", "PictureWindow", "Subject", "Variant", "differences", "subjects", "variants",
 ]  # fmt: skip
 
-SIZE, QUICK_SIZE = (800, 600), (320, 240)
+SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
 STEP, LENGTH = 0.5, 94.0  # mm, of its points and of its streamlines on average
 BUNDLE, QUICK_BUNDLE = 300, 60  # streamlines of it
 TUBES, QUICK_TUBES = 60, 15
 REFERENCE, QUICK_REFERENCE = 16, 8  # samples along a pixel's side
+WHOLE = 1.0 + 1e-6  # pixels: lines of one exactly are drawn by OpenGL's rule for thin lines
 TURN = 1.14  # degrees from frame to frame: Schertzer et al. 2022, section 4.5
+SHIMMER, TURNS = 0.1, 5  # degrees of a small turn, and how many
 OURS, VTK = "pvfiblets", "VTK"
 
 Pixels = npt.NDArray[np.float64]
@@ -74,15 +79,16 @@ def variants(quick: bool) -> list[Variant]:
 
 @dataclass(frozen=True)
 class Subject:
-    """A scene; ``fill`` puts it into a plotter, and points the camera."""
+    """A scene; ``fill`` puts it into a plotter, and points the camera. ``size`` is its own, where it has one."""
 
     name: str
     fill: Callable[[Any], object]
     only_vtk: bool = False
+    size: tuple[int, int] | None = None
 
 
 def subjects(options: Options) -> list[Subject]:
-    """Return the scenes: lines, tubes, lines with a surface, and lines that VTK draws itself."""
+    """Return the scenes: lines, tubes, lines with a surface, lines that VTK draws itself, and files, each whole."""
     import pyvista as pv
 
     from pvfiblets.codec.compress import compress
@@ -104,7 +110,7 @@ def subjects(options: Options) -> list[Subject]:
         look(plotter, 1.4)
 
     def bundle(plotter: Any) -> None:
-        plotter.add_fiblets(few, line_width=2, show_scalar_bar=False)
+        plotter.add_fiblets(few, color="orange", lighting=False, line_width=2, show_scalar_bar=False)
         look(plotter, 3.0)
 
     def tubes(plotter: Any) -> None:
@@ -123,8 +129,16 @@ def subjects(options: Options) -> list[Subject]:
         plotter.add_mesh(poly, color="orange", line_width=2, lighting=False)
         look(plotter, 3.0)
 
+    def file(path: Path) -> Subject:
+        def fill(plotter: Any) -> None:
+            plotter.add_fiblets(path, show_scalar_bar=False)
+            look(plotter, 1.4)
+
+        return Subject(path.stem.replace("_", " "), fill, size=QUICK_SIZE if quick else FILE_SIZE)
+
     return [Subject("whole brain", whole), Subject("bundle", bundle), Subject("tubes", tubes),
-            Subject("bundle and surface", surface), Subject("lines drawn by VTK", lines, only_vtk=True)]  # fmt: skip
+            Subject("bundle and surface", surface), Subject("lines drawn by VTK", lines, only_vtk=True),
+            *map(file, files_of(options.files)[0] if options.files else [])]  # fmt: skip
 
 
 class AntialiasStudy:
@@ -144,15 +158,17 @@ class AntialiasStudy:
         "it is shown while the camera turns; *at rest*: the finished picture, and the time from the change to it. Both "
         "are the same but for *refined*, which then draws one picture after the other, 16 unless a number says "
         "otherwise, with the camera moved by parts of a pixel. *samples*: pictures that the finished one is the mean "
-        "of.",
+        "of. *shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
+        "over the pixels that show anything in either.",
         "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
         "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
-        "scene without any smoothing; *p99* and *max* are of the finished picture.",
+        "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
+        "they are slanted); *p99* and *max* are of the finished picture.",
         "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
         "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
-        "VTK*: the bundle by ``add_mesh``; *refined* is asked for there, since nothing of this program is in the "
-        "scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures under "
-        "MSAA of 8.",
+        "VTK*: the lines of *bundle* by ``add_mesh``; *refined* is asked for there, since nothing of this program is "
+        "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
+        "under MSAA of 8.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -179,13 +195,18 @@ def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
     Returns
     -------
     dict
-        ``rms``, ``p99`` (99th percentile) and ``max`` of the differences.
+        ``rms``, ``mean``, ``p99`` (99th percentile) and ``max`` of the differences.
     """
     there = (picture > 0.0).any(axis=2) | (reference > 0.0).any(axis=2)
     apart = np.abs(picture - reference)[there]
     if not apart.size:
-        return {"rms": 0.0, "p99": 0.0, "max": 0.0}
-    return {"rms": float(np.sqrt((apart**2).mean())), "p99": float(np.quantile(apart, 0.99)), "max": float(apart.max())}
+        return {"rms": 0.0, "mean": 0.0, "p99": 0.0, "max": 0.0}
+    return {
+        "rms": float(np.sqrt((apart**2).mean())),
+        "mean": float(apart.mean()),
+        "p99": float(np.quantile(apart, 0.99)),
+        "max": float(apart.max()),
+    }
 
 
 class PictureWindow:
@@ -233,6 +254,16 @@ class PictureWindow:
         self._finish()
         return self.clock() - begun
 
+    def shimmer(self, turns: int) -> float:
+        """Turn the camera a little, some times, and return by how many levels pixels that show something change."""
+        frames = []
+        for _ in range(turns + 1):
+            self.plotter.camera.azimuth += SHIMMER
+            self.plotter.render()
+            self._finish()
+            frames.append(self.pixels())
+        return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
+
     def samples(self) -> float:
         """Draw what is left of the picture, and return the seconds that it took."""
         begun = self.clock()
@@ -265,21 +296,28 @@ class PictureWindow:
         from pvfiblets.mappers.shifted_cameras import shifted
 
         window, total = self.plotter.render_window, np.zeros(())
+        thin = [actor for actor in self.plotter.fiblets if actor.line_width == 1.0]
+        for actor in thin:
+            actor.line_width = WHOLE
         places = (np.arange(side) + 0.5) / side - 0.5
-        for x in places:
-            for y in places:
-                if not go_on():
-                    return None
-                with shifted(self.plotter.camera, window.GetSize(), (float(x), float(y))):
-                    window.Render()
-                    total = total + self.pixels()
+        try:
+            for x in places:
+                for y in places:
+                    if not go_on():
+                        return None
+                    with shifted(self.plotter.camera, window.GetSize(), (float(x), float(y))):
+                        window.Render()
+                        total = total + self.pixels()
+        finally:
+            for actor in thin:
+                actor.line_width = 1.0
         return total / side**2
 
 
 def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     quick, begun, late = options.quick, time.perf_counter(), []
     size, side = (QUICK_SIZE, QUICK_REFERENCE) if quick else (SIZE, REFERENCE)
-    window = PictureWindow(subject, size)
+    window = PictureWindow(subject, subject.size or size)
     try:
         options.driver = window.driver
         window.look_back()
@@ -309,12 +347,15 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
     moving = window.pixels()
     window.samples()
     still, n = window.pixels(), window.plotter.picture.samples
+    window.look_back()
+    shimmer = window.shimmer(TURNS)
     frames, whole = [], []
     for _ in range(options.repeats):
         frames.append(window.frame())
         whole.append(frames[-1] + (window.samples() if n > 1 else 0.0))
     found = {"at rest": differences(still, reference), "moving": differences(moving, reference)}
     errors = {name: Figure(figures["rms"], "levels") for name, figures in found.items()}
+    errors["shimmer"] = Figure(shimmer, "levels")
     errors |= {name: Figure(found["at rest"][name], "levels") for name in ("p99", "max")}
     times = {"moving": frames, "at rest": whole}
     height, width = reference.shape[:2]

@@ -62,7 +62,7 @@ class Explorer(TrameApp):
         if options.antialias is not None:
             self.plotter.picture.antialias = options.antialias
         given = [*options.files, *options.volume, *options.mesh]
-        self.scene = Scene(self.plotter, self.confined.root, allowed=[Path(path) for path in given])
+        self.scene = Scene(self.plotter, self.confined.root, allowed=[Path(path) for path in given], look=options.look)
         self.history = History(self.scene)
         self.page = bind(self.state)
         self.page.shared = options.shared

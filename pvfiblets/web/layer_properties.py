@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.fiblets.looks import LOOKS
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.settings import Setting, Settings
 from pvfiblets.plotting.tubes.settings import TubeSettings
@@ -78,7 +79,12 @@ _BAR = own("show_bar", "bool", "Colour bar", "Show which colour stands for which
 
 TRACTOGRAM = _table(
     FibletSettings,
-    [_scalars(_line_scalars, "orientation", volumes=True)],
+    [
+        own("look", "choice", "Look", "Widths, light and shading that give a finished picture together.", "Look",
+            "plain",
+            choices=[(None, "my own"), *((name, f"{name}: {look.doc}") for name, look in LOOKS.items())]),
+        _scalars(_line_scalars, "orientation", volumes=True),
+    ],
     {
         "log_scale": [_BAR],
         "halos": [

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.settings import Settings, arguments
@@ -24,6 +25,7 @@ __all__ = [
     "ARGUMENTS",
     "KINDS",
     "LINES",
+    "LOOK",
     "RADIUS_SCALE",
     "SELECTION",
     "TABLES",
@@ -78,6 +80,9 @@ SELECTION = {
 }
 """Properties of lines that are arguments of ``actor.selection_style``, by the names that they have there."""
 
+LOOK = "look"
+"""A property of lines that stands for others: their actor is told of these, of effects as the look has them."""
+
 RADIUS_SCALE = "radius_scale"
 """A look of tubes that is no attribute of their actor: its tubes are others."""
 
@@ -117,9 +122,16 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
     return prop.check(value, data, volumes)
 
 
-def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any) -> dict[str, Any]:
-    """Return settings with one changed that was checked, and with those at their defaults that it resets."""
+def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any = None) -> dict[str, Any]:
+    """Return settings with one changed that was checked, and with those that it resets or, a look, sets.
+
+    Data are asked for their line widths where looks come into it.
+    """
     found = {**settings, name: value}
+    if name == LOOK and value is not None:
+        found |= {key: bool(one) if isinstance(one, Mapping) else one for key, one in settings_of(value, data).items()}
+    elif kind in LINES and (name == LOOK or name in PLAIN):
+        found[LOOK] = look_of(found, data)
     if value != settings[name]:
         table = _BY_NAME[kind]
         found.update({other: table[other].default for other in table[name].resets})
@@ -143,9 +155,11 @@ def looks(kind: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {RADIUS_SCALE: settings[RADIUS_SCALE]} if kind == "tubes" else {}
     if "scalars" in settings:
         found |= _coloured(kind, settings)
+    look = LOOKS[settings[LOOK]].settings if settings.get(LOOK) is not None else {}
     for prop in TABLES[kind]:
         if prop.live and not ("scalars" in settings and prop.name in _OF_COLOURS):
-            found[prop.name] = _plain(prop, settings)
+            exactly = look.get(prop.name) if settings[prop.name] is True else None
+            found[prop.name] = dict(exactly) if isinstance(exactly, Mapping) else _plain(prop, settings)
     if kind in LINES and settings["style"] != "surface":  # which sets halos of its own
         del found["halos"]
     if kind == "volume" and settings["mode"] == "isosurface":

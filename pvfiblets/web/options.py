@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.memory import CAN_LIMIT, of_machine, parse, shown
+from pvfiblets.plotting.fiblets.looks import check_look
 
 MEBIBYTE = 1024 * 1024
 SMALLEST_MEMORY = 640 * MEBIBYTE
@@ -43,6 +44,8 @@ class Options:
         The greatest size of an uploaded file, in bytes.
     codec : str
         How pictures travel: 'jpeg', 'png' or 'webp'.
+    look : str or None
+        That lines begin with, as of ``plotter.add_fiblets``.
     antialias : str, int or None
         As of ``plotter.picture``; None for the default.
     memory : int or None
@@ -68,6 +71,7 @@ class Options:
     timeout: float = 300.0
     upload: int = 2048 * MEBIBYTE
     codec: str = "jpeg"
+    look: str | None = None
     antialias: str | int | None = None
     memory: int | None = None
     origins: list[str] = field(default_factory=list)
@@ -110,6 +114,7 @@ class Options:
                 f"--memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
                 "large; give as much or more"
             )
+        check_look("--look", self.look)
         if self.codec not in CODECS:
             raise ValueError(f"--codec {self.codec!r} is none of {', '.join(CODECS)}")
         if self.token is None and not self.on_loopback:

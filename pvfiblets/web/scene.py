@@ -68,10 +68,13 @@ class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
         Folder that paths are relative to and confined to; any path is allowed without.
     allowed : iterable of Path
         Files and folders outside of the root that may be opened all the same.
+    look : str, optional
+        That streamlines begin with (`pvfiblets.plotting.fiblets.looks`).
     """
 
-    def __init__(self, plotter: Any, root: Path | None = None, *, allowed: Any = ()) -> None:
+    def __init__(self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None) -> None:
         self.plotter = plotter
+        self._look = look
         self.files = Files(root, allowed)
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}
@@ -238,13 +241,16 @@ class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""
+        settings = layers.defaults(loaded.kind)
+        if self._look is not None and loaded.kind in layers.LINES:
+            settings = layers.changed(loaded.kind, settings, "look", self._look, loaded.data)
         self._histograms = {key: found for key, found in self._histograms.items() if key[1] != loaded.source}
         layer = Layer(
             self._fresh_id(),
             loaded.kind,
             self._free_name(loaded.name if name is None else text(name, "name")),
             loaded.source,
-            settings=layers.defaults(loaded.kind),
+            settings=settings,
         )
         with self.store.with_new(loaded):
             return self._add(layer, f"open {layer.name}")
@@ -318,7 +324,7 @@ class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
         """
         layer = self.layer(layer_id)
         checked = layers.check(layer.kind, name, value, self.data(layer).data, self.volume_choices(layer))
-        settings = layers.changed(layer.kind, layer.settings, name, checked)
+        settings = layers.changed(layer.kind, layer.settings, name, checked, self.data(layer).data)
         self._change(replace(layer, settings=settings), f"{name} of {layer.name}", ("set", layer_id, name))
 
     def set_background(self, value: str) -> None:
@@ -341,7 +347,9 @@ class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
         if layer.source.ids is not None:
             chosen = layer.source.ids.array()[chosen]
         source = replace(layer.source, ids=Ids.of(chosen))
-        settings = {**layer.settings, "tube_radius": None, "opacity": 1.0}
+        settings: dict[str, Any] = dict(layer.settings)
+        for key, value in (("tube_radius", None), ("opacity", 1.0)):
+            settings = layers.changed(layer.kind, settings, key, value, self.data(layer).data)
         name = self._free_name(f"{len(layer.selected):,} of {layer.name}")
         return self._add(Layer(self._fresh_id(), "selection", name, source, settings=settings), f"keep {name}")
 

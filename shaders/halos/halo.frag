@@ -82,10 +82,10 @@ void main() {
     float edge = share * m;
     bool line = r <= edge;
 #if FEATURE_EDGES
-    // A line lies between its edges, a halo between the line's and its own.
-    float pixels = reach.y * over_w, away = length(from_start);
-    vec2 outwards = away > 1e-4 ? from_start / away : vec2(1.0, 0.0);
-    edges = packed_edges(outwards, ((line ? edge : m) - r) * pixels, (line ? 2.0 * edge : m - edge) * pixels, 0u);
+    // A line lies between its edges, a halo between the line's and its own. Both may be drawn wider than they are.
+    float pixels = m * over_w, away = length(from_start), narrower = (reach.x - own_reach(cue, w)) * pixels;
+    vec2 outwards = away > 1e-4 ? from_start / away : vec2(1.0, 0.0), outer = reach * pixels - narrower;
+    edges = packed_edges(outwards, (line ? outer.x : outer.y) - away, line ? 2.0 * outer.x : outer.y - outer.x, 0u);
 #endif
     float d = line ? 0.0 : halo_displacement * displacement(r);
     float back = d * (halo_depth_per_mm + halo_depth_swing / (w * (w + halo_w_per_mm * d)));

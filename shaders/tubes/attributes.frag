@@ -97,12 +97,24 @@ void main() {
         if (kind == 2u) normal = -normal;                          // the wall from inside
 #if FEATURE_EDGES
         // The silhouette is where the ray passes the axis as far away as the sphere is wide.
+        // Beside a tube that is slanted to the view the nearest sphere's middle lies farther along it, by its slope; farther
+        // still only at its round ends.
+        vec3 onward = normalize(tangent), aside = cross(ray.d, onward);
+        float slope = dot(ray.d, onward), flat_on = length(aside), off = dot(beside, aside) / max(flat_on, 1e-6);
+        float ahead = sqrt(max(dot(beside, beside) - off * off, 0.0)), least = abs(slope) * sqrt(max(p.w * p.w - off * off, 0.0));
+        if (flat_on > 0.1 && ahead < least + 0.1 * p.w) beside = (abs(off) > 1e-3 * p.w ? off : 1e-3 * p.w) / flat_on * aside;
         float passed = length(beside);
         vec3 outwards = passed > 1e-4 * p.w ? beside / passed : normalize(tube_ray_x);
         vec2 way = vec2(dot(window_gradient(0), outwards), dot(window_gradient(1), outwards))
                  - gl_FragCoord.xy * dot(window_gradient(3), outwards);
         float pixels = length(way), per_size = pixels * s.size / max(ray.depth.y + l * ray.rise.y, 1e-30);
-        out_edges = packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (p.w - passed) * per_size, 2.0 * p.w * per_size, 0u);
+        float own = p.w;
+        if (tube_own_least_over_w < tube_least_over_w) {
+            vec4 by = widened_by(int(hit.x), s);
+            float middle = 0.5 * (by.y + by.z);
+            own -= quadratic(vec4(second ? middle : by.x), vec4(second ? by.z : by.y), vec4(second ? by.w : middle), t).x;
+        }
+        out_edges = packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (own - passed) * per_size, 2.0 * own * per_size, 0u);
 #endif
     }
 #if FEATURE_EDGES

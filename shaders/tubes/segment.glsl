@@ -13,7 +13,7 @@
 // Bezier curves stay within the hull of their control points, and radii with all of theirs at least 0 stay so too.
 //
 // A tube thinner than the least width is widened to it: radii of control points grow to that of their depth, the same for
-// all segments that share a node.
+// all segments that share a node. Where edges are smoothed, that is a pixel at least, and what is between edges may be less.
 
 #include "frame/blocks.glsl"
 #include "tubes/block.glsl"
@@ -68,6 +68,18 @@ Segment segment_of(int index) {
     vec4 shift = vec4(middle, 0.0);
     return Segment(start + middle, size, (a1 - shift) / size, (a2 - shift) / size, (b2 - shift) / size,
                    (b3 - shift) / size, s.zw, ivec3(i.xyz) - ivec3(reference), middle);
+}
+
+// How much wider the control points of a segment are than the tube is, over its size.
+vec4 widened_by(int index, Segment s) {
+    uvec4 nodes = texelFetch(segment_texels, index);
+    float scale = tube_by_length != 0 ? s.size * safe_length(s.b3.xyz - s.a1.xyz) : 1.0, c = tube_control_share * scale;
+    float i = uintBitsToFloat(texelFetch(node_texels, 2 * int(nodes.x)).w), j = uintBitsToFloat(texelFetch(node_texels, 2 * int(nodes.y)).w);
+    float m_i = uintBitsToFloat(texelFetch(node_texels, 2 * int(nodes.x) + 1).w), m_j = uintBitsToFloat(texelFetch(node_texels, 2 * int(nodes.y) + 1).w);
+    vec4 drawn = s.size * vec4(s.a1.w, s.a2.w, s.b2.w, s.b3.w), own = vec4(i, i + c * m_i, j - c * m_j, j);
+    vec4 least = vec4(w_of(s.centre + s.size * s.a1.xyz), w_of(s.centre + s.size * s.a2.xyz),
+                      w_of(s.centre + s.size * s.b2.xyz), w_of(s.centre + s.size * s.b3.xyz));
+    return max(drawn - max(own, tube_own_least_over_w * max(least, 0.0)), 0.0) / s.size;
 }
 
 vec4 junction(Segment s) { return 0.5 * (s.a2 + s.b2); }

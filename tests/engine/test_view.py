@@ -35,7 +35,7 @@ def test_a_matrix_is_finite_and_square(matrix):
         View((5, 5), matrix)
 
 
-@pytest.mark.parametrize("width", [0.5, 0.0, -1.0, np.nan, np.inf])
+@pytest.mark.parametrize("width", [0.0, -1.0, np.nan, np.inf])
 def test_line_widths(width):
     with pytest.raises(ValueError, match="line_width"):
         FibletStyle(width)
@@ -78,3 +78,12 @@ def test_planes_are_signed_distances(camera):
     ]  # fmt: skip
     assert np.allclose(found, expected, atol=1e-3)
     assert (found >= np.array(expected) - 1e-5).all(), "planes may only stand further out"
+
+
+def test_what_is_thinner_than_a_pixel_is_widened_unless_pixels_are_to_be_exact():
+    assert FibletStyle(line_width=0.5).half_width == FibletStyle(line_width=1.0).half_width == 0.0
+    assert FibletStyle(line_width=0.5, exact=True).half_width == 0.25
+    assert FibletStyle(line_width=1.0, exact=True).half_width == 0.5
+    assert FibletStyle(line_width=3.0, exact=True).half_width == FibletStyle(line_width=3.0).half_width == 1.5
+    assert FibletStyle(radius=0.1).half_width == 0.5
+    assert 0.0 < FibletStyle(radius=0.1, exact=True).half_width < 1e-3

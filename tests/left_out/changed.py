@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from .what import What
 
+# Of how far apart lines lie: some of them are decoded.
+MEASURING = (
+    "codec.capsule_kernels, codec.decode_kernels, codec.decompress, codec.direction_kernels, codec.jit, codec.nearest, "
+    "codec.tangents, codec.turn_kernels, halos.spacing"
+)
+
 CHANGED = {
     "one colour": What(
         resolve="-colour_orientation, colour_solid",
@@ -120,7 +126,8 @@ CHANGED = {
         resolve="ambient_occlusion",
         passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
-        modules="engine.effects.ambient_occlusion",
+        packages="numba",
+        modules=f"{MEASURING}, engine.effects.ambient_occlusion",
     ),
     "depth cue": What(
         resolve="depth_cue",
@@ -130,14 +137,16 @@ CHANGED = {
         resolve="halo",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="engine.effects.halos",
+        packages="numba",
+        modules=f"{MEASURING}, engine.effects.halos",
     ),
     "ink": What(
         ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="-line_light, halo, ink",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        modules="engine.effects.halos",
+        packages="numba",
+        modules=f"{MEASURING}, engine.effects.halos",
     ),
     "clip: plane": What(
         features="CLIP_PLANES",
@@ -276,15 +285,18 @@ CHANGED = {
     ),
     "picture: refined": What(
         ran="""
-            effects/picture/copy.frag, effects/picture/coverage.frag, effects/picture/mean.frag,
-            effects/picture/visible_edges.frag
+            effects/picture/copy.frag, effects/picture/coverage.frag, effects/picture/line_tiles.frag,
+            effects/picture/line_tiles.vert, effects/picture/mean.frag, effects/picture/visible_edges.frag
         """,
-        features="EDGES, PICTURE_SAMPLES",
+        features="EDGES, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
         modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
     ),
     "picture: refined, moving": What(
-        ran="effects/picture/coverage.frag, effects/picture/visible_edges.frag",
+        ran="""
+            effects/picture/coverage.frag, effects/picture/line_tiles.frag, effects/picture/line_tiles.vert,
+            effects/picture/visible_edges.frag
+        """,
         features="EDGES, PICTURE_SAMPLES",
         buffers="coverage",
         modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",

@@ -37,6 +37,7 @@ def plain_of(name: str) -> str:
 
 
 COMPANIONS = {
-    "__mp_main__", "_cffi_backend", "cffi", "cython_runtime", "llvmlite", "numpy", "pycparser", "vtkmodules", "yaml",
+    "__mp_main__", "_cffi_backend", "_cyutility", "cffi", "charset_normalizer", "cython_runtime", "llvmlite", "numpy",
+    "pycparser", "scipy", "vtkmodules", "yaml",
 }  # fmt: skip
 """What comes with numba, NumPy and VTK, which not every machine has all of."""

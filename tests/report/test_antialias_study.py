@@ -54,10 +54,11 @@ def test_refined_pictures_are_the_nearest_to_the_mean_and_cost_as_many_frames(me
 
 def test_differences_are_of_pixels_that_show_something():
     picture, reference = np.zeros((4, 5, 3)), np.zeros((4, 5, 3))
-    assert antialias.differences(picture, reference) == {"rms": 0.0, "p99": 0.0, "max": 0.0}
+    assert antialias.differences(picture, reference) == {"rms": 0.0, "mean": 0.0, "p99": 0.0, "max": 0.0}
     picture[0, 0], reference[1, 1] = 30.0, 40.0
     found = antialias.differences(picture, reference)
     assert found["rms"] == pytest.approx(np.sqrt((30.0**2 + 40.0**2) / 2))
+    assert found["mean"] == 35.0
     assert found["max"] == 40.0
 
 

@@ -7,15 +7,19 @@ finished picture. ``shaders/effects/picture/coverage.frag`` says how.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 
 from ..gbuffer import GBuffer
-from .picture import Attachment, PictureEffects
+from .picture_passes import Attachment, PicturePasses
 
 __all__ = ["Coverage", "SmoothedLines"]
+
+TILE = 32
+"""Pixels of the side of the squares that are looked at, or are not since no line is near."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ class SmoothedLines:
     rectangle: tuple[int, int, int, int]
 
 
-class Coverage(PictureEffects):
+class Coverage(PicturePasses):
     """Smooths edges in one context.
 
     Parameters
@@ -47,7 +51,8 @@ class Coverage(PictureEffects):
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        super().__init__(ctx)
+        super().__init__(ctx, {"tile": TILE})
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
 
     def smooth(
         self,
@@ -57,7 +62,6 @@ class Coverage(PictureEffects):
         drawn: Sequence[SmoothedLines],
         *,
         alike: bool = False,
-        point: bool = False,
     ) -> None:
         """Smooth the edges of lines.
 
@@ -71,8 +75,6 @@ class Coverage(PictureEffects):
             Of every drawable in it.
         alike : bool
             Whether all samples of a pixel are the same, where it has several: then one of them is read.
-        point : bool
-            Whether pixels show what covers their middles, and no shares.
 
         Raises
         ------
@@ -86,23 +88,58 @@ class Coverage(PictureEffects):
             return
         size = width + 2, height + 2
         self._texture("shown", size, 4, "u4")
+        begin = left // TILE, low // TILE
+        tiles = -(-right // TILE) - begin[0], -(-top // TILE) - begin[1]
+        self._texture("tiles", (-(-width // TILE), -(-height // TILE)), 1, "f1")
         features = ["PICTURE_SAMPLES"] if colour.samples else []
-        uniforms = {"samples": 1 if alike else colour.samples, "origin": (x, y)}
-        outside = {"drawn": self._outside(colour, 4), "depths": self._outside(depth, 1)}
+        squares = {"start": (1, 1), "size": size, "border": 1}
+        uniforms = squares | {"samples": 1 if alike else colour.samples, "origin": (x, y)}
+        tiled = {"tiles": self._textures["tiles"]}
+        outside = tiled | {"drawn": self._outside(colour, 4), "depths": self._outside(depth, 1)}
         with self._plain_state():
+            occupied = self._framebuffer(("tiles",))
+            occupied.clear()
+            occupied.viewport = (*begin, *tiles)
+            for lines in drawn:
+                self._pass("line_tiles", occupied, {"keys": lines.buffer.depth}, {})
             target = self._framebuffer(("shown",))
-            target.viewport = (left, low, right - left + 2, top - low + 2)
+            target.viewport = (0, 0, *size)
             for index, lines in enumerate(drawn):
-                textures = {**outside, "keys": lines.buffer.depth, "edges": lines.buffer.edges}
-                state = {"narrower": lines.narrower, "first": index == 0}
-                self._pass("visible_edges", target, textures, uniforms | state, features)
+                seen = outside | {"keys": lines.buffer.depth, "edges": lines.buffer.edges}
+                thinner = {"narrower": lines.narrower, "first": index == 0}
+                self._tile_pass("visible_edges", target, seen, {**uniforms, **thinner}, features)
             picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
             try:
-                picture.viewport = (x + left, y + low, right - left, top - low)
-                shown, shift = {"shown": self._textures["shown"]}, {"shift": (1 - x, 1 - y)}
-                self._pass("coverage", picture, shown, shift, ["PICTURE_POINT"] if point else [])
+                picture.viewport = (x, y, width, height)
+                textures = tiled | {"shown": self._textures["shown"]}
+                squares = {"start": (0, 0), "size": (width, height), "border": 0}
+                self._tile_pass("coverage", picture, textures, {"shift": (1 - x, 1 - y), **squares})
             finally:
                 picture.release()
+
+    def _tile_pass(
+        self,
+        name: str,
+        target: moderngl.Framebuffer,
+        textures: Mapping[str, Any],
+        uniforms: Mapping[str, Any],
+        features: Iterable[str] = (),
+    ) -> None:
+        """Run a fragment stage on the pixels of squares that have lines."""
+        stages = {"vertex": "effects/picture/line_tiles.vert", "fragment": f"effects/picture/{name}.frag"}
+        program = self._programs.render(stages, features)
+        if program not in self._arrays:
+            self._arrays[program] = self._ctx.vertex_array(program, [])
+        self._use(program, target, textures, uniforms)
+        columns, rows = self._textures["tiles"].size
+        self._arrays[program].render(moderngl.TRIANGLES, vertices=6 * columns * rows)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
+        super().release()
 
 
 def _union(rectangles: Sequence[tuple[int, int, int, int]]) -> tuple[int, int, int, int]:

@@ -103,6 +103,17 @@ class PicturePasses:
     ) -> None:
         """Run a fragment stage of ``shaders/effects/picture`` on every pixel of a target's viewport."""
         program, array = self._programs.screen(f"effects/picture/{name}.frag", features)
+        self._use(program, target, textures, uniforms)
+        array.render(moderngl.TRIANGLES, vertices=3)
+
+    def _use(
+        self,
+        program: moderngl.Program,
+        target: moderngl.Framebuffer,
+        textures: Mapping[str, Any],
+        uniforms: Mapping[str, Any],
+    ) -> None:
+        """Get a program ready to draw into a target."""
         for unit, (sampler, texture) in enumerate(textures.items(), start=FIRST_UNIT):
             if sampler in program:
                 texture.use(unit)
@@ -111,7 +122,6 @@ class PicturePasses:
             if uniform in program:
                 program[uniform] = value
         target.use()
-        array.render(moderngl.TRIANGLES, vertices=3)
 
     @property
     def nbytes(self) -> int:

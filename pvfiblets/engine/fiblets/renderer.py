@@ -295,7 +295,7 @@ class FibletRenderer(Drawable[FibletStyle]):
             clipping=clipping or planes or bool(kept.cutting),
             planes=("CLIP_PLANES",) if planes else (),
             detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),
-            line_width=style.line_width,
+            line_width=0.0 if style.radius is not None else 2.0 * style.half_width,
             segment=shared.segment,
             occlusion=self._occlusion,
             kept=kept,

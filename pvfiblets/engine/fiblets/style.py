@@ -9,6 +9,9 @@ from ..view import Style, check_at_least
 
 __all__ = ["FibletStyle"]
 
+NO_WIDTH = 1e-3
+"""Pixels: a brush that reaches none. 0 stands for thin lines."""
+
 
 @dataclass(frozen=True)
 class FibletStyle(Style):
@@ -21,7 +24,8 @@ class FibletStyle(Style):
         streamline's first point), the name of an array in ``FibletSet.per_point``, or a volume to be sampled at the
         points (:mod:`pvfiblets.engine.fiblets.sampled_volume`). None costs nothing.
     line_width : float
-        Pixels, at least 1. Exactly 1 draws thin lines as OpenGL does; more draws round brushes of that diameter.
+        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, as OpenGL draws those of
+        one pixel. Where ``exact``, all are brushes.
     tolerance : float
         Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
         one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
@@ -32,13 +36,13 @@ class FibletStyle(Style):
         Millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each
         pixel shows the nearest point of their surface. ``line_width`` is then not looked at.
     min_width : float
-        Pixels, at least 1: tubes that are thinner are drawn as wide as that.
+        Pixels, at least 1: tubes that are thinner are drawn as wide as that, unless ``exact``.
 
     Raises
     ------
     ValueError
-        If the line width or the least width is below 1, the tolerance below 0, the radius not positive, or any of them
-        not finite.
+        If the line width is not above 0, the least width below 1, the tolerance below 0, the radius not positive, or
+        any of them not finite.
     """
 
     line_width: float = 1.0
@@ -48,7 +52,8 @@ class FibletStyle(Style):
     min_width: float = 1.0
 
     def __post_init__(self) -> None:
-        check_at_least("line_width", self.line_width, 1.0, "pixels")
+        if not (math.isfinite(self.line_width) and self.line_width > 0.0):
+            raise ValueError(f"line_width is {self.line_width}; give a finite number of pixels above 0")
         check_at_least("min_width", self.min_width, 1.0, "pixels")
         check_at_least("tolerance", self.tolerance, 0.0, "pixels")
         if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 0.0):
@@ -58,8 +63,8 @@ class FibletStyle(Style):
     def half_width(self) -> float:
         """Pixels that a line reaches to either side of its axis at least; 0 for thin lines."""
         if self.radius is not None:
-            return self.min_width / 2.0
-        return 0.0 if self.line_width == 1.0 else self.line_width / 2.0
+            return (NO_WIDTH if self.exact else self.min_width) / 2.0
+        return self.line_width / 2.0 if self.exact or self.line_width > 1.0 else 0.0
 
     @property
     def reach(self) -> float:
@@ -79,6 +84,6 @@ class FibletStyle(Style):
     @property
     def relief(self) -> str | None:
         """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
-        if not self.across or self.half_width == 0.0:
+        if not self.across or (self.radius is None and self.line_width <= 1.0):
             return None
         return "across" if self.radius is None else "normal"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
 
-
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):
     """How lines or points with halos become pixels.
@@ -41,7 +40,12 @@ class HaloDrawStyle(Style):
     @property
     def half_width(self) -> float:
         """Pixels that a line reaches to either side of its axis at least."""
-        return self.look.min_width / 2.0
+        return self.drawn_width / 2.0
+
+    @property
+    def drawn_width(self) -> float:
+        """Pixels that a line is drawn with at least: all of one, where edges say how much of it is line."""
+        return max(self.look.min_width, 1.0) if self.edges and not self.exact else self.look.min_width
 
     @property
     def reach(self) -> float:
@@ -119,11 +123,13 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
 
     def _draw(self, view: View, style: HaloDrawStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         look, vertices = style.look, self._vertices
+        if style.edges:  # what smooths all edges smooths these
+            look = replace(look, smooth=False)
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
         vertices.show_mask(look.n_tapered, look.t_tapered)
         target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
-        planes, beside = self._blocks.write(view, look, self._n)
+        planes, beside = self._blocks.write(view, look, self._n, style.drawn_width)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
             "HALO_CUE": look.width_cue > 0.0,

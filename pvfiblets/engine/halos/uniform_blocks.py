@@ -36,7 +36,8 @@ HALOS_BLOCK = UniformStruct(
     "Halos",
     Field("halo_line_reach", "float", "reach of w_line / 2"),
     Field("halo_border_reach", "float", "reach of (w_strip - w_line) / 2, the halo on either side of a line"),
-    Field("halo_least_half_width", "float", "pixels of half the least width of a line"),
+    Field("halo_least_half_width", "float", "pixels of half the least width that a line is drawn with"),
+    Field("halo_own_least_half_width", "float", "the same between its edges, at most as much"),
     Field("halo_place_scale", "float", "mm per integer of a place"),
     Field("halo_displacement", "float", "d_max"),
     Field("halo_depth_per_mm", "float", "1 - depth falls by this per mm, and"),
@@ -81,8 +82,16 @@ class HaloBlocks:
         self._corners = np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])
         self.buffers: dict[str, moderngl.Buffer] = {}
 
-    def write(self, view: View, look: HaloStyle, n_items: int) -> tuple[bool, bool]:
+    def write(self, view: View, look: HaloStyle, n_items: int, drawn_width: float) -> tuple[bool, bool]:
         """Bring all up to date and bind them.
+
+        Parameters
+        ----------
+        view : View
+        look : HaloStyle
+        n_items : int
+        drawn_width : float
+            Pixels that a line is drawn with at least, ``look.min_width`` or more.
 
         Returns
         -------
@@ -92,7 +101,7 @@ class HaloBlocks:
             Whether anything may lie before the near plane, beyond the far one or far beside the picture.
         """
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
-        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items))
+        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width))
         planes = clip_planes_block(view, 1.0, *self._place, 0.0)
         if planes is not None:
             self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
@@ -105,7 +114,7 @@ class HaloBlocks:
         inside = (np.abs(z) < w) & (np.maximum(np.abs(x), np.abs(y)) < BESIDE * w)
         return not inside.all()
 
-    def _block(self, view: View, look: HaloStyle, n_items: int) -> bytes:
+    def _block(self, view: View, look: HaloStyle, n_items: int, drawn_width: float) -> bytes:
         _, to_data, (x, y, z, w) = local_frame(view, *self._place)
         half_size = np.array(view.size) / 2.0
         axis, scale_of_w, perspective = _axis(z, w)
@@ -126,7 +135,8 @@ class HaloBlocks:
         return HALOS_BLOCK.pack(
             halo_line_reach=0.5 * look.line_width * pixels,
             halo_border_reach=0.5 * (look.strip_width - look.line_width) * pixels,
-            halo_least_half_width=0.5 * look.min_width,
+            halo_least_half_width=0.5 * drawn_width,
+            halo_own_least_half_width=0.5 * look.min_width,
             halo_place_scale=self._place[1][0],
             halo_displacement=look.max_displacement,
             halo_depth_per_mm=per_mm,

@@ -73,7 +73,12 @@ class TubeStyle(Style):
     @property
     def half_width(self) -> float:
         """Pixels that a tube reaches to either side of its axis at least."""
-        return self.min_width / 2.0
+        return self.drawn_width / 2.0
+
+    @property
+    def drawn_width(self) -> float:
+        """Pixels that a tube is drawn with at least: all of one, where edges say how much of it is tube."""
+        return max(self.min_width, 1.0) if self.edges and not self.exact else self.min_width
 
     @property
     def relief(self) -> str:

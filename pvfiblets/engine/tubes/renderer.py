@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = ["TubeRenderer"]
 
 
-
 class TubeRenderer(HitDrawable[TubeStyle]):
     """Draws one set of spline tubes; a view's region is not looked at.
 
@@ -108,10 +107,11 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             reach=self._inside.reach,
             middle=self._middle,
             min_width=style.min_width,
+            drawn_width=style.drawn_width,
             iterations=self.iterations,
             n_segments=self._tubes.n_segments,
         )
-        hollow = self._inside.touched(view, style.min_width)
+        hollow = self._inside.touched(view, style.drawn_width)
         common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
         rounds = self._rounds(common, cut=cut, hollow=hollow)
         self._nodes.bind()
@@ -128,9 +128,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer
 
-    def _render(
-        self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None
-    ) -> None:
+    def _render(self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None) -> None:
         """Draw all segments, or those that are listed."""
         target.hits_buffer.use()
         for chosen, sides in rounds:

@@ -22,7 +22,8 @@ SPLINES_BLOCK = UniformStruct(
     "Splines",
     Field("tube_place_scale", "float", "mm per integer of a place"),
     Field("tube_control_share", "float", "c"),
-    Field("tube_least_over_w", "float", "mm, over W, of half the least width"),
+    Field("tube_least_over_w", "float", "mm, over W, of half the least width that a tube is drawn with"),
+    Field("tube_own_least_over_w", "float", "the same between its edges, at most as much"),
     Field("tube_by_length", "int", "1 where derivatives are by length, 0 where by a segment's parameter"),
     Field("tube_search_steps", "int", "of a root search"),
     Field("tube_segments", "int", "of all tubes"),
@@ -52,7 +53,15 @@ class TubeBlocks:
         self.buffers: dict[str, moderngl.Buffer] = {}
 
     def write(
-        self, view: View, *, reach: float, middle: float, min_width: float, iterations: int, n_segments: int
+        self,
+        view: View,
+        *,
+        reach: float,
+        middle: float,
+        min_width: float,
+        drawn_width: float,
+        iterations: int,
+        n_segments: int,
     ) -> bool:
         """Bring all up to date and bind them; say whether a clip plane may touch anything.
 
@@ -63,8 +72,8 @@ class TubeBlocks:
             Mm that a tube may lie outside the box of the nodes.
         middle : float
             Share of a derivative between control points.
-        min_width : float
-            Pixels.
+        min_width, drawn_width : float
+            Pixels that a tube has at least, and is drawn with at least: as many, or more.
         iterations, n_segments : int
         """
         tubes = tubes_block(view, 1.0, *self._place)
@@ -73,7 +82,8 @@ class TubeBlocks:
         splines = SPLINES_BLOCK.pack(
             tube_place_scale=self._place[1][0],
             tube_control_share=middle,
-            tube_least_over_w=0.5 * min_width * pixel,
+            tube_least_over_w=0.5 * drawn_width * pixel,
+            tube_own_least_over_w=0.5 * min_width * pixel,
             tube_by_length=self._scaled,
             tube_search_steps=iterations,
             tube_segments=n_segments,

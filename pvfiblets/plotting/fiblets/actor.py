@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
 from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
+from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
@@ -96,7 +97,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
         self.opacity = theme.opacity if given["opacity"] is None else given["opacity"]
-        self._take(given)
+        if given["look"] is not None:
+            self._take_look(given["look"], but=given.named)
+        self._take({name: value for name, value in given.items() if name != "look"})
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
@@ -150,8 +153,10 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             their sum; ``fiblets_total``; ``pipeline``; ``culling``; ``share``: how many of the
             streamlines are drawn; ``fiblets``: of the last redraw ``total``, ``in_frustum``,
             ``drawn`` and ``visible``, ``None`` where not known; ``streamlines``: ``total`` and
-            ``shown``; ``criteria``, ``conditions``, ``clips``, ``groups_shown``; ``selection``:
-            how many streamlines, and what drawing them apart takes.
+            ``shown``; ``look``; ``colours``: of numbers their ``clim``, and the ``percentile`` of
+            them that it ends at by default, ``None`` where it ends at the largest; ``criteria``,
+            ``conditions``, ``clips``, ``groups_shown``; ``selection``: how many streamlines, and
+            what drawing them apart takes.
         """
         return {
             **added_up(self._mapper.explain()),
@@ -160,6 +165,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             "pipeline": self.pipeline_in_use,
             "culling": self.culling,
             "share": self.share,
+            "look": self.look,
+            "colours": self._explain_colours(),
             **self._explain_choices(),
         }
 
@@ -194,7 +201,26 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             self._draw(fiblets)
         self._colour_by(scalars, found)
 
+    def _explain_colours(self) -> dict[str, Any] | None:
+        if self._scalars is None or not self._scalars.mapped:
+            return None
+        chosen = self._settings.clim is not None
+        return {"clim": tuple(self.clim), "percentile": None if chosen else self._scalars.percentile}
+
     # How it is drawn ----------------------------------------------------------------------------
+
+    def _read_look(self) -> str | None:
+        return look_of({name: getattr(self, name) for name in PLAIN}, self._fiblets)
+
+    def _write_look(self, look: str | None) -> None:
+        if look is not None:
+            self._take_look(look)
+
+    def _take_look(self, look: str, but: Collection[str] = ()) -> None:
+        """Set all that a look says but some settings."""
+        for name, value in settings_of(look, self._fiblets).items():
+            if name not in but:
+                setattr(self, name, value)
 
     @property
     def pipeline_in_use(self) -> str | None:

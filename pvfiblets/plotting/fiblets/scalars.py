@@ -39,6 +39,9 @@ UNITS = {
 }
 UNNAMED = "Data"
 
+MOST = 98.0
+"""Percentile at which the default range of curvature ends: one sharp bend would leave all else the first colour."""
+
 _SAMPLE = 2000  # streamlines whose points give curvature its default range
 
 
@@ -55,7 +58,7 @@ class Scalars:
     values : array, optional
         (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
     range : tuple of float
-        Least and largest finite value.
+        Least and largest finite value; of what a few outliers make large, as curvature, 0 and a percentile.
     positive : float
         Least value above zero, where a logarithmic scale may begin.
     categories : dict, optional
@@ -64,6 +67,8 @@ class Scalars:
         To be sampled at the points, where ``kind`` is ``"point_scalar"``.
     has_alpha : bool
         Whether some of the colours of ``"point_rgba"`` have an alpha below 1.
+    percentile : float, optional
+        Of the values, at which the range ends where it does not end at the largest.
     """
 
     name: str
@@ -74,6 +79,7 @@ class Scalars:
     volume: VolumeSource | None = None
     categories: dict[int, str] | None = None
     has_alpha: bool = False
+    percentile: float | None = None
 
     @property
     def mapped(self) -> bool:
@@ -138,7 +144,7 @@ def find_scalars(
     if isinstance(scalars, VolumeSource):
         low, high = scalars.range
         return Scalars(
-            scalars.name, "point_scalar", None, (low, high), scalars.least_positive, scalars
+            scalars.name, "point_scalar", None, (low, high), positive=scalars.least_positive, volume=scalars
         )
     if isinstance(scalars, Distance):
         values = measure(fiblets, scalars)
@@ -149,7 +155,7 @@ def find_scalars(
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
-        return Scalars(scalars, "point_scalar", None, (low, high), smallest)
+        return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
     if scalars in fiblets.per_streamline:
         return per_streamline(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines)
     if scalars == ORIENTATION:
@@ -158,12 +164,13 @@ def find_scalars(
         return per_streamline("length", fiblets.lengths(), fiblets.n_streamlines)
     if scalars == "arc_length":
         longest = _longest(fiblets)
-        return Scalars("arc_length", "point_scalar", None, (0.0, longest or 1.0), fiblets.step)
+        return Scalars("arc_length", "point_scalar", None, (0.0, longest or 1.0), positive=fiblets.step)
     if scalars == "curvature":
         least, most = _curvature_range(fiblets)
-        return Scalars("curvature", "point_scalar", None, (least, most), most / 1e3)
+        return Scalars("curvature", "point_scalar", None, (least, most), most / 1e3, percentile=MOST)
     if scalars in COMPUTED["streamline"]:
-        return per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
+        found = per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
+        return without_outliers(found) if scalars == "mean_curvature" else found
     if scalars == GROUP:
         return by_group(fiblets)
     if scalars == DENSITY:
@@ -192,6 +199,14 @@ def by_group(fiblets: FibletSet) -> Scalars:
     found = per_streamline(GROUP, numbers, fiblets.n_streamlines)
     names = dict(enumerate(fiblets.groups))
     return replace(found, range=(-0.5, len(names) - 0.5), categories=names)
+
+
+def without_outliers(scalars: Scalars) -> Scalars:
+    """Return numbers that are 0 or more, with a range from 0 to their percentile `MOST`."""
+    values = scalars.values
+    finite = np.zeros(0) if values is None else values[np.isfinite(values)]
+    most = float(np.percentile(finite, MOST)) if finite.size else 0.0
+    return replace(scalars, range=(0.0, most), percentile=MOST) if most > 0.0 else scalars
 
 
 def missing_message(fiblets: FibletSet, name: str) -> str:
@@ -230,7 +245,7 @@ def per_streamline(name: str, values: Any, n_streamlines: int, *, whole: str = "
             "streamline_scalar",
             numbers,
             (float(finite.min()), float(finite.max())),
-            float(positive.min()) if len(positive) else 1e-6,
+            positive=float(positive.min()) if len(positive) else 1e-6,
         )
     if values.shape[1] not in (3, 4):
         raise ValueError(
@@ -278,4 +293,4 @@ def _curvature_range(fiblets: FibletSet) -> tuple[float, float]:
     cross = np.linalg.norm(np.cross(moves[:-1], moves[1:]), axis=1)
     turn = np.arctan2(cross, np.einsum("ij,ij->i", moves[:-1], moves[1:]))[both]
     curvature = turn / (0.5 * (sizes[1:] + sizes[:-1]))[both]
-    return 0.0, float(np.percentile(curvature, 98.0)) or 1.0
+    return 0.0, float(np.percentile(curvature, MOST)) or 1.0

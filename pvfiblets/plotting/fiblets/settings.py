@@ -6,10 +6,11 @@ from dataclasses import replace
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effect, Switch
 from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
-STYLES = ("surface", "halo", "density")
+STYLES = ("surface", "halo", "ink", "density")
 TONES = ("log", "sqrt", "linear")
 ALL = "all"
 """What :attr:`FibletSettings.style` may be."""
@@ -45,6 +46,21 @@ def _line_width(name: str, width: Any) -> float:
 class FibletSettings(Settings):
     """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that is set, in the order of the page."""
 
+    look: Setting[str | None] = Setting(
+        None,
+        "Name of settings that give a finished picture together; ``None`` where they are no look.\n\n"
+        "``'plain'``: thin lines in gentle light. ``'illuminated'``: lines that shine and lie in each\n"
+        "other's shade. ``'tubes'``: round tubes. ``'ink'``: a drawing in black or white, whose gaps show\n"
+        "what lies behind. ``'studio'``: thick tubes in soft shade, which fade with the distance.\n\n"
+        "Setting it sets line width, style, tubes, opacity, light and shading, no colours; widths follow\n"
+        "the distance between lines. Change any of these afterwards.",
+        argument="Settings that give a finished picture together: ``\"plain\"``, ``\"illuminated\"``, ``\"tubes\"``, "
+        "``\"ink\"`` or ``\"studio\"``. Other arguments go before it.",
+        kind="str | None",
+        header='{"plain", "illuminated", "tubes", "ink", "studio"}, optional',
+        where=LATER,
+        check=check_look,
+    )
     color = shared.color("One colour for all. ``scalars`` go before it.")
     cmap = shared.CMAP
     clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_clim_span))
@@ -115,10 +131,11 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
-        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, or ``'density'``, all\n"
+        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, ``'ink'``, black on a\n"
+        "light background and white on a dark one, in halos of the background's colour, or ``'density'``, all\n"
         "lines that lie on each other.\n\n"
-        "``'halo'`` is a drawing in ink (Everts et al. 2009), best on white: it draws all\n"
-        "lines black and without light, and sets default halos where none are. Colours and\n"
+        "``'halo'`` and ``'ink'`` are drawings in ink (Everts et al. 2009), ``'halo'`` best on white:\n"
+        "all lines are of one colour and without light, and have default halos. Colours and\n"
         "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.\n\n"
         "``'density'`` adds up light: a pixel has the mean colour of all streamlines in it, the\n"
         "brighter the more there are (``density_tone``), over what is behind them. The second number of\n"
@@ -126,11 +143,12 @@ class FibletSettings(Settings):
         "picture holds. Lines are a pixel wide, without light. With ``scalars=\"density\"`` a colour map and a\n"
         "scalar bar tell streamlines per pixel.",
         argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in "
-        "white halos.",
+        "white halos, ``\"ink\"`` such as suit the background.",
         choices=STYLES,
         where=LATER,
-        row=Row("Style", "Halo: black lines in white halos, best on a white background.", "Lines",
-                choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("density", "density")]),
+        row=Row("Style", "Ink: lines in one colour, in halos that show depth.", "Lines",
+                choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("ink", "ink on any ground"),
+                         ("density", "density")]),
     )  # fmt: skip
     density_tone: Setting[str] = Setting(
         TONES[0],
@@ -188,10 +206,10 @@ class FibletSettings(Settings):
         "Gaps that lines cut into what is behind them, the wider the farther it is behind.\n\n"
         "Depth-dependent halos of Everts et al. 2009.\n\n"
         "``width`` (mm): from a line's edge to its halo's, at most 24 pixels; ``None``, the default,\n"
-        "is a 250th of the data's diagonal, or 2.5 pixels if they are more. ``depth`` (mm): by how\n"
-        "much the halo's edge lies behind its line; lines side by side whose depths differ by less do\n"
-        "not cut each other. ``None``, the default, is a 20th of the diagonal. ``color``\n"
-        "(``'white'``): ``'background'`` for the renderer's.",
+        "is half the distance between lines, but from 1.25 to 5 pixels. ``depth`` (mm): by how much\n"
+        "the halo's edge lies behind its line; lines side by side whose depths differ by less do not\n"
+        "cut each other. ``None``, the default, is 8 times the width. ``color`` (``'white'``):\n"
+        "``'background'`` for the renderer's.",
         argument=False,
         where=Effect("pvfiblets.mappers.shading:Halos"),
         row=Row("Halos", "Gaps around lines, the wider the farther behind things are.", "Shading",

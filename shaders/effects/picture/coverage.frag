@@ -12,10 +12,11 @@
 //
 // Only what lies nearer than the pixel's own covers a pixel without a line: lines do not run over a mesh that hides them.
 //
+// Thin lines are drawn up to a pixel beside where they run (fiblets/segments/thin_line_rule.glsl): a pixel without a line whose
+// middle the band of one next to it covers takes that one for its own in all four quarters.
+//
 //   shown      of visible_edges.frag, with a border of one texel
 //   shift      from a pixel of the target to one of it
-//
-// FEATURE_PICTURE_POINT: all samples lie in the pixel's middle.
 //
 // Colours are averaged as they are displayed, as supersampling does. Shares are counted in twelfths of a sample, and a sample is
 // a byte of a word: sums of all channels and samples are sums of words.
@@ -29,15 +30,10 @@ uniform ivec2 shift;
 out vec4 colour;
 
 // In 16ths of a pixel, quarter by quarter: upper right, upper left, lower right, lower left.
-#if FEATURE_PICTURE_POINT
-const vec4 X0 = vec4(0.0), X1 = X0, X2 = X0, X3 = X0, Y0 = X0, Y1 = X0, Y2 = X0, Y3 = X0;
-#else
 const vec4 X0 = vec4(1.5, 2.5, 5.5, 6.5), X1 = vec4(-2.5, -1.5, -5.5, -7.5);
 const vec4 Y0 = vec4(1.5, 5.5, 3.5, 7.5), Y1 = vec4(2.5, 6.5, 4.5, 0.5);
 const vec4 X2 = vec4(4.5, 3.5, 0.5, 7.5), X3 = vec4(-0.5, -4.5, -3.5, -6.5);
 const vec4 Y2 = vec4(-0.5, -4.5, -6.5, -3.5), Y3 = vec4(-2.5, -1.5, -5.5, -7.5);
-
-#endif
 
 const uint EVERY = 0x01010101u, SAMPLE = 12u, PIXEL = 16u * SAMPLE;
 const int OWN = 4;
@@ -85,6 +81,7 @@ uint lines[9];
 #define EIGHT(what) what(0, -1, -1) what(1, 0, -1) what(2, 1, -1) what(3, -1, 0) what(5, 1, 0) \
     what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
 #define FETCH(k, right, up) around[k] = texelFetch(shown, pixel + ivec2(right, up), 0);
+
 #define BEGIN(k, right, up) \
     bands[k] = band_of(unpacked_edges(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[OWN].x)); \
     behind[k] = line && around[k].y == 0u && around[k].x > around[OWN].x ? 1u : 0u; \
@@ -95,7 +92,7 @@ uint lines[9];
 #define QUARTER(right, up, a, b, c) \
     { uint m = covered(bands[OWN], right, up) & within(own, right, up), ma = covered(bands[a], right, up), mb = covered(bands[b], right, up), \
            mc = covered(bands[c], right, up), open = EVERY & ~((m | ma) | (mb | mc)), left = count(open); \
-      bool a_first = around[a].x < around[OWN].x, b_first = around[b].x < around[OWN].x, c_first = around[c].x < around[OWN].x, \
+      bool a_first = around[a].x < depth, b_first = around[b].x < depth, c_first = around[c].x < depth, \
            ab = around[a].x <= around[b].x, ac = around[a].x <= around[c].x, bc = around[b].x <= around[c].x; \
       visible[OWN] += m & ~((a_first ? ma : 0u) | (b_first ? mb : 0u) | (c_first ? mc : 0u)); \
       visible[a] += ma & ~((a_first ? 0u : m) | (ab ? 0u : mb) | (ac ? 0u : mc)); \
@@ -107,6 +104,8 @@ uint lines[9];
       shares[b] += left * (backs > 0u ? behind[b] : lines[b]); \
       shares[c] += left * (backs > 0u ? behind[c] : lines[c]); \
       shares[OWN] += n == 0u ? left : 0u; }
+#define ADOPT(k) \
+    if (abs(bands[k].away) <= bands[k].size && around[k].x < depth) { depth = around[k].x; bands[OWN] = bands[k]; of_own = around[k].z; }
 #define SHARE(k, right, up) shares[k] += SAMPLE * count(visible[k]);
 #define ADD(k, right, up) \
     red_blue += shares[k] * (around[k].z & 0xFF00FFu); \
@@ -122,13 +121,16 @@ void main() {
     EIGHT(BEGIN)
     bands[OWN] = Band(own.n / 16.0, 0.5 * own.w - own.e, line ? 0.5 * own.w : -1.0);
     visible[OWN] = shares[OWN] = 0u;
+    uint depth = around[OWN].x, of_own = around[OWN].z;
+    if (!line) { ADOPT(1) ADOPT(3) ADOPT(5) ADOPT(7) }
     QUARTER(X0, Y0, 5, 7, 8)
     QUARTER(X1, Y1, 3, 7, 6)
     QUARTER(X2, Y2, 5, 1, 2)
     QUARTER(X3, Y3, 3, 1, 0)
-    NINE(SHARE)
-    if (shares[OWN] == PIXEL) discard;
-    uint red_blue = 0u, green_alpha = 0u;
+    EIGHT(SHARE)
+    uint mine = SAMPLE * count(visible[OWN]);
+    if (shares[OWN] + (line ? mine : 0u) == PIXEL) discard;
+    uint red_blue = mine * (of_own & 0xFF00FFu), green_alpha = mine * ((of_own >> 8u) & 0xFF00FFu);
     NINE(ADD)
     colour = vec4(red_blue & 0xFFFFu, green_alpha & 0xFFFFu, red_blue >> 16u, green_alpha >> 16u) / (255.0 * float(PIXEL));
 }

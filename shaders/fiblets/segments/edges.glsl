@@ -17,7 +17,7 @@ uint capsule_edges(vec2 centre, vec2 run, float r) {
 // hit: what the pixel shows; c0, c1: homogeneous window coordinates of the segment's ends.
 //
 // The ray passes the axis nearer than r by what `beside`, the part of the normal across the ray, is shorter than 1; where the
-// body is a cylinder, across the axis as well. Tubes thinner than a pixel are lines of that width.
+// body is a cylinder, across the axis as well. Tubes thinner than a pixel are lines, drawn wider than their edges are apart.
 uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
     vec3 d = normalize(tube_ray + tube_perspective * (pixel.x * tube_ray_x + pixel.y * tube_ray_y)), face = d;
     if (hit.t > 0.0 && hit.t < 1.0) {
@@ -31,7 +31,7 @@ uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
     vec2 way = vec2(dot(window_gradient(0), out_of), dot(window_gradient(1), out_of)) - pixel * dot(window_gradient(3), out_of);
     float pixels = length(way), r = tube_radius * pixels / max(c0.w + dot(window_gradient(3), at), 1e-30);
     Outline outline;
-    if (r < half_line_width && outline_of(c0, c1, outline)) return capsule_edges(pixel - outline.a.xy, outline.b.xy - outline.a.xy, half_line_width);
+    if (r < half_line_width && outline_of(c0, c1, outline)) return capsule_edges(pixel - outline.a.xy, outline.b.xy - outline.a.xy, r);
     return packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (1.0 - share) * r, 2.0 * r, 0u);
 }
 #endif

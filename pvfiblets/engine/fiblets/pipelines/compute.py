@@ -141,7 +141,7 @@ class ComputePipeline:
         self._drop_raster()
         self.planned = True
         if self._software:
-            self._shares = _shares(1.0 if request.tubes else request.line_width, request.segment)
+            self._shares = _shares(request.line_width, request.segment)
         target, occlusion = request.target, request.occlusion
         for name, index in IMAGES.items():
             if (texture := getattr(target, name)) is not None:
@@ -298,7 +298,7 @@ class ComputePipeline:
         self._plan(number, request.chunks, refined)
         for part, features in request.classes:
             program = self._program(stage, [*features, *self._int64])
-            for share in self._shares if request.line_width > 1.0 else self._shares[:1]:
+            for share in self._shares if request.line_width > 0.0 else self._shares[:1]:
                 self._set(program, drawing=number, part=part, share=share)
                 self._run_listed(program, number, part, request)
                 if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
@@ -373,7 +373,7 @@ def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
     An invocation draws ``32 * GROUP_WORDS / GROUP_SIZE`` fiblets or fewer, and waits for its neighbours' segments.
     Over each pixel of a segment's longer side stand at most sqrt(2) widths, 1.2 on average.
     """
-    if line_width == 1.0:
+    if line_width == 0.0:
         return [(0, MAX_POINTS)]
     fiblets = 32 * GROUP_WORDS // GROUP_SIZE
     count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment + line_width)))

@@ -43,7 +43,7 @@ class DrawRequest:
     detail : tuple of str
         ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
     line_width : float
-        Pixels; not looked at where there are tubes.
+        Pixels of round brushes; 0 for thin lines and for tubes.
     segment : float
         Pixels that the longest segments in the picture take, roughly.
     occlusion : Occlusion, optional
@@ -79,7 +79,7 @@ class DrawRequest:
     @property
     def wide(self) -> tuple[str, ...]:
         """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
-        wide = ("WIDE_LINES",) if self.line_width > 1.0 or self.tubes else ()
+        wide = ("WIDE_LINES",) if self.line_width > 0.0 or self.tubes else ()
         return (*wide, *self.tubes, *self.across)
 
     @property
