@@ -36,7 +36,8 @@ class TranslucencyStudy:
     notes = (
         "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *all*: the nearest "
         "line as it is, the others in slices by how far behind it they are. *layers*: so many of the nearest lines, "
-        "sorted. *times opaque*: beside a frame of the same window with opacity 1.",
+        "sorted. "
+        "*times opaque*: beside a frame of the same window with opacity 1.",
         "The reference are 64 layers, sorted exactly. Errors are root mean squares over the pixels that hold 64 lines "
         "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
     )

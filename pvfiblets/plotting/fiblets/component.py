@@ -80,8 +80,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             What colours the streamlines: ``"orientation"`` (the default: the absolute value of
             the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
             ``"arc_length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"``,
-            ``"group"``; ``"density"``, streamlines per pixel), the name of per-streamline or per-point data, or an array with one
-            value per streamline or per point, or one colour (3 or 4 columns) per streamline.
+            ``"group"``; ``"density"``, streamlines per pixel), the name of per-streamline or
+            per-point data, or an array with one value per streamline or per point, or one colour
+            (3 or 4 columns) per streamline.
             ``"coding_error"`` shows how far each point is from where it was, if ``source`` is not
             compressed yet; ``regions.Distance(…)`` how far it is from a region or position.
 

@@ -11,9 +11,13 @@ from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effe
 from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
 STYLES = ("surface", "halo", "ink", "density")
-TONES = ("log", "sqrt", "linear")
-ALL = "all"
 """What :attr:`FibletSettings.style` may be."""
+
+TONES = ("log", "sqrt", "linear")
+"""What :attr:`FibletSettings.density_tone` may be."""
+
+ALL = "all"
+"""Of :attr:`FibletSettings.transparency`."""
 
 
 def _radii(data: Any) -> tuple[float, float]:
