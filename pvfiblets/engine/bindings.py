@@ -24,6 +24,7 @@ __all__ = [
     "FIBLET_DATA",
     "FIBLET_ROUNDS",
     "FIRST_UNIT",
+    "GATHERING",
     "HALOS",
     "HIT_KEYS",
     "IMAGES",
@@ -37,6 +38,7 @@ __all__ = [
     "REGIONS",
     "SAMPLED",
     "STORAGE",
+    "SUM_IMAGES",
     "TUBES",
     "TUBE_PROBE",
     "VOLUMES",
@@ -135,10 +137,17 @@ FIBLET_DATA = Scope(
 MASKS = Scope("filters", {"streamline_mask": 24, "point_mask": 25})
 SAMPLED = Scope("volumes that colour streamlines", {"sampled_volume": 28})
 PEELING = Scope("depth peeling", {"peeled_depth": 29, "peeled_ids": 30, "peeled_position": 31})
+GATHERING = Scope(
+    "lines added up",
+    {
+        "nearest_depth": 32, "nearest_owner": 33, "nearest_ids": 34, "nearest_position": 35, "outside_depth": 36,
+        "paint_colours": 37, "gathered": 38, "slice_keys": 39, "paint_opacities": 40,
+    },
+)  # fmt: skip
 FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14})
 BETWEEN_ROUNDS = Scope("the pass between rounds", {"depth_key": 13, "owner": 14, "depth": 15})
 LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, "across": 15})
-together(FIBLET_DATA, MASKS, SAMPLED, PEELING, REGIONS, CULLING, FIBLET_ROUNDS)
+together(FIBLET_DATA, MASKS, SAMPLED, PEELING, GATHERING, REGIONS, CULLING, FIBLET_ROUNDS)
 
 # Tubes.
 TUBES = Scope("tubes", {"hits": 10, "node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19})
@@ -190,6 +199,8 @@ IMAGES = Scope(
     last=7,
 )
 
+SUM_IMAGES = Scope("images of sums", {"gathered": 0, "slice_keys": 1, "nearest_owner": 2}, first=0, last=7)
+
 BLOCKS = Scope(
     "uniform blocks",
     {
@@ -207,7 +218,7 @@ CONSTANTS = {
         for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE}.items()
     },
     **{f"items_{name}": number for name, number in ITEM_STORAGE.items()},
-    **{f"image_{name}": number for name, number in IMAGES.items()},
+    **{f"image_{name}": number for name, number in {**IMAGES, **SUM_IMAGES}.items()},
     **{f"unit_{name}": number for name, number in {**PEELING, **SAMPLED}.items()},
 }
 """What sources call these numbers."""

@@ -11,9 +11,11 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 
-Mode = Literal["orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba"]
+Mode = Literal[
+    "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"
+]  # fmt: skip
 
-_TABLE_MODES = ("streamline_scalar", "point_scalar")
+_TABLE_MODES = ("streamline_scalar", "point_scalar", "pixel_count")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
 
@@ -43,6 +45,8 @@ class Colouring:
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
         ``'point_scalar'``: `source`, a number per point, through `lut`.
         ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes only.
+        ``'pixel_count'``: how many lines a pixel holds, through `lut`; of fiblets, with a
+        `pvfiblets.mappers.density.Density`.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
@@ -53,8 +57,8 @@ class Colouring:
     lut : numpy.ndarray, optional
         (k, 4) uint8 RGBA, lowest value first. Greys by default.
     clim : tuple of 2 floats, optional
-        Values of the table's two ends. Needed by ``'point_scalar'``; by default the finite range of
-        `values`.
+        Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range
+        of `values`.
     log_scale : bool, default False
         Spread the table over the logarithms; `clim` must be positive.
     nan_color : sequence of 3 or 4 floats, default (0.5, 0.5, 0.5, 1)
@@ -63,6 +67,11 @@ class Colouring:
         For values outside `clim`; by default the colour of the nearer end.
     has_alpha : bool, default False
         Whether some colour of ``'point_rgba'`` has an alpha below 1.
+    opacities : numpy.ndarray, optional
+        (n_streamlines,) numbers from 0 to 1; NaN is 0.
+    opacity_source : str, optional
+        Name of a stored per-point array of opacities from 0 to 1; of fiblets. With ``'point_scalar'`` it is `source`:
+        one number at points goes with a picture.
 
     Raises
     ------
@@ -81,6 +90,8 @@ class Colouring:
     below_color: tuple[float, ...] | None = None
     above_color: tuple[float, ...] | None = None
     has_alpha: bool = False
+    opacities: npt.NDArray[Any] | None = None
+    opacity_source: str | None = None
 
     def __post_init__(self) -> None:
         """Check the fields and bring them into one form."""
@@ -99,6 +110,11 @@ class Colouring:
             raise ValueError(f"mode 'point_rgba' needs source: the name of the tubes' colours, not {self.source!r}")
         if self.mode in _TABLE_MODES:
             self._check_table()
+        if self.opacity_source is not None and self.mode == "point_scalar" and self.source != self.opacity_source:
+            raise ValueError(
+                f"opacities of points are {self.opacity_source!r}, but {self.source!r} colours points: one number at "
+                "points goes with a picture; colour by the same, or by streamline, or give one opacity per streamline"
+            )
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
@@ -126,7 +142,7 @@ class Colouring:
             if self.clim is None:
                 self._set("clim", _finite_range(values, positive=self.log_scale))
         if self.clim is None:
-            raise ValueError("mode 'point_scalar' needs clim: the values of the table's two ends")
+            raise ValueError(f"mode {self.mode!r} needs clim: the values of the table's two ends")
         low, high = (float(end) for end in self.clim)
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise ValueError(f"clim is {self.clim!r}; expected two finite numbers in rising order")
@@ -144,15 +160,20 @@ class Colouring:
             "streamline_scalar": ["colour_streamline"],
             "point_scalar": ["colour_point_scalar"],
             "point_rgba": ["colour_point_rgba"],
+            "pixel_count": ["colour_point_scalar", "density_value"],
         }[self.mode]
-        if self.mode == "point_scalar" and self.log_scale:
+        if self.mode in ("point_scalar", "pixel_count") and self.log_scale:
             names = [*names, "scale_logarithm"]
+        if self.opacities is not None:
+            names = [*names, "opacity_streamline"]
+        if self.opacity_source is not None:
+            names = [*names, "opacity_value" if self.mode == "point_scalar" else "opacity_point"]
         return frozenset(names)
 
     @property
     def point_source(self) -> str | VolumeSource | None:
         """Per-point value or colour that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode in ("point_scalar", "point_rgba") else None
+        return self.source if self.mode in ("point_scalar", "point_rgba") else self.opacity_source
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -168,11 +189,12 @@ class Colouring:
         above = self.lut[-1] if self.above_color is None else _bytes(self.above_color)
         return np.concatenate([self.lut, [below, above, _bytes(self.nan_color)]]).astype(np.uint8)
 
-    def scaled_range(self) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale)."""
-        if self.lut is None or self.clim is None:
+    def scaled_range(self, clim: tuple[float, float] | None = None) -> tuple[float, float, float]:
+        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale), or of other ends."""
+        clim = self.clim if clim is None else clim
+        if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")
-        low, high = np.log10(self.clim) if self.log_scale else self.clim
+        low, high = np.log10(clim) if self.log_scale else clim
         span = float(high) - float(low)
         return float(low), float(high), len(self.lut) / span if span > 0.0 else 3.0e38
 
@@ -220,6 +242,13 @@ class Colouring:
         opaque = np.full((len(self.values), 1), 255, dtype=np.uint8)
         return np.hstack([self.values, opaque])
 
+    def streamline_opacities(self) -> npt.NDArray[np.uint8]:
+        """Return (n_streamlines, 4) uint8, whose alpha is the opacity."""
+        values = np.nan_to_num(np.asarray(self.opacities, np.float64))
+        found = np.zeros((len(values), 4), np.uint8)
+        found[:, 3] = np.round(255.0 * np.clip(values, 0.0, 1.0))
+        return found
+
     def check_count(self, n_streamlines: int) -> None:
         """Raise unless values per streamline are as many as streamlines.
 
@@ -228,6 +257,11 @@ class Colouring:
         ValueError
             They are not.
         """
+        if self.opacities is not None and len(self.opacities) != n_streamlines:
+            raise ValueError(
+                f"there are {len(self.opacities)} opacities for {n_streamlines} streamlines; give one per streamline, "
+                "empty ones included"
+            )
         if "colour_streamline" not in self.features or self.values is None:
             return
         if len(self.values) != n_streamlines:
@@ -238,6 +272,8 @@ class Colouring:
 
     def translucent(self) -> bool:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
+        if self.opacities is not None or self.opacity_source is not None:
+            return True
         if self.mode == "streamline_rgba" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
         if self.mode == "point_rgba":

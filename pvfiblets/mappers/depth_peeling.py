@@ -18,6 +18,7 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 
 _BESIDE = {
     "colour_point_scalar": "layers_value",
+    "opacity_point": "layers_opacity",
     "tube_normal": "layers_normal",
     "tube_shading": "layers_across",
 }
@@ -122,7 +123,7 @@ class Layers(ShaderEffect):
 
 def layers_of(effects: Iterable[Any]) -> int:
     """Return how many layers a mapper's geometry must have."""
-    return max((effect.count for effect in effects if isinstance(effect, Layers)), default=1)
+    return max((getattr(effect, "count", 1) for effect in effects), default=1)
 
 
 def with_layers(features: frozenset[str]) -> frozenset[str]:

@@ -101,6 +101,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._put(drawn)
         self.AddObserver("UpdateShaderEvent", _update_shader)
 
+    @property
+    def _has_edges(self) -> bool:
+        """Whether edges of the picture are those of the nearest lines, and known."""
+        return self._HAS_EDGES and all(getattr(effect, "smooth_edges", True) for effect in self._effects.values())
+
     # What is drawn, and how
 
     def _put(self, drawn: Any) -> None:
@@ -223,7 +228,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     @property
     def _translucent(self) -> bool:
         """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
-        return self._colouring.translucent()
+        effects = self._effects.values()
+        return self._colouring.translucent() or any(getattr(effect, "translucent", False) for effect in effects)
 
     # Drawing
 
@@ -269,7 +275,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
         )
         style = self._whole_style(renderer, viewport)
-        smoother = smoothers.get(renderer.GetAddressAsString("")) if self._HAS_EDGES else None
+        smoother = smoothers.get(renderer.GetAddressAsString("")) if self._has_edges else None
         narrower = self._narrower(pixel_scale(renderer, viewport))
         if smoother is not None:  # edges in every frame: what wants them in some only would be made anew all the time
             style = replace(style, edges=True, exact=smoother.sample)
@@ -281,8 +287,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             if engine.needs_outside(view, style):
                 outside = self._outside(context, slot, renderer, viewport)
             buffer = engine.render(view, style, outside=outside)
-            draw = Draw(context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
+            draw = Draw(
+                context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor,
+                self._colouring, dict(textures),
+            )  # fmt: skip
             textures |= prepare_effects(slot, self._effects, draw)
             units = context.texture_units(len(textures))
             for unit, texture in zip(units, textures.values(), strict=True):
@@ -310,7 +319,8 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     ) -> Any:
         """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
         actor = self.actor
-        if self._layers == 1 and actor is not None and others_before(renderer, actor):
+        summed = any(getattr(effect, "translucent", False) for effect in self._effects.values())
+        if self._layers == 1 and not summed and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 

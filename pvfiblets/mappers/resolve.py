@@ -24,7 +24,9 @@ from pvfiblets.engine.shaders import read_shader
 
 FEATURES = (
     "gbuffer",
+    "sums",
     "layers",
+    "slices",
     "normal",
     "tube_shading",
     "tube_normal",
@@ -36,6 +38,13 @@ FEATURES = (
     "colour_point_rgba",
     "colour_point_scalar",
     "layers_value",
+    "density_value",
+    "opacity_streamline",
+    "opacity_point",
+    "opacity_value",
+    "layers_opacity",
+    "density",
+    "slices_colour",
     "scale_logarithm",
     "highlight",
     "illuminated",

@@ -8,7 +8,7 @@ module did not exist.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -42,6 +42,10 @@ class Draw:
         What is drawn.
     actor : vtkActor
         Of the mapper.
+    colouring : Colouring
+        Where its colours come from.
+    textures : mapping of str to Any
+        Of the colours, by the names of their samplers.
     """
 
     ctx: Any
@@ -53,6 +57,8 @@ class Draw:
     renderer: Any
     fiblets: Any
     actor: Any
+    colouring: Any = None
+    textures: Mapping[str, Any] = field(default_factory=dict)
 
 
 class GpuResource(Protocol):
@@ -96,6 +102,12 @@ class ShaderEffect:
     """What most effects have in common: nothing of their own on the GPU, and no wishes to the engine."""
 
     features: ClassVar[frozenset[str]]
+
+    translucent: ClassVar[bool] = False
+    """Whether VTK must draw the actor in its translucent pass, whatever its opacity is."""
+
+    smooth_edges: ClassVar[bool] = True
+    """Whether the edges of the nearest lines are edges of the picture."""
 
     @property
     def style(self) -> Mapping[str, Any]:

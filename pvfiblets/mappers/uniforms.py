@@ -16,17 +16,21 @@ def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) ->
     """Return the textures of the G-buffer and of the colours by the names of their samplers."""
     textures = {"fibletDepthMap": buffer.depth, "fibletIdMap": buffer.ids}
     features = colouring.features
-    name = None
+    lists: dict[str, Any] = {}
     if "colour_streamline" in features:
-        name, pixels = "fibletStreamlineColours", colouring.streamline_colours
+        lists["fibletStreamlineColours"] = colouring.streamline_colours
     elif "colour_point_scalar" in features:
         textures["fibletPositionMap"] = buffer.position
-        name, pixels = "fibletTable", colouring.table
+        lists["fibletTable"] = colouring.table
     elif "colour_point_rgba" in features:
         textures["fibletColourMap"] = buffer.colours
-    for unused in set(slot.textures) - {name}:
+    if "opacity_streamline" in features:
+        lists["fibletOpacities"] = colouring.streamline_opacities
+    if "opacity_point" in features:
+        textures["fibletPositionMap"] = buffer.position
+    for unused in set(slot.textures) - set(lists):
         slot.textures.pop(unused).release()
-    if name is not None:
+    for name, pixels in lists.items():
         textures[name] = slot.list_texture(name, colouring, pixels, ctx)
     return textures
 
@@ -45,6 +49,6 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
     if colouring.mode == "solid":
         program.SetUniform3f("fibletColour", colouring.color)
-    if colouring.mode == "point_scalar" and colouring.lut is not None:
+    if "colour_point_scalar" in colouring.features and colouring.lut is not None:
         program.SetUniformi("fibletTableSize", len(colouring.lut))
         program.SetUniform3f("fibletTableRange", colouring.scaled_range())

@@ -139,12 +139,20 @@ class Coloured(Settings, LinkedProperty):
         """Hand the mapper its colours."""
         if scalars is not None and scalars.mapped:
             update_table(self._table, self._settings, scalars, self._theme, self._drawn)
-        self._mapper.colouring = make_colouring(self._settings, scalars, self._table, self._theme)
+            self._fade_table(self._table)
+        self._mapper.colouring = self._faded(make_colouring(self._settings, scalars, self._table, self._theme))
         self._scalars = scalars
         colour = pv.Color(self._settings.color, default_color=self._theme.color)
         with own_writes():
             self.prop.color = colour if scalars is None else "white"
         self._property_color = self.prop.GetColor()
+
+    def _fade_table(self, table: pv.LookupTable) -> None:
+        """Give a look-up table its opacities, if it has any of its own."""
+
+    def _faded(self, colouring: Any) -> Any:
+        """Return a colouring with opacities of its own, if there are any."""
+        return colouring
 
     def _property_changed(self) -> None:
         """Take over another colour of the property; scalars that were chosen go before it."""

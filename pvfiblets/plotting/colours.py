@@ -176,7 +176,7 @@ def make_colouring(
 
 def _source(scalars: Scalars) -> Any:
     """Return what the engine takes a value at every point from, if it does."""
-    if scalars.values is not None:
+    if scalars.values is not None or scalars.kind == "pixel_count":
         return None
     return scalars.name if scalars.volume is None else scalars.volume
 

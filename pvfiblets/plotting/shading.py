@@ -17,6 +17,7 @@ from pvfiblets.plotting.linked_property import own_writes
 _BACKGROUND = "background"
 _LIGHT = "light"
 _ROUND = "tube_shading"
+DENSITY = STYLES[2]
 
 
 class SurfaceShading:
@@ -78,6 +79,8 @@ class Shading(SurfaceShading):
 
     def _usual_light(self) -> type | None:
         bodies = "tubes" in self._shades or (self._read_tube_shading() and self._mapper.line_width > 1.0)
+        if self._style == DENSITY:
+            return LegendColours if self.prop.GetLighting() else None
         if bodies or "illuminated" in self._shades or self._style != STYLES[0] or not self.prop.GetLighting():
             return None
         return LegendColours if self._scalars is not None and self._scalars.mapped else LineLight
@@ -115,7 +118,11 @@ class Shading(SurfaceShading):
         inks = {"halo": Ink(), "ink": Ink(None)}
         self._mapper.set_effect("ink", inks.get(style))
         self._relight()
+        self._count_lines()
         if style == "ink":
             self.halos = {"color": _BACKGROUND}
-        elif style == "surface" or not self.halos:
+        elif style != "halo" or not self.halos:
             self.halos = style == "halo"
+
+    def _count_lines(self) -> None:
+        """Bring in step what shows all lines of a pixel."""

@@ -19,7 +19,9 @@ from .drawing import LATE, clock_of, timing
 from .record import FRAME, Axes, Figure, LeftOut, Record
 from .study import Options, Unavailable
 
-__all__ = ["STUDY", "AntialiasStudy", "Variant", "differences", "subjects", "variants"]
+__all__ = [
+    "OURS", "STUDY", "AntialiasStudy", "PictureWindow", "Subject", "Variant", "differences", "subjects", "variants",
+]  # fmt: skip
 
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
@@ -207,7 +209,7 @@ def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
     }
 
 
-class _Window:
+class PictureWindow:
     """A PyVista window with a scene."""
 
     def __init__(self, subject: Subject, size: tuple[int, int]) -> None:
@@ -315,7 +317,7 @@ class _Window:
 def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     quick, begun, late = options.quick, time.perf_counter(), []
     size, side = (QUICK_SIZE, QUICK_REFERENCE) if quick else (SIZE, REFERENCE)
-    window = _Window(subject, subject.size or size)
+    window = PictureWindow(subject, subject.size or size)
     try:
         options.driver = window.driver
         window.look_back()
@@ -340,7 +342,7 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
     options.log(f"antialias: {subject.name}: {time.perf_counter() - begun:.0f} s")
 
 
-def _record(subject: Subject, variant: Variant, window: _Window, reference: Pixels, options: Options) -> Record:
+def _record(subject: Subject, variant: Variant, window: PictureWindow, reference: Pixels, options: Options) -> Record:
     window.look_back()
     moving = window.pixels()
     window.samples()

@@ -109,7 +109,11 @@ def window_features(fiblets: Any) -> list[WindowFeature]:
     add_values("lines", "3 pixels wide, shaded", {"line_width": 3, "tube_shading": True},
                {"tube_shading": False, "line_width": 1})  # fmt: skip
     add_values("lines", "layers, blended", {"opacity": 0.4, "transparency": "layers"},
-               {"transparency": None, "opacity": 1.0})  # fmt: skip
+               {"transparency": "all", "opacity": 1.0})  # fmt: skip
+    add_values("lines", "all, blended, opacity 0.05", {"opacity": 0.05}, {"opacity": 1.0})
+    add_values("lines", "density", {"style": "density"}, {"style": "surface"})
+    add_values("lines", "density by a map", {"style": "density", "scalars": "density"},
+               {"style": "surface", "scalars": None})  # fmt: skip
     add_values("colours", "one", {"color": "red"}, {"color": None})
     add_values("colours", "arc length", {"scalars": "arc_length"}, {"scalars": None})
     add_values("colours", "a volume", {"scalars": (grid, affine)}, {"scalars": None})

@@ -25,6 +25,7 @@ MODULES = {
     "halos": "pvfiblets.report.halos",
     "features": "pvfiblets.report.features",
     "antialias": "pvfiblets.report.antialias",
+    "translucency": "pvfiblets.report.translucency",
     "stability": "pvfiblets.report.stability.study",
 }
 

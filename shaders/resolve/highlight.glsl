@@ -15,7 +15,7 @@ uniform vec4 fibletFaded;
 //@ fragment after //VTK::Color::Impl
   uint fibletChosenWord = fibletIds.x >> 5u;
   uint fibletChosenRow = uint(textureSize(fibletChosenMap, 0).x);
-  uint fibletChosenBits = texelFetch(fibletChosenMap,
+  uint fibletChosenBits = fibletIds.x == 0xFFFFFFFFu ? 0u : texelFetch(fibletChosenMap,
     ivec2(int(fibletChosenWord % fibletChosenRow), int(fibletChosenWord / fibletChosenRow)), 0).r;
   vec4 fibletMark = ((fibletChosenBits >> (fibletIds.x & 31u)) & 1u) != 0u ? fibletChosenColour : fibletFaded;
   ambientColor = mix(ambientColor, ambientIntensity * fibletMark.rgb, fibletMark.a);

@@ -44,6 +44,20 @@ def thin_lines(lines, matrix, size, *, near_edge=2e-3, near_depth=4e-6):
     A point less than ``near_edge`` pixels from an edge between pixels may be rounded into either: pixels next to its
     segments are not ``clear``.
     """
+    samples, doubtful = line_samples(lines, matrix, size, near_edge=near_edge)
+    return _nearest(samples, doubtful, size, near_depth)
+
+
+def line_samples(lines, matrix, size, *, near_edge=2e-3):
+    """All pixels that polylines take by the rule.
+
+    Returns
+    -------
+    samples : list of numpy.ndarray
+        (n, 6) of each segment: x, y, depth, streamline, place along it, segment.
+    doubtful : list of numpy.ndarray
+        (n, 2) pixels of those segments an end of which may be rounded into another pixel.
+    """
     a, b, streamline, first = segments(lines)
     ca, cb = to_clip(a, matrix), to_clip(b, matrix)
     low, high, kept = inside_part(ca, cb)
@@ -68,17 +82,22 @@ def thin_lines(lines, matrix, size, *, near_edge=2e-3, near_depth=4e-6):
         u = np.clip(t * wa[i, 3] / np.maximum((1 - t) * wb[i, 3] + t * wa[i, 3], 1e-30), 0.0, 1.0)
         place = first[i] + (low[i] + (high[i] - low[i]) * u) * (len(lines[streamline[i]]) > 1)
         samples.append(np.c_[at, z, np.full(len(at), streamline[i]), place, np.full(len(at), i)])
-    return _nearest(samples, doubtful, size, near_depth)
+    return samples, doubtful
 
 
-def _nearest(samples, doubtful, size, near_depth):
-    shape = size[1], size[0]
-    clear = np.ones(shape, bool)
+def clear_of(doubtful, size):
+    """(h, w) whether nothing that rounding may decide is near."""
+    clear = np.ones((size[1], size[0]), bool)
     for at in doubtful:
         for dx in (-1, 0, 1):
             for dy in (-1, 0, 1):
                 cells = (at + [dx, dy]).clip(0, np.array(size) - 1)
                 clear[cells[:, 1], cells[:, 0]] = False
+    return clear
+
+
+def _nearest(samples, doubtful, size, near_depth):
+    shape, clear = (size[1], size[0]), clear_of(doubtful, size)
     rows = np.concatenate(samples)
     cell = rows[:, 1].astype(int) * size[0] + rows[:, 0].astype(int)
     order = np.lexsort((rows[:, 2], cell))

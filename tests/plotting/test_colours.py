@@ -155,5 +155,6 @@ def test_an_unknown_name_lists_those_that_exist(plotter, three_lines):
 
 
 def test_no_streamlines_is_a_picture_of_nothing(plotter, colours_in):
-    plotter.add_fiblets(Streamlines(np.zeros((0, 3)), [0]), scalars="length", show_scalar_bar=False)
+    with pytest.warns(UserWarning, match="no streamlines"):
+        plotter.add_fiblets(Streamlines(np.zeros((0, 3)), [0]), scalars="length", show_scalar_bar=False)
     assert not colours_in(plotter.screenshot(None))

@@ -24,7 +24,7 @@ def middle(plotter):
     return picture[picture.shape[0] // 2, picture.shape[1] // 2].astype(float)
 
 
-@pytest.mark.parametrize(("transparency", "layers"), [(None, 1), ("layers", 3), (2, 2), (3, 3), (16, 3)])
+@pytest.mark.parametrize(("transparency", "layers"), [(None, 1), ("layers", 3), (2, 2), (3, 3), (16, 3), ("all", 3)])
 def test_layers_show_through_each_other(plotter, lines, transparency, layers):
     actor = plotter.add_fiblets(lines, opacity=0.5, transparency=transparency, **FLAT)
     assert actor.transparency == transparency
@@ -33,14 +33,22 @@ def test_layers_show_through_each_other(plotter, lines, transparency, layers):
 
 def test_it_can_be_changed_at_any_time_and_is_copied(plotter, lines):
     actor = plotter.add_fiblets(lines, opacity=0.5, **FLAT)
-    assert np.abs(middle(plotter) - 127).max() <= 3
+    assert actor.transparency == "all"
+    assert np.abs(middle(plotter) - 223).max() <= 3
+    assert any(entry["name"] == "gathered" for entry in actor.explain()["buffers"])
     actor.transparency = "layers"
     assert np.abs(middle(plotter) - 223).max() <= 3
+    assert not any(entry["name"] == "gathered" for entry in actor.explain()["buffers"])
     assert actor.copy().transparency == "layers"
     actor.opacity = 0.25
     assert np.abs(middle(plotter) - 255 * (1 - 0.75**3)).max() <= 3
     assert any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
-    actor.transparency = None
+    actor.transparency = "all"
+    assert np.abs(middle(plotter) - 255 * (1 - 0.75**3)).max() <= 3
+    actor.opacity = 1.0
+    assert np.abs(middle(plotter) - 255).max() <= 1
+    assert not any(entry["name"] == "gathered" for entry in actor.explain()["buffers"])
+    actor.opacity, actor.transparency = 0.25, None
     assert np.abs(middle(plotter) - 64).max() <= 3
     assert not any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
 
@@ -53,7 +61,7 @@ def test_the_nearest_is_picked(plotter, lines):
 
 @pytest.mark.parametrize("transparency", ["peeling", 1, 0, -2, 65, 2.5, True, [4]])
 def test_nonsense_is_refused_in_words(plotter, lines, transparency):
-    with pytest.raises(ValueError, match="give None, 'layers', or a number of layers from 2 to 64"):
+    with pytest.raises(ValueError, match="give 'all', 'layers', a number of layers from 2 to 64, or None"):
         plotter.add_fiblets(lines, transparency=transparency)
     assert not plotter.actors
 

@@ -27,11 +27,14 @@ from .upload import release_chunks, upload_fitting
 from .visibility import Visibility
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     import numpy.typing as npt
 
     from ...codec.fibletset import FibletSet
     from ...query.region import Region
+    from .gathering import Gathered, Gatherer, Paint
     from .region_query import RegionQuery
     from .sampled_volume import VolumeSource
 
@@ -104,6 +107,7 @@ class FibletRenderer(Drawable[FibletStyle]):
         self._last: tuple[View, FibletStyle] | None = None
         self._features_of_layers: frozenset[str] = frozenset()
         self._layers: Layers | None = None
+        self._gatherer: Gatherer | None = None
         self._query: RegionQuery | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
@@ -180,6 +184,80 @@ class FibletRenderer(Drawable[FibletStyle]):
         if self._layers is not None:
             self._drop(self._layers)
             self._layers = None
+        self._features_of_layers = frozenset()
+
+    def gather(
+        self,
+        view: View,
+        style: FibletStyle | None = None,
+        paint: Paint | None = None,
+        *,
+        sliced: bool = False,
+        outside: Callable[[], moderngl.Texture | None] | None = None,
+        state: Any = None,
+    ) -> Gathered:
+        """Add up what all lines show in each pixel; nothing is done that has been done for this picture.
+
+        Parameters
+        ----------
+        view : View
+        style : FibletStyle, optional
+        paint : Paint, optional
+            Their colours. Without, lines are counted.
+        sliced : bool
+            Whether the nearest line is left out and the others are parted by how far behind it they are.
+        outside : callable, optional
+            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is
+            to be done. Lines behind it are left out.
+        state : object
+            Another one where that depth may be another.
+
+        Returns
+        -------
+        Gathered
+            The renderer's own (:mod:`pvfiblets.engine.fiblets.gathering`).
+
+        Raises
+        ------
+        EngineError
+            As :meth:`render`.
+        """
+        from .gathering import SLICES, Gatherer, Paint, SliceDistances
+
+        style = style or FibletStyle()
+        nearest = self.render(view, style)
+        if self._gatherer is None:
+            maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
+            self._gatherer = self._keep(maker, "gathered")
+        origin, scale, top = self._shared.place
+        distances = SliceDistances.of(view, origin, origin + top * scale)
+        with self._programs.noting() as features:
+            found = self._gatherer.of(
+                nearest,
+                paint or Paint(),
+                SLICES if sliced else 1,
+                distances,
+                lambda: self._request(view, style, nearest),
+                outside,
+                state,
+            )
+        self._features_of_layers |= features
+        return found
+
+    def most_lines(self) -> float:
+        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
+        if self._gatherer is None:
+            return 0.0
+        with self._programs.noting() as features:
+            found = self._gatherer.greatest()
+        self._features_of_layers |= features
+        return found
+
+    def drop_gathered(self) -> None:
+        """Give back what :meth:`gather` keeps; twice is harmless."""
+        if self._gatherer is not None:
+            self._drop(self._gatherer)
+            self._gatherer = None
         self._features_of_layers = frozenset()
 
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
@@ -352,5 +430,5 @@ class FibletRenderer(Drawable[FibletStyle]):
         """Give back everything on the GPU; twice is harmless."""
         release_chunks(self._chunks)
         super().release()
-        self._layers = self._query = None
+        self._layers = self._query = self._gatherer = None
         self._features_of_layers = frozenset()

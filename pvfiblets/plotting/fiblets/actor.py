@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,11 +14,13 @@ from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engines import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
-from pvfiblets.plotting.fiblets.scalars import find_scalars
+from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
+from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
 from pvfiblets.plotting.fiblets.selection import Selecting
-from pvfiblets.plotting.fiblets.settings import THINNEST, WIDEST, FibletSettings
+from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.setting_places import OPTIONS
@@ -27,9 +30,10 @@ from pvfiblets.plotting.shading import Shading
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-    from pvfiblets.plotting.fiblets.scalars import Scalars
 
 _LAYERS = "layers"
+_DENSITY = "density"
+_COUNTS = Scalars("density", "pixel_count")
 _SOME_LAYERS = 4
 
 
@@ -81,6 +85,10 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._fiblets = fiblets
         self._init_colours(scalars, given, theme)
         self._init_shading()
+        self._tone = TONES[0]
+        self._transparency: str | int | None = None  # until it is told
+        self._opacity_by: Any = None
+        self._opacities = Opacities()
         self._init_filtering()
         self._init_selection()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
@@ -88,6 +96,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._finish(mapper, given)
         self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
+        self.opacity = theme.opacity if given["opacity"] is None else given["opacity"]
         if given["look"] is not None:
             self._take_look(given["look"], but=given.named)
         self._take({name: value for name, value in given.items() if name != "look"})
@@ -242,29 +251,120 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             self._mapper.line_width = width
         self._take_tube_shading()
         self._relight()
+        self._see_through()
 
     def _show(self, scalars: Scalars | None) -> None:
         super()._show(scalars)
         self._relight()
+        self._count_lines()
+
+    # Opacity ------------------------------------------------------------------------------------
+
+    def _read_opacity(self) -> float:
+        return float(self.prop.opacity)
+
+    def _write_opacity(self, opacity: Any) -> None:
+        if isinstance(opacity, float):
+            self.prop.opacity = opacity
+        else:
+            self.opacity_by = opacity
+
+    def _read_opacity_by(self) -> Any:
+        return self._opacity_by
+
+    def _write_opacity_by(self, choice: Any) -> None:
+        fiblets, found = self._fiblets, Opacities()
+        if choice is not None:
+            fiblets, found = find_opacities(fiblets, choice)
+        if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
+            raise ValueError(
+                f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "
+                "opacity per streamline or per point"
+            )
+        before = self._opacity_by, self._opacities, self._fiblets
+        if fiblets is not self._fiblets:
+            self._draw(fiblets)
+        self._opacity_by, self._opacities = choice, found
+        try:
+            self._show(self._scalars)
+        except Exception:
+            self._opacity_by, self._opacities = before[:2]
+            self._draw(before[2])
+            self._show(self._scalars)
+            raise
+
+    def _fade_table(self, table: pv.LookupTable) -> None:
+        if self._opacities.transfer is not None:
+            table.apply_opacity(self._opacities.transfer)
+
+    def _faded(self, colouring: Colouring) -> Colouring:
+        streamlines, points = self._opacities.streamlines, self._opacities.points
+        if streamlines is None and points is None:
+            return colouring
+        return replace(colouring, opacities=streamlines, opacity_source=points)
+
+    # Density ------------------------------------------------------------------------------------
+
+    def _count_lines(self) -> None:
+        """Have all lines of a pixel counted where style or colours ask for it."""
+        thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
+        if not thin and not counted:
+            self._mapper.set_effect(_DENSITY, None)
+            self._see_through()
+            return
+        from pvfiblets.mappers.density import Density
+
+        clim = self._settings.clim
+        most = None if clim is None else limits(replace(self._settings, log_scale=False), _COUNTS)[1]
+        effect = Density(thin and not counted, thin, most, self._tone, self._most_found if counted else None)
+        if effect != self._mapper.effects.get(_DENSITY):
+            self._mapper.set_effect(_DENSITY, effect)
+        self._see_through()
+
+    def _most_found(self, most: float) -> None:
+        """Have the scalar bar end at the number of lines in the fullest pixel."""
+        low, high = self._table.scalar_range
+        if most > low and most != high and self._scalars is not None:
+            self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))
+            self._table.scalar_range = low, most
+
+    def _read_density_tone(self) -> str:
+        return self._tone
+
+    def _write_density_tone(self, tone: str) -> None:
+        if tone not in TONES:
+            raise ValueError(f"density_tone is {tone!r}; choose one of {TONES}")
+        self._tone = tone
+        self._count_lines()
 
     def _read_transparency(self) -> str | int | None:
-        effect: Any = self._mapper.effects.get(_LAYERS)
-        if effect is None:
-            return None
-        return "layers" if effect.count == _SOME_LAYERS else effect.count
+        return self._transparency
 
     def _write_transparency(self, transparency: str | int | None) -> None:
-        if transparency is None:
-            self._mapper.set_effect(_LAYERS, None)
-            return
-        layers = _SOME_LAYERS if transparency == "layers" else transparency
-        try:
-            effect = Layers(layers)  # type: ignore[arg-type]  # what is no number is refused by it
-        except (TypeError, ValueError) as error:
-            raise ValueError(
-                f"transparency is {transparency!r}; give None, 'layers', or a number of layers from 2 to 64"
-            ) from error
-        self._mapper.set_effect(_LAYERS, effect)
+        if transparency is not None and transparency != ALL:
+            try:
+                Layers(_SOME_LAYERS if transparency == "layers" else transparency)  # type: ignore[arg-type]
+            except (TypeError, ValueError) as error:  # what is no number is refused by it
+                raise ValueError(
+                    f"transparency is {transparency!r}; give 'all', 'layers', a number of layers from 2 to 64, or None"
+                ) from error
+        self._transparency = transparency
+        self._see_through()
+
+    def _see_through(self) -> None:
+        """Bring in step what shows behind the nearest line; nothing where nothing shows through."""
+        effect: Any = None
+        if _DENSITY in self._mapper.effects or self._transparency is None:
+            pass
+        elif self._transparency != ALL:
+            count = _SOME_LAYERS if self._transparency == "layers" else int(self._transparency)
+            effect = Layers(count)
+        elif self._mapper.colouring.translucent() or self.prop.GetOpacity() < 1.0:
+            from pvfiblets.mappers.slices import Slices
+
+            effect = Slices()
+        if effect != self._mapper.effects.get(_LAYERS):
+            self._mapper.set_effect(_LAYERS, effect)
 
     # Inside -------------------------------------------------------------------------------------
 

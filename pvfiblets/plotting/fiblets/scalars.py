@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
 ORIENTATION = "orientation"
 GROUP = "group"
-BUILT_IN = tuple(dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP)))
+DENSITY = "density"
+BUILT_IN = tuple(
+    dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP, DENSITY))
+)
 UNITS = {
     "length": "length [mm]",
     "radius": "radius [mm]",
@@ -32,6 +35,7 @@ UNITS = {
     "n_points": "points",
     "coding_error": "coding error [mm]",
     "distance": "distance [mm]",
+    "density": "streamlines per pixel",
 }
 UNNAMED = "Data"
 
@@ -49,7 +53,7 @@ class Scalars:
     ----------
     name : str
         For the scalar bar, and for the engine where ``kind`` is ``"point_scalar"``.
-    kind : {"orientation", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba"}
+    kind : {"orientation", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"}
         How the mapper has to use them.
     values : array, optional
         (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
@@ -80,7 +84,7 @@ class Scalars:
     @property
     def mapped(self) -> bool:
         """Whether a colour map turns these into colours, so that a scalar bar makes sense."""
-        return self.kind in ("streamline_scalar", "point_scalar")
+        return self.kind in ("streamline_scalar", "point_scalar", "pixel_count")
 
     @property
     def title(self) -> str:
@@ -169,6 +173,8 @@ def find_scalars(
         return without_outliers(found) if scalars == "mean_curvature" else found
     if scalars == GROUP:
         return by_group(fiblets)
+    if scalars == DENSITY:
+        return Scalars(DENSITY, "pixel_count", None, (0.0, 1.0), 1.0)
     if scalars == "coding_error":
         raise KeyError(
             "the coding error is known only while streamlines are compressed: give "

@@ -8,9 +8,11 @@ from typing import Any
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.plotting.setting_places import COLOURS, LATER, OPTIONS, OWN, Effect, Switch
-from pvfiblets.plotting.settings import Row, Setting, Settings, truth
+from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
-STYLES = ("surface", "halo", "ink")
+STYLES = ("surface", "halo", "ink", "density")
+TONES = ("log", "sqrt", "linear")
+ALL = "all"
 """What :attr:`FibletSettings.style` may be."""
 
 
@@ -22,6 +24,13 @@ def _radii(data: Any) -> tuple[float, float]:
 def _clim_span(actor: Any) -> tuple[float, float]:
     scalars = actor.active_scalars
     return scalars.range if scalars is not None and scalars.mapped else actor.clim
+
+
+def _opacity(name: str, value: Any) -> Any:
+    """Return a number as a float; what else there is is looked at when it is set."""
+    if isinstance(value, (str, list, tuple)) or getattr(value, "ndim", 0) > 0:
+        return value
+    return number(name, value, 0.0, 1.0)
 
 
 THINNEST, WIDEST = 1e-3, 64.0
@@ -68,19 +77,47 @@ class FibletSettings(Settings):
         where=COLOURS,
         check=truth,
     )
-    opacity = shared.opacity("Of all streamlines.")
-    transparency: Setting[str | int | None] = Setting(
+    opacity: Setting[float] = Setting(
         None,
-        "How many layers of lines an ``opacity`` below 1 shows, one through the other.\n\n"
-        "``None``: the nearest alone, through which one sees the rest of the scene. ``\"layers\"``:\n"
-        "four, each with its own colour, light and depth, blended in order. A number from 2 to 64:\n"
-        "as many. What lies behind the last does not show. A layer costs a drawing of all\n"
-        "streamlines in view, and 44 bytes of GPU memory a pixel; opaque actors pay for none.",
+        "From 0, not to be seen, to 1. Anything else that is set is taken by ``opacity_by``.",
+        argument="Of all streamlines, from 0, not to be seen, to 1; the theme's by default. Or what "
+        "``actor.opacity_by`` takes: ``\"linear\"``, ``\"sigmoid\"`` and the like, opacities along the colour map; "
+        "numbers from 0 to 1, or the name of an array with them, one per streamline or per point.",
+        kind="Any",
+        header="float, str or array_like, optional",
+        where=OWN,
+        check=_opacity,
+        row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
+    )
+    opacity_by: Setting[Any] = Setting(
+        None,
+        "Opacities beside ``opacity``, which they are times.\n\n"
+        "``None`` for none; as in :meth:`pyvista.Plotter.add_mesh` the name of a transfer function\n"
+        "(``'linear'``, ``'geom'``, ``'sigmoid'``, with ``_r`` reversed) along the colour map, from its first\n"
+        "colour to the last, or numbers from 0 to 1 for that; or numbers from 0 to 1, one per streamline\n"
+        "or one per point, or the name of an array of such. Opacities of points and another number that\n"
+        "colours points do not go together.",
+        argument=False,
+        where=LATER,
+        row=Row("Fades by", "Opacity along the colour map.", type="choice", optional=True,
+                choices=[(None, "nothing"), ("linear", "value"), ("linear_r", "value, reversed"),
+                         ("geom", "value, steep"), ("sigmoid", "value, a step")],
+                matters=shared.by_numbers),
+    )  # fmt: skip
+    transparency: Setting[str | int | None] = Setting(
+        ALL,
+        "What an ``opacity`` below 1 shows behind the nearest line.\n\n"
+        "``\"all\"``: all lines, in no order that one could see: the nearest as it is, the others in\n"
+        "four slices by how far behind it they are, mixed within a slice. Costs one drawing of all\n"
+        "streamlines in view, and 64 bytes of GPU memory a pixel. ``\"layers\"``: the four nearest, each\n"
+        "with its own colour, light and depth, blended in order. A number from 2 to 64: as many. What\n"
+        "lies behind the last does not show; a layer costs a drawing, and 44 bytes a pixel. ``None``:\n"
+        "the nearest alone, through which one sees the rest of the scene. Opaque actors pay for none.",
         kind="str | int | None",
-        header='{None, "layers"} or int, optional',
+        header='{"all", "layers", None} or int, default: "all"',
         where=LATER,
         row=Row("Seen through", "What shows behind the nearest line, with opacity below 1.", type="choice",
-                choices=[(None, "what is behind all lines"), ("layers", "the next lines")],
+                choices=[("all", "all lines"), ("layers", "the next lines"), (None, "what is behind all lines")],
                 matters=lambda s: s["opacity"] < 1.0),
     )  # fmt: skip
     line_width: Setting[float] = Setting(
@@ -94,16 +131,36 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
-        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, or ``'ink'``,\n"
-        "black on a light background and white on a dark one, in halos of the background's colour.\n\n"
+        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, ``'ink'``, black on a\n"
+        "light background and white on a dark one, in halos of the background's colour, or ``'density'``, all\n"
+        "lines that lie on each other.\n\n"
         "``'halo'`` and ``'ink'`` are drawings in ink (Everts et al. 2009), ``'halo'`` best on white:\n"
         "all lines are of one colour and without light, and have default halos. Colours and\n"
-        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.",
-        argument=False,
+        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.\n\n"
+        "``'density'`` adds up light: a pixel has the mean colour of all streamlines in it, the\n"
+        "brighter the more there are (``density_tone``), over what is behind them. The second number of\n"
+        "``clim`` is how many have full brightness; without, as many as the fullest pixel of the\n"
+        "picture holds. Lines are a pixel wide, without light. With ``scalars=\"density\"`` a colour map and a\n"
+        "scalar bar tell streamlines per pixel.",
+        argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in "
+        "white halos, ``\"ink\"`` such as suit the background.",
         choices=STYLES,
         where=LATER,
         row=Row("Style", "Ink: lines in one colour, in halos that show depth.", "Lines",
-                choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("ink", "ink on any ground")]),
+                choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("ink", "ink on any ground"),
+                         ("density", "density")]),
+    )  # fmt: skip
+    density_tone: Setting[str] = Setting(
+        TONES[0],
+        "How brightness grows with the number n of streamlines in a pixel, in ``style='density'``.\n\n"
+        "Where m have full brightness: ``'log'``, log(1 + n) / log(1 + m); ``'sqrt'``, the root of n / m;\n"
+        "``'linear'``, n / m. Colours of ``scalars=\"density\"`` spread by ``log_scale`` instead.",
+        argument=False,
+        choices=TONES,
+        where=LATER,
+        row=Row("Tone", "How brightness grows with the number of lines in a pixel.", "Lines",
+                choices=[("log", "logarithm"), ("sqrt", "square root"), ("linear", "proportional")],
+                matters=lambda s: s["style"] == "density" and s["scalars"] != "density"),
     )  # fmt: skip
     tube_radius: Setting[float | None] = Setting(
         None,

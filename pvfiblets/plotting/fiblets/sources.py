@@ -140,6 +140,11 @@ def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colo
     return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
 
 
+def with_stored(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
+    """Return a set that shares the arrays of another one and has one with a number per point, (n_points,), more."""
+    return _with_coded(fiblets, name, fiblets.in_coded_order(values))
+
+
 def _with_coded(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
     """Return a set with one more number per point, in the order in which points are coded."""
     numbers = values.astype(np.float64)

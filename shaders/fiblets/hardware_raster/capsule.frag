@@ -27,7 +27,7 @@ void main() {
     precise vec4 c0 = to_homogeneous(varying_from), c1 = to_homogeneous(varying_to);
     Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u);
     Hit hit;
-#if FEATURE_PEEL
+#if FEATURE_PEEL || FEATURE_GATHER_SLICES
     Outline outline;
     if (!outline_of(c0, c1, outline) || !tube_at(body, c0, outline, gl_FragCoord.xy, hit)) discard;
     peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((varying_ids.w >> 8u) & 255u));

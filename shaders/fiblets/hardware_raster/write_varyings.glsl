@@ -7,6 +7,11 @@
 #include "fiblets/hardware_raster/thin.glsl"
 #include "fiblets/segments/edges.glsl"
 #endif
+#if FEATURE_PAINTED
+#include "codec/layout.glsl"
+#include "fiblets/attributes/tangent.glsl"
+#include "fiblets/gather/run.glsl"
+#endif
 #ifndef VARYING
 #define VARYING flat out
 #define TO(name) name
@@ -28,6 +33,9 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
     uint flags = varyings.segment | (uint(varyings.steps) << 8u) | (piece.start ? 0x10000u : 0u) | (piece.cap ? 0x20000u : 0u);
     TO(varying_ids) = uvec4(varyings.streamline, varyings.tangents.x, varyings.owner, flags);
     TO(varying_tangent) = varyings.tangents.y;
+#if FEATURE_PAINTED
+    TO(varying_tangent) = packed_tangent(run_direction(to - from), 0u);
+#endif
     TO(varying_first) = varyings.first;
 #if FEATURE_TUBES
     TO(varying_from) = from;

@@ -11,6 +11,8 @@
 //
 // Use: begin_peel() for a fiblet, peel_segment() for a segment, then behind_layers() and new_surface() for every pixel.
 // Bounds, not places, are compared: all passes find the same.
+//
+// Where lines are added up in slices (fiblets/gather/slices.glsl), the only layer is the picture of the nearest.
 
 #if FEATURE_PEEL
 #if FEATURE_TEXTURE_DATA
@@ -28,7 +30,12 @@ layout(binding = {{ unit_peeled_ids }}) uniform usampler2DArray peeled_ids;
 layout(binding = {{ unit_peeled_position }}) uniform sampler2DArray peeled_position;
 #endif
 #endif
+#elif FEATURE_GATHER_SLICES && FEATURE_WIDE_LINES
+uniform usampler2D nearest_ids;
+uniform sampler2D nearest_position;
+#endif
 
+#if FEATURE_PEEL || FEATURE_GATHER_SLICES
 const float WIDTHS = 2.0;
 
 uint peel_streamline;
@@ -48,12 +55,16 @@ void peel_segment(vec2 a, vec2 b, float r, float steps) {
     peel_reach = 2.0 * WIDTHS * r * max(steps, 1.0) / max(length(run), 1e-3);
 }
 
+#else
+void begin_peel(uint streamline, float first_point) {}
+void peel_segment(vec2 a, vec2 b, float r, float steps) {}
+#endif
+
+#if FEATURE_PEEL
 bool behind_layers(ivec2 pixel, uint key) {
     return key > texelFetch(peeled_depth, ivec3(pixel, peeled_layers - 1), 0).x;
 }
 #else
-void begin_peel(uint streamline, float first_point) {}
-void peel_segment(vec2 a, vec2 b, float r, float steps) {}
 bool behind_layers(ivec2 pixel, uint key) { return true; }
 #endif
 
@@ -66,6 +77,11 @@ bool new_surface(ivec2 pixel, uint segment) {
         float there = texelFetch(peeled_position, ivec3(pixel, layer), 0).x;
         if (max(from - there, there - to) <= peel_reach) return false;
     }
+#elif FEATURE_GATHER_SLICES && FEATURE_WIDE_LINES
+    if (texelFetch(nearest_ids, pixel, 0).x != peel_streamline) return true;
+    precise float from = peel_first + float(segment), to = from + peel_steps;
+    float there = texelFetch(nearest_position, pixel, 0).x;
+    return max(from - there, there - to) > peel_reach;
 #endif
     return true;
 }

@@ -103,6 +103,7 @@ class ComputePipeline:
         self._ctx = ctx
         self._programs = programs
         self._max_groups = max_groups
+        self._gl = GLExtras(ctx)
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
         self._shares = [(0, MAX_POINTS)]
@@ -187,13 +188,47 @@ class ComputePipeline:
                 self._round("resolve_ties", TIED, request)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
+    def gathers_words(self, request: DrawRequest) -> bool:
+        """Say whether sums for such a request are words, not floats."""
+        return not (self._software and request.tubes and TUBES_BY_RASTER)
+
+    def gather(self, request: DrawRequest) -> None:
+        """Add up what all lines show; the uniform blocks are bound already.
+
+        Raises
+        ------
+        EngineError
+            As :meth:`draw`.
+        """
+        assert request.gather is not None
+        if not self.gathers_words(request):
+            self._by_raster().gather(request)
+            return
+        self._drop_raster()
+        if self._software:
+            self._shares = _shares(request.line_width, request.segment)
+        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
+        request.gather.bind_images()
+        with request.passes.timed("gather"):
+            request.gather.target.clear(self._gl)
+            empty = bytes(ROUNDS * self._round_arguments * ARGUMENT_BYTES)
+            self._own["visibility_bits"].write(empty, 4 * self._argument_base)
+            features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
+            self._run("cull", features, request)
+            self._barrier()
+            self._round("gather", REST, request)
+        self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+
     def _draw_by_raster(self, request: DrawRequest) -> None:
         """Have the pipeline `geometry` draw, which reads the same buffers."""
+        self._by_raster().draw(request)
+
+    def _by_raster(self) -> GeometryPipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, GLExtras(self._ctx), self._programs, 32 * self._words)
-        self._raster.draw(request)
+            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, 32 * self._words)
+        return self._raster
 
     def _bind_nearest(self, size: int) -> None:
         held = self._own.get("nearest")
@@ -278,6 +313,8 @@ class ComputePipeline:
             request.kept.bind(program, index)
             if request.peel is not None:
                 request.peel.bind(program)
+            if request.gather is not None:
+                request.gather.bind(program)
             program.run_indirect(self._own["visibility_bits"], 4 * at + ARGUMENT_BYTES * part)
 
     def _test(self, stage: str, request: DrawRequest) -> None:

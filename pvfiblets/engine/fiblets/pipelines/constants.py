@@ -8,6 +8,7 @@ from ..filter_textures import MASK_BITS
 
 __all__ = [
     "CONSTANTS",
+    "GREATEST_SIDE",
     "GROUP_WORDS",
     "SHARES",
     "TASK_FIBLETS",
@@ -31,6 +32,9 @@ THREADS = 32
 TASK_ROUNDS = 8
 """How many fiblets each invocation of a task work group tests."""
 
+GREATEST_SIDE = 16
+"""Pixels of the squares of which the greatest sum is found."""
+
 TASK_FIBLETS = THREADS * TASK_ROUNDS
 
 CONSTANTS = {
@@ -39,6 +43,7 @@ CONSTANTS = {
     "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,
+    "greatest_side": GREATEST_SIDE,
     "mesh_threads": THREADS,
     "task_fiblets": TASK_FIBLETS,
     "task_rounds": TASK_ROUNDS,

@@ -13,6 +13,7 @@ from ..chunks import Chunk
 if TYPE_CHECKING:
     from ...culling.occlusion import Occlusion
     from ..depth_peeling import Peel
+    from ..gathering import Gather
     from ..visibility import Visibility
 
 __all__ = ["DrawRequest", "Pipeline", "Sized"]
@@ -53,6 +54,8 @@ class DrawRequest:
         ``TUBES``, ``CROSS_LINE`` and ``EDGES``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
     peel : Peel, optional
         Layers behind which the picture begins.
+    gather : Gather, optional
+        Where all lines are added up, in place of the nearest's picture.
     """
 
     chunks: Sequence[Chunk]
@@ -71,6 +74,7 @@ class DrawRequest:
     across: tuple[str, ...] = ()
     edges: tuple[str, ...] = ()
     peel: Peel | None = None
+    gather: Gather | None = None
 
     @property
     def wide(self) -> tuple[str, ...]:
@@ -89,6 +93,11 @@ class DrawRequest:
         return () if self.peel is None else ("PEEL",)
 
     @property
+    def gathering(self) -> tuple[str, ...]:
+        """``GATHER`` and what goes along, if all lines are added up."""
+        return () if self.gather is None else self.gather.features
+
+    @property
     def cutting(self) -> tuple[str, ...]:
         """Features by which a fiblet is drawn in part."""
         return (*self.planes, *self.kept.cutting)
@@ -96,7 +105,7 @@ class DrawRequest:
     @property
     def classes(self) -> list[tuple[int, tuple[str, ...]]]:
         """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
-        common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling)
+        common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling, *self.gathering)
         classes = [(0, common)]
         if self.clipping:
             classes.append((1, (*common, *self.detail, "CLIPPING")))
@@ -127,6 +136,14 @@ class Pipeline(Protocol):
 
     def draw(self, request: DrawRequest) -> None:
         """Fill the target."""
+        ...
+
+    def gathers_words(self, request: DrawRequest) -> bool:
+        """Say whether sums for such a request are words, not floats (:class:`..gathering.Gathered`)."""
+        ...
+
+    def gather(self, request: DrawRequest) -> None:
+        """Fill the target of ``request.gather``, and nothing else."""
         ...
 
     def release(self) -> None:

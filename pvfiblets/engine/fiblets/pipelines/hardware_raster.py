@@ -267,6 +267,29 @@ class RasterPipeline(abc.ABC):
                 with passes.timed("visibility_bits"):
                     self._seen.update(request.target)
 
+    def gathers_words(self, request: DrawRequest) -> bool:  # noqa: ARG002 - of all pipelines
+        """Say that sums are floats: OpenGL blends no words."""
+        return False
+
+    def gather(self, request: DrawRequest) -> None:
+        """Add up what all lines show; the uniform blocks are bound already.
+
+        Raises
+        ------
+        EngineError
+            If a program does not compile.
+        """
+        assert request.gather is not None
+        with request.passes.timed("gather"), self._gl.framebuffers_kept(), self._drawing():
+            request.gather.target.clear(self._gl)
+            request.gather.target.framebuffer.use()
+            self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+            self._ctx.blend_func = moderngl.ONE, moderngl.ONE
+            try:
+                self._round(request, ())
+            finally:
+                self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+
     def _attach(self, target: GBuffer, two_rounds: bool) -> RasterTarget:
         held = self._target
         same = held is not None and held.target is target and held.across is target.across
@@ -299,7 +322,7 @@ class RasterPipeline(abc.ABC):
             self._prepare(program)
         array = self._arrays[program]
         self._bind(program, request, features)
-        ctx.enable_only(moderngl.DEPTH_TEST)
+        ctx.enable_only(moderngl.DEPTH_TEST if request.gather is None else moderngl.BLEND)
         ctx.depth_func = "<"
         for index, chunk in enumerate(request.chunks):
             chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
@@ -320,7 +343,7 @@ class RasterPipeline(abc.ABC):
             *request.planes,
             *request.kept.culling,
         )
-        every = (*every, *request.peeling)
+        every = (*every, *request.peeling, *request.gathering)
         return [*self.features, *every, *culling]
 
     def _bind(self, program: moderngl.Program, request: DrawRequest, features: Sequence[str]) -> None:
@@ -329,6 +352,8 @@ class RasterPipeline(abc.ABC):
             request.occlusion.bind(program)
         if request.peel is not None:
             request.peel.bind(program)
+        if request.gather is not None:
+            request.gather.bind(program)
         if self._seen is not None and "seen" in program:
             self._seen.texture.use(FIBLET_ROUNDS["seen"])
             program["seen"], program["seen_bits"] = FIBLET_ROUNDS["seen"], self._seen.bits

@@ -67,7 +67,7 @@ float along(Fragment fragment, Segment segment) {
 // Draws fiblet f and the segment that joins it to the next.
 void draw_fiblet(uint f) {
     begin_polyline(f);
-#if FEATURE_PEEL && FEATURE_WIDE_LINES
+#if FEATURE_WIDE_LINES && (FEATURE_PEEL || FEATURE_GATHER_SLICES)
     begin_peel(streamline_of(f), float(points_before(f)));
 #endif
     Vertex from = vertex_of(walk_point);

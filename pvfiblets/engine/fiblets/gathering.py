@@ -1,0 +1,482 @@
+"""All lines of each pixel, added up: how many there are, and their colours, whole or in slices by distance.
+
+The picture of a renderer holds the nearest line of each pixel. Here every line in view adds to the pixels that it takes
+(``shaders/fiblets/gather``). What it adds are whole numbers: the sums are the same in whatever order lines are drawn,
+and by whichever pipeline. There are two ways to look at them:
+
+density
+    One sum a pixel, of all lines: their number, and with colours their mean colour.
+slices
+    The nearest line of a pixel is in no sum; the others are in :data:`SLICES` sums by how far behind it they are. The
+    slices grow with that distance, since what lies near the nearest line shows most. Lines of one slice are blended in
+    no order; the slices are, one behind the other. This is layered weighted blending (after Friederichs, Eisemann and
+    Eisemann, "Layered Weighted Blended Order-Independent Transparency", Graphics Interface 2021) with an exact first
+    layer and, where all lines have the same opacity, an exact opacity of the whole: ``n`` lines of opacity ``a`` let
+    ``(1 - a)^n`` through, whatever their order.
+
+The compute pipeline adds in words of an image array, with atomics; those of OpenGL's rasteriser add by blending, in an
+array of float32, which holds whole numbers up to 2^24 exactly. One pass over all fiblets in view makes all of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ..bindings import GATHERING, SUM_IMAGES
+from ..errors import GPUMemoryError
+from .pipelines.constants import GREATEST_SIDE
+
+if TYPE_CHECKING:
+    from ..gbuffer import GBuffer
+    from ..moderngl_extras import GLExtras
+    from ..shaders import Programs
+    from ..view import View
+    from .pipelines import DrawRequest, Pipeline
+
+__all__ = ["SLICES", "Gather", "Gathered", "Gatherer", "Paint", "SliceDistances", "slice_edges"]
+
+SLICES = 4
+"""Sums of a pixel behind its nearest line; the shaders' three edges between them say so too."""
+
+GROWTH = 2.5
+"""How many times as deep as the one before each slice is."""
+
+MOST_OPAQUE = 0.999
+"""Opacity of a line beyond which it counts as no more opaque (``shaders/fiblets/gather/paint.glsl``)."""
+
+Array = npt.NDArray[np.float64]
+
+
+def slice_edges() -> tuple[float, ...]:
+    """Return where slices end, from the nearest line, 0, to the far end of the data, 1; the last end is left out."""
+    whole = GROWTH**SLICES - 1.0
+    return tuple((GROWTH**k - 1.0) / whole for k in range(1, SLICES))
+
+
+@dataclass(frozen=True)
+class SliceDistances:
+    """How distance along the view follows from depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
+
+    Attributes
+    ----------
+    terms : tuple of 4 floats
+        p, q, r, s.
+    far : float
+        Distance of the far end of the data.
+    """
+
+    terms: tuple[float, float, float, float]
+    far: float
+
+    @classmethod
+    def of(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
+        """Find them for a view of data in a box.
+
+        Parameters
+        ----------
+        view : View
+            Perspective or parallel: its third and its fourth row run the same way, or the fourth is constant.
+        low, high : array_like
+            (3,) data mm, its least and its greatest corner. What lies farther counts as lying at its far end.
+        """
+        matrix = np.asarray(view.model_view_projection, np.float64)
+        box = np.stack([np.asarray(low, np.float64), np.asarray(high, np.float64)], 1)
+        corners = np.array([[box[0, i], box[1, j], box[2, k], 1.0] for i, j, k in np.ndindex(2, 2, 2)])
+        z, w = matrix[2], matrix[3]
+        square = float(w[:3] @ w[:3])
+        if square > 0.0:  # z = a w + b, and the normalised depth is z / w = 1 - 2 c
+            a = float(z[:3] @ w[:3]) / square
+            b = float(z[3] - a * w[3])
+            size = abs(b) or 1.0
+            return cls((b / size, 0.0, (1.0 - a) / size, -2.0 / size), float((corners @ w).max()))
+        size = float(np.linalg.norm(z[:3])) or 1.0
+        return cls((w[3] / size, -2.0 * w[3] / size, 1.0, 0.0), float((corners @ z).max()) / size)
+
+
+@dataclass(frozen=True)
+class Paint:
+    """What a line adds to the pixels that it takes, beside being there.
+
+    Parameters
+    ----------
+    source : {'none', 'direction', 'solid', 'streamline', 'table'}
+        No colour; the absolute value of its direction; one colour; a colour per streamline; the style's per-point value
+        through a table.
+    color : tuple of 3 floats
+        For ``'solid'``, 0 to 1.
+    colours : moderngl.Texture, optional
+        RGBA of 8 bits, row by row: of streamlines, or of a table with the colours of below, above and NaN at its end.
+    entries : int
+        Of the table, without these three.
+    range : tuple of 3 floats
+        Values of the table's ends and entries per unit; logarithms if ``logarithm``.
+    logarithm : bool
+    light : tuple of 3 floats, optional
+        Unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
+    opacity : float, optional
+        Of the whole drawable, where colours have opacities of their own; None where all lines have the same.
+    opacities : moderngl.Texture, optional
+        RGBA of 8 bits, row by row: alphas are those of streamlines; with ``opacity``.
+    value_opacity : bool
+        Whether the style's per-point value is an opacity; with ``opacity``.
+    version : object
+        Another one if the content of textures is another.
+    """
+
+    source: str = "none"
+    color: tuple[float, ...] = (1.0, 1.0, 1.0)
+    colours: Any = None
+    entries: int = 0
+    range: tuple[float, float, float] = (0.0, 1.0, 1.0)
+    logarithm: bool = False
+    light: tuple[float, ...] | None = None
+    opacity: float | None = None
+    opacities: Any = None
+    value_opacity: bool = False
+    version: Any = None
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Keys of :data:`pvfiblets.engine.shaders.FEATURES`."""
+        if self.source == "none":
+            return ()
+        wanted = {
+            f"PAINT_{self.source.upper()}": True,
+            "PAINT_LOGARITHM": self.logarithm,
+            "PAINT_LIGHT": self.light is not None,
+            "PAINT_ALPHA": self.opacity is not None,
+            "PAINT_OPACITIES": self.opacities is not None,
+            "PAINT_VALUE_OPACITY": self.value_opacity,
+        }
+        return ("PAINTED", *(name for name, on in wanted.items() if on))
+
+    @property
+    def absorbance(self) -> float:
+        """Absorbance that a weight of 1 stands for, where colours have opacities of their own."""
+        return -math.log(1.0 - min(self.opacity or 0.0, MOST_OPAQUE)) / 255.0
+
+    def bind(self, program: Any) -> None:
+        """Bind textures, and set those uniforms that a program has."""
+        if self.colours is not None and "paint_colours" in program:
+            self.colours.use(GATHERING["paint_colours"])
+        if self.opacities is not None and "paint_opacities" in program:
+            self.opacities.use(GATHERING["paint_opacities"])
+        unit = self.absorbance
+        set_uniforms(
+            program,
+            paint_colours=GATHERING["paint_colours"],
+            paint_opacities=GATHERING["paint_opacities"],
+            paint_solid=tuple(self.color[:3]),
+            paint_entries=self.entries,
+            paint_range=self.range,
+            paint_light=self.light,
+            paint_opacity=self.opacity,
+            paint_unit=1.0 / unit if unit > 0.0 else 0.0,
+        )
+
+
+def set_uniforms(program: Any, **values: Any) -> None:
+    """Set those uniforms of a program that it has."""
+    for name, value in values.items():
+        if name in program:
+            program[name] = value
+
+
+class Gathered:
+    """The sums of a picture.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : GLExtras
+    size : tuple of int
+    slices : int
+        Sums of a pixel.
+    painted : bool
+        Whether there are colours beside numbers.
+    words : bool
+        Words of 32 bits: of each pixel red, green, blue and weight, or the weight alone. Else float32 with these in its
+        channels. A slice has a layer.
+
+    Raises
+    ------
+    GPUMemoryError
+        If memory does not suffice.
+
+    Attributes
+    ----------
+    texture : moderngl.TextureArray
+        Of words with colours four times as wide as the picture, or twice as wide and high, where that is too much.
+    shape : tuple of int
+        Columns and rows of a pixel's words.
+    framebuffer : moderngl.Framebuffer
+        Of its layers.
+    keys : moderngl.Texture or None
+        rgba32ui, if there are several slices: depth keys of the nearest line, and of where each slice but the first
+        begins.
+    """
+
+    def __init__(
+        self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], slices: int, painted: bool, words: bool
+    ) -> None:
+        self.size, self.slices, self.painted, self.words = size, slices, painted, words
+        self.shape = (1, 1)
+        if words and painted:
+            self.shape = (4, 1) if 4 * size[0] <= int(ctx.info["GL_MAX_TEXTURE_SIZE"]) else (2, 2)
+        channels = 1 if words else 4
+        self.nbytes = 4 * math.prod(size) * slices * math.prod(self.shape) * channels
+        self.keys: moderngl.Texture | None = None
+        self._key_target: moderngl.Framebuffer | None = None
+        held: list[Any] = []
+        try:
+            if slices > 1:
+                self.keys = ctx.texture(size, 4, dtype="u4")
+                self.keys.filter = moderngl.NEAREST, moderngl.NEAREST
+                held.append(self.keys)
+                self._key_target = ctx.framebuffer([self.keys])
+                held.append(self._key_target)
+                self.nbytes += 16 * size[0] * size[1]
+            shape, dtype = (self.shape[0] * size[0], self.shape[1] * size[1]), "u4" if words else "f4"
+            self.texture = ctx.texture_array((*shape, slices), channels, dtype=dtype)
+            self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
+            held.append(self.texture)
+            # moderngl attaches whole textures: these hold the places.
+            places = [ctx.renderbuffer(shape, channels, dtype=dtype) for _ in range(slices)]
+            held += places
+            self.framebuffer = ctx.framebuffer(places)
+            for layer in range(slices):
+                gl.attach_layer(self.framebuffer, self.texture, layer, layer)
+            for place in places:
+                place.release()
+        except moderngl.Error as error:
+            for thing in held:
+                thing.release()
+            width, height = size
+            raise GPUMemoryError(f"no memory for {self.nbytes} bytes of sums of {width} x {height} pixels") from error
+
+
+    def find_keys(self, ctx: moderngl.Context, programs: Programs, nearest: GBuffer, distances: SliceDistances) -> None:
+        """Find where the slices of each pixel begin, if there are several."""
+        if self._key_target is None:
+            return
+        program, array = programs.screen("fiblets/gather/slice_keys.frag")
+        nearest.depth.use(GATHERING["nearest_depth"])
+        set_uniforms(
+            program,
+            nearest_depth=GATHERING["nearest_depth"],
+            slice_distances=distances.terms,
+            slice_far=distances.far,
+            slice_edges=slice_edges(),
+        )
+        ctx.enable_only(moderngl.NOTHING)
+        self._key_target.use()
+        array.render(moderngl.TRIANGLES, vertices=3)
+
+    def clear(self, gl: GLExtras) -> None:
+        """Empty the sums."""
+        with gl.framebuffers_kept():
+            for layer in range(self.slices):
+                if self.words:
+                    gl.clear_integers(self.framebuffer, (0,), layer)
+                else:
+                    gl.fill(self.framebuffer, layer, (0.0, 0.0, 0.0, 0.0))
+
+    def read(self) -> npt.NDArray[np.float64]:
+        """Return ``(slices, height, width, 4)`` red, green, blue and weight, the lowest row first."""
+        width, height = self.size
+        if not self.words:
+            raw = np.frombuffer(self.texture.read(), "<f4").reshape(self.slices, height, width, 4)
+            return raw.astype(np.float64)
+        raw = np.frombuffer(self.texture.read(), "<u4").reshape(self.slices, *self.texture.size[1::-1])
+        found = np.zeros((self.slices, height, width, 4))
+        if not self.painted:
+            found[..., 3] = raw
+        else:
+            for channel in range(4):
+                columns, rows = self.shape
+                found[..., channel] = raw[:, channel // columns :: rows, channel % columns :: columns]
+        return found
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        for thing in (self.framebuffer, self._key_target, self.keys, self.texture):
+            if thing is not None:
+                thing.release()
+        self._key_target = self.keys = None
+
+
+@dataclass(frozen=True)
+class Gather:
+    """What a pipeline is told about adding up.
+
+    Attributes
+    ----------
+    target : Gathered
+    paint : Paint
+    nearest : GBuffer
+        The picture, which slices begin behind.
+    outside : moderngl.Texture, optional
+        Depth keys of what hides lines, r32ui of the picture's size.
+    """
+
+    target: Gathered
+    paint: Paint
+    nearest: GBuffer
+    outside: moderngl.Texture | None = None
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Keys of :data:`pvfiblets.engine.shaders.FEATURES`."""
+        sliced = ("GATHER_SLICES",) if self.target.slices > 1 else ()
+        outside = ("GATHER_OUTSIDE",) if self.outside is not None else ()
+        return ("GATHER", *sliced, *outside, *self.paint.features)
+
+    def bind(self, program: Any) -> None:
+        """Bind what programs look at, and tell them where."""
+        self.paint.bind(program)
+        set_uniforms(program, word_shape=self.target.shape)
+        sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "owner", "ids", "position")}
+        sources |= {"slice_keys": self.target.keys, "outside_depth": self.outside}
+        for name, texture in sources.items():
+            if texture is not None and name in program:
+                texture.use(GATHERING[name])
+                program[name] = GATHERING[name]
+
+    def bind_images(self) -> None:
+        """Bind what compute stages read and write."""
+        self.target.texture.bind_to_image(SUM_IMAGES["gathered"], read=True, write=True)
+        if self.target.keys is not None:
+            self.target.keys.bind_to_image(SUM_IMAGES["slice_keys"], read=True, write=False)
+            self.nearest.owner.bind_to_image(SUM_IMAGES["nearest_owner"], read=True, write=False)
+
+
+class Gatherer:
+    """Adds up what all lines show, and keeps it until something changes.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : GLExtras
+    programs : Programs
+    make : callable
+        Makes a pipeline, which keeps its own record of fiblets.
+    """
+
+    def __init__(
+        self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, make: Callable[[], Pipeline]
+    ) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._pipeline = make()
+        self._held: Gathered | None = None
+        self._made: Any = None
+        self._squares: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
+        self._greatest: tuple[Any, float] | None = None
+
+    def of(
+        self,
+        nearest: GBuffer,
+        paint: Paint,
+        slices: int,
+        distances: SliceDistances,
+        make_job: Callable[[], DrawRequest],
+        outside: Callable[[], moderngl.Texture | None] | None = None,
+        state: Any = None,
+    ) -> Gathered:
+        """Return the sums of a picture, made unless they are there.
+
+        Parameters
+        ----------
+        nearest : GBuffer
+            The picture.
+        paint : Paint
+        slices : int
+            1 or :data:`SLICES`.
+        distances : SliceDistances
+        make_job : callable
+            Returns the request that the picture was drawn by, with everything bound.
+        outside : callable, optional
+            Returns the depth keys of what hides lines, r32ui of the picture's size, or None.
+        state : object
+            Another one where that depth may be another.
+
+        Raises
+        ------
+        EngineError
+            If memory does not suffice, or a program does not compile.
+        """
+        key = nearest.generation, nearest.size, paint, slices, distances, state
+        if self._held is not None and self._made == key:
+            return self._held
+        self._made = None
+        hides = None if outside is None else outside()
+        request = make_job()
+        held = self._resize(nearest.size, slices, bool(paint.features), self._pipeline.gathers_words(request))
+        with self._gl.framebuffers_kept():
+            held.find_keys(self._ctx, self._programs, nearest, distances)
+        gather = Gather(held, paint, nearest, hides)
+        self._pipeline.gather(replace(request, occlusion=None, gather=gather, across=(), edges=()))
+        self._made = key
+        return held
+
+    def _resize(self, size: tuple[int, int], slices: int, painted: bool, words: bool) -> Gathered:
+        held = self._held
+        if held is None or (held.size, held.slices, held.painted, held.words) != (size, slices, painted, words):
+            if held is not None:
+                held.release()
+                self._held = None
+            self._held = held = Gathered(self._ctx, self._gl, size, slices, painted, words)
+        return held
+
+    def greatest(self) -> float:
+        """Return the greatest weight of a pixel in the first slice of what was made last; waits for the GPU."""
+        held = self._held
+        assert held is not None
+        if self._greatest is not None and self._greatest[0] == self._made:
+            return self._greatest[1]
+        width, height = (-(-side // GREATEST_SIDE) for side in held.size)
+        if self._squares is None or self._squares[0].size != (width, height):
+            self._drop_squares()
+            texture = self._ctx.texture((width, height), 1, dtype="f4")
+            self._squares = texture, self._ctx.framebuffer([texture])
+        texture, framebuffer = self._squares
+        features = [*(["GATHER_WORDS"] if held.words else []), *(["PAINTED"] if held.painted else [])]
+        program, array = self._programs.screen("fiblets/gather/greatest.frag", features)
+        held.texture.use(GATHERING["gathered"])
+        set_uniforms(program, gathered=GATHERING["gathered"], size=held.size, word_shape=held.shape)
+        with self._gl.framebuffers_kept():
+            self._ctx.enable_only(moderngl.NOTHING)
+            framebuffer.use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+            found = float(np.frombuffer(texture.read(), "<f4").max())
+        self._greatest = self._made, found
+        return found
+
+    def _drop_squares(self) -> None:
+        if self._squares is not None:
+            for thing in self._squares[::-1]:
+                thing.release()
+        self._squares = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        own = sum(buffer.size for buffer in self._pipeline.buffers.values())
+        squares = 0 if self._squares is None else 4 * math.prod(self._squares[0].size)
+        return own + squares + (0 if self._held is None else self._held.nbytes)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        self._pipeline.release()
+        self._drop_squares()
+        if self._held is not None:
+            self._held.release()
+        self._held = self._made = self._greatest = None

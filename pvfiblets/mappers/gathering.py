@@ -1,0 +1,159 @@
+"""What effects share that show all lines of a pixel: the sums that the engine makes of them, as textures and uniforms.
+
+The engine adds up what lines add (`pvfiblets.engine.fiblets.gathering`); which colours they have is the mapper's to
+say.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+
+from pvfiblets.engine.fiblets.gathering import Gathered, Paint
+from pvfiblets.mappers.scene import others_opaque
+from pvfiblets.mappers.scene_depth import OutsideDepth
+from pvfiblets.mappers.scene_state import scene_state
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers.shader_effects import Draw
+
+__all__ = ["Sums", "paint_of"]
+
+_SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
+"""Where light comes from, in view coordinates (``shaders/resolve/line_light.glsl``)."""
+
+
+def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
+    """Return the colours that lines have in a draw.
+
+    Parameters
+    ----------
+    draw : Draw
+    lit : bool
+        Whether light dims them as it dims the nearest.
+    opacity : float, optional
+        Of the actor, where lines have opacities of their own.
+    """
+    colouring, textures = draw.colouring, draw.textures
+    light = None
+    if lit:
+        to_light = np.linalg.inv(draw.frame.directions_to_view) @ _SHOULDER
+        light = tuple(float(x) for x in to_light / (np.linalg.norm(to_light) or 1.0))
+    common: dict[str, Any] = {"light": light, "opacity": opacity, "version": colouring}
+    if opacity is not None:
+        common["opacities"] = textures.get("fibletOpacities")
+        common["value_opacity"] = colouring.opacity_source is not None
+    if colouring.mode == "orientation":
+        return Paint("direction", **common)
+    if colouring.mode == "solid":
+        return Paint("solid", color=tuple(colouring.color), **common)
+    if "fibletStreamlineColours" in textures:
+        return Paint("streamline", colours=textures["fibletStreamlineColours"], **common)
+    return Paint(
+        "table",
+        colours=textures["fibletTable"],
+        entries=len(colouring.lut),
+        range=colouring.scaled_range(),
+        logarithm=colouring.log_scale,
+        **common,
+    )
+
+
+class Sums:
+    """What an effect keeps in one window: the engine that has sums, and empty textures where there are none.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Of the window.
+
+    Attributes
+    ----------
+    held : Gathered or None
+        Of the last draw.
+    most : float
+        Lines in its fullest pixel, where an effect asked for that.
+    paint : Paint or None
+        Of the last draw, where an effect notes it.
+    """
+
+    def __init__(self, ctx: Any) -> None:
+        self._ctx = ctx
+        self._engine: Any = None
+        self._outside: OutsideDepth | None = None
+        self._blank: dict[str, Any] = {}
+        self.held: Gathered | None = None
+        self.most = 1.0
+        self.paint: Paint | None = None
+
+    def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:
+        """Return textures by the names of their samplers.
+
+        Parameters
+        ----------
+        draw : Draw
+        paint : Paint, optional
+            Without, nothing is added up, and what there was is given back.
+        sliced : bool
+            As of ``FibletRenderer.gather``.
+        """
+        if paint is None:
+            self._drop()
+        else:
+            self._engine = draw.engine
+            hidden = draw.actor is not None and others_opaque(draw.renderer, draw.actor)
+            self.held = draw.engine.gather(
+                draw.view,
+                draw.style,
+                paint,
+                sliced=sliced,
+                outside=(lambda: self._depth(draw)) if hidden else None,
+                state=scene_state(draw.renderer) if hidden else None,
+            )
+        found = {}
+        for name, dtype, words in (("fibletSumWords", "u4", True), ("fibletSumFloats", "f4", False)):
+            here = self.held is not None and self.held.words is words
+            found[name] = self.held.texture if here and self.held is not None else self._empty(name, dtype)
+        return found
+
+    def _depth(self, draw: Draw) -> Any:
+        """Return the depth of what is opaque in the scene, or None where it cannot be had."""
+        if self._outside is None:
+            self._outside = OutsideDepth(self._ctx)
+        viewport = draw.frame.viewport
+        found = self._outside.copy(viewport)
+        return self._outside.copy_of_window(draw.renderer, viewport[2:]) if found is None else found
+
+    def _empty(self, name: str, dtype: str) -> Any:
+        """Return an array of one texel, zero: no other kind of texture will do for a sampler that reads none."""
+        if name not in self._blank:
+            self._blank[name] = self._ctx.texture_array((1, 1, 1), 1, bytes(4), alignment=1, dtype=dtype)
+            self._blank[name].filter = moderngl.NEAREST, moderngl.NEAREST
+        return self._blank[name]
+
+    def set_uniforms(self, program: Any) -> None:
+        """Say how to read the sums."""
+        held = self.held
+        program.SetUniform2i("fibletSumShape", (0, 0) if held is None or not held.words else held.shape)
+
+    def explain(self) -> dict[str, list[dict[str, Any]]]:
+        """Return ``passes``, of which the engine tells, and ``buffers``, name and bytes."""
+        buffers = [{"name": f"{name} (none)", "bytes": 4} for name in self._blank]
+        return {"passes": [], "buffers": buffers}
+
+    def _drop(self) -> None:
+        if self._engine is not None:
+            self._engine.drop_gathered()
+        self._engine = self.held = None
+
+    def release(self) -> None:
+        """Give everything back; twice is harmless."""
+        self._drop()
+        for array in self._blank.values():
+            array.release()
+        self._blank.clear()
+        if self._outside is not None:
+            self._outside.release()
+            self._outside = None

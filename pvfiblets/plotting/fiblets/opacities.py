@@ -1,0 +1,111 @@
+"""Where the opacity of streamlines comes from, beside one number for all: as in ``add_mesh``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+__all__ = ["TRANSFERS", "Opacities", "find_opacities"]
+
+TRANSFERS = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_r")
+"""Transfer functions that a page offers; PyVista has more sigmoids."""
+
+POINTS = "opacity"
+"""Name of an array of opacities per point among the fiblets' own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Opacities:
+    """What a choice of opacities means for some fiblets; one of these is given.
+
+    Attributes
+    ----------
+    transfer : str or numpy.ndarray, optional
+        Of the colour map: PyVista's name of a transfer function, or opacities 0 to 1 from the first colour to the last.
+    streamlines : numpy.ndarray, optional
+        (n_streamlines,) float64, 0 to 1.
+    points : str, optional
+        Name of a per-point array.
+    """
+
+    transfer: Any = None
+    streamlines: np.ndarray | None = None
+    points: str | None = None
+
+
+def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacities]:
+    """Find what a choice of opacities means.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        Stays as it is.
+    choice : str or array_like
+        A name of a per-point or per-streamline array, or of a transfer function; or numbers from 0 to 1: as many as
+        points, as many as streamlines, or, of any other number, a transfer function.
+
+    Returns
+    -------
+    fiblets : FibletSet
+        The same, or one that shares its arrays and has the opacities of points.
+    opacities : Opacities
+
+    Raises
+    ------
+    KeyError
+        If there is no array and no transfer function of that name.
+    ValueError
+        If opacities do not lie between 0 and 1.
+    """
+    from pvfiblets.plotting.fiblets.sources import with_stored
+
+    if isinstance(choice, str):
+        return fiblets, _named(fiblets, choice)
+    values = np.asarray(choice)
+    if values.ndim != 1 or values.dtype.kind not in "buif" or len(values) < 1:
+        raise ValueError(
+            f"opacity has shape {values.shape} and type {values.dtype}; give a number, {fiblets.n_streamlines} numbers "
+            f"(one per streamline), {fiblets.n_points} (one per point), or some for the colour map, the lowest first"
+        )
+    values = values.astype(np.float64)
+    check_range("opacity", values)
+    if len(values) == fiblets.n_streamlines:
+        return fiblets, Opacities(streamlines=values)
+    if len(values) == fiblets.n_points:
+        return with_stored(fiblets, POINTS, values), Opacities(points=POINTS)
+    return fiblets, Opacities(transfer=values)
+
+
+def _named(fiblets: FibletSet, name: str) -> Opacities:
+    if name in fiblets.per_point:
+        stored = fiblets.per_point[name]
+        check_range(f"opacity {name!r}", np.array([stored.lo, stored.hi]))
+        return Opacities(points=name)
+    if name in fiblets.per_streamline:
+        values = np.asarray(fiblets.per_streamline[name])
+        if values.ndim != 1:
+            raise ValueError(f"opacity {name!r} has {values.ndim} dimensions; give one number per streamline")
+        check_range(f"opacity {name!r}", values)
+        return Opacities(streamlines=values.astype(np.float64))
+    from pyvista.plotting.tools import opacity_transfer_function
+
+    try:
+        opacity_transfer_function(name, 4)
+    except (KeyError, ValueError) as error:
+        arrays = ", ".join(repr(key) for key in (*fiblets.per_point, *fiblets.per_streamline)) or "none"
+        known = ", ".join(repr(key) for key in TRANSFERS)
+        raise KeyError(f"there is no opacity {name!r}. Arrays: {arrays}; transfer functions: {known}") from error
+    return Opacities(transfer=name)
+
+
+def check_range(what: str, values: np.ndarray) -> None:
+    """Raise unless numbers lie between 0 and 1; NaN counts as 0."""
+    numbers = np.asarray(values, np.float64)
+    least, most = float(np.nanmin(numbers, initial=0.0)), float(np.nanmax(numbers, initial=0.0))
+    if least < 0.0 or most > 1.0:
+        raise ValueError(f"{what} lies between {least:g} and {most:g}; give numbers from 0, not to be seen, to 1")

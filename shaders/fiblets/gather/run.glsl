@@ -1,0 +1,7 @@
+// The direction of a line where all lines of a pixel are added up: that of the segment, as a unit vector. Among many lines on each
+// other nobody sees that it is not continuous along each.
+
+vec3 run_direction(vec3 run) {
+    float square = dot(run, run);
+    return square > 0.0 ? run * inversesqrt(square) : vec3(1.0, 0.0, 0.0);
+}
