@@ -17,7 +17,7 @@ from pvfiblets.plotting.linked_property import own_writes
 _BACKGROUND = "background"
 _LIGHT = "light"
 _ROUND = "tube_shading"
-DENSITY = STYLES[2]
+DENSITY = "density"
 
 
 class SurfaceShading:
