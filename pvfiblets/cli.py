@@ -17,7 +17,7 @@ from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError
 
 # Those of pvfiblets.plotting.fiblets.looks, without loading it.
-LOOKS = ("plain", "illuminated", "tubes", "ink", "studio")
+LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
 
 # What bad input and a bad environment raise. Anything else is a mistake in this program, and its

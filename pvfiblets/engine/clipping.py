@@ -28,15 +28,15 @@ _HUGE = 1e30  # in float32, and so is its double
 
 
 def clip_planes_block(
-    view: View, line_width: float, origin: Array, scale: Array, top: int, reach: float
+    view: View, half_width: float, origin: Array, scale: Array, top: int, reach: float
 ) -> bytes | None:
     """Pack the ``ClipPlanes`` uniform block (std140) with the planes that matter.
 
     Parameters
     ----------
     view : View
-    line_width : float
-        Pixels; 1 is a thin line.
+    half_width : float
+        Pixels that a line's brush reaches; 0 for thin lines.
     origin, scale, top
         Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
     reach : float
@@ -53,8 +53,7 @@ def clip_planes_block(
     reference, to_data, to_clip = local_frame(view, origin, scale, top)
     local = _normalised(planes) @ to_data
     tilts = _tilts(local, to_clip, view.size)
-    half = 0.0 if line_width == 1.0 else line_width / 2.0
-    brush = half * np.linalg.norm(tilts, axis=1)
+    brush = half_width * np.linalg.norm(tilts, axis=1)
     slope = float(np.linalg.norm(to_clip[3, :3]))
     corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
     heights = corners @ local[:, :3].T + local[:, 3]

@@ -9,7 +9,7 @@ from pvfiblets import cli
 from pvfiblets.codec.compress import compress
 from pvfiblets.engine.effects.halos import HaloPass
 from pvfiblets.mappers.spacing import MOST_STREAMLINES, line_spacing_of
-from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, Apart, look_of, settings_of
+from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, Apart, Fewer, look_of, settings_of
 from pvfiblets.query.measures import measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import layers
@@ -92,10 +92,27 @@ def test_looks_can_be_set_and_read_back(plotter):
     assert actor.copy().look is None
     actor.look = None
     assert not actor.depth_cue
-    with pytest.raises(ValueError, match="look is 'fancy'; give one of 'plain', 'illuminated', 'tubes', 'ink'"):
+    with pytest.raises(ValueError, match="look is 'fancy'; give one of 'plain', 'illuminated', 'tubes', 'glass'"):
         actor.look = "fancy"
     with pytest.raises(ValueError, match="look is 'fancy'; give one of"):
         plotter.add_fiblets(sheet(2.0, 5), look="fancy")
+
+
+def test_glass_is_the_fainter_the_more_streamlines_there_are():
+    found = [settings_of("glass", compress(sheet(0.5, count)))["opacity"] for count in (2, 300, 4800)]
+    assert found == [0.5, 0.3, 0.15]
+    assert Fewer(0.3, 0.2, 0.5).of(compress(sheet(0.5, 4800))) == 0.2
+
+
+def test_a_look_is_the_same_in_the_call_and_afterwards(plotter):
+    """Of all of them: defaults of other arguments do not come after it."""
+    for name in LOOKS:
+        made = plotter.add_fiblets(sheet(2.0, 5), look=name, name="one")
+        assert made.look == name
+        changed = plotter.add_fiblets(sheet(2.0, 5), name="one")
+        changed.look = name
+        assert {key: getattr(made, key) for key in PLAIN} == {key: getattr(changed, key) for key in PLAIN}
+        assert list(made.mapper.effects) == list(changed.mapper.effects)
 
 
 def test_arguments_go_before_a_look(plotter):
@@ -175,8 +192,8 @@ def test_a_page_takes_a_look_and_says_when_it_is_one_no_more():
                 assert layers.check("tractogram", key, value, data) == value
         told = layers.looks("tractogram", settings)
         wanted = settings_of(name, data)
-        if name == "ink":
-            del wanted["halos"]  # which its style sets
+        if wanted["style"] != "surface":
+            del wanted["halos"]  # which other styles set
         assert {key: told[key] for key in wanted} == wanted
     settings = layers.changed("tractogram", settings, "line_width", 9.0, data)
     assert settings["look"] is None

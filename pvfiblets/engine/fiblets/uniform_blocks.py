@@ -116,7 +116,7 @@ class SharedBlocks:
         else:
             self._write("tubes", TUBES_BLOCK, tubes_block(view, style.radius, *self.place))
             radius += style.radius
-        planes = clip_planes_block(view, 2.0 * style.half_width or 1.0, *self.place, radius)
+        planes = clip_planes_block(view, style.half_width, *self.place, radius)
         if planes is None:
             self._drop("clip_planes")
         else:

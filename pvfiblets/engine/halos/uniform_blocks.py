@@ -102,7 +102,7 @@ class HaloBlocks:
         """
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
         self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width))
-        planes = clip_planes_block(view, 1.0, *self._place, 0.0)
+        planes = clip_planes_block(view, 0.0, *self._place, 0.0)
         if planes is not None:
             self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
         elif "clip_planes" in self.buffers:

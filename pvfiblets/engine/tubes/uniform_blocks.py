@@ -92,7 +92,7 @@ class TubeBlocks:
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
         self._put("tubes", TUBES_BLOCK, tubes)
         self._put("splines", SPLINES_BLOCK, splines)
-        planes = clip_planes_block(view, 1.0, *self._place, reach)
+        planes = clip_planes_block(view, 0.0, *self._place, reach)
         if planes is None:
             if "clip_planes" in self.buffers:
                 self.buffers.pop("clip_planes").release()

@@ -97,9 +97,11 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
         self.opacity = theme.opacity if given["opacity"] is None else given["opacity"]
-        if given["look"] is not None:
-            self._take_look(given["look"], but=given.named)
-        self._take({name: value for name, value in given.items() if name != "look"})
+        look = given["look"]
+        if look is not None:
+            self._take_look(look, but=given.named)
+        said = given if look is None else {name: given[name] for name in given.named}
+        self._take({name: value for name, value in said.items() if name != "look"})
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name

@@ -17,7 +17,7 @@ from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
 
-__all__ = ["LOOKS", "Apart", "Look", "check_look", "look_of", "settings_of"]
+__all__ = ["LOOKS", "Apart", "Fewer", "Look", "check_look", "look_of", "settings_of"]
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,27 @@ class Apart:
 
 
 @dataclass(frozen=True)
+class Fewer:
+    """An opacity that falls with the number of streamlines, which lie on each other.
+
+    Attributes
+    ----------
+    opacity : float
+        Of 300 streamlines. It falls with the fourth root of their number: more of them also lie beside each other.
+    least, most : float
+    """
+
+    opacity: float
+    least: float
+    most: float
+
+    def of(self, data: Any) -> float:
+        """Return the opacity for some data."""
+        share = self.opacity * (300.0 / max(data.n_streamlines, 1)) ** 0.25
+        return float(f"{min(max(share, self.least), self.most):.2g}")
+
+
+@dataclass(frozen=True)
 class Look:
     """One look.
 
@@ -58,7 +79,7 @@ class Look:
     doc : str
         What it shows, for people.
     settings : mapping
-        By name; values as they are set, or an `Apart`.
+        By name; values as they are set, or an `Apart` or `Fewer`.
     """
 
     doc: str
@@ -72,12 +93,15 @@ RADIUS = Apart(0.35, 1.0 / 1600.0, 1.0 / 400.0)
 THICK = Apart(0.5, 1.0 / 1100.0, 1.0 / 270.0)
 WIDTH = Apart(0.4, 1.0 / WINDOW, 2.5 / WINDOW, WINDOW)
 
+GLASS = Fewer(0.3, 0.05, 0.5)
+
 PLAIN = {
     "line_width": 1.0,
     "style": "surface",
     "tube_radius": None,
     "tube_shading": False,
     "opacity": 1.0,
+    "transparency": "all",
     "lighting": True,
     "illuminated": False,
     "ambient_occlusion": False,
@@ -93,6 +117,11 @@ LOOKS: dict[str, Look] = {
         PLAIN | {"line_width": WIDTH, "illuminated": True, "ambient_occlusion": True},
     ),
     "tubes": Look("round tubes", PLAIN | {"tube_radius": RADIUS}),
+    "glass": Look(
+        "lines through which one sees all others",
+        PLAIN | {"line_width": WIDTH, "opacity": GLASS},
+    ),
+    "density": Look("light that adds up where lines lie on each other", PLAIN | {"style": "density"}),
     "ink": Look(
         "a drawing in black or white, whose gaps show what lies behind",
         PLAIN | {"line_width": WIDTH, "style": "ink", "halos": {"color": "background"}, "depth_cue": {"strength": 0.5}},
@@ -127,7 +156,7 @@ def settings_of(look: str, data: Any) -> dict[str, Any]:
     data : FibletSet
     """
     declared = LOOKS[look].settings
-    return {name: value.of(data) if isinstance(value, Apart) else value for name, value in declared.items()}
+    return {name: value.of(data) if isinstance(value, (Apart, Fewer)) else value for name, value in declared.items()}
 
 
 def look_of(settings: Mapping[str, Any], data: Any) -> str | None:

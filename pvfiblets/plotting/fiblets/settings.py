@@ -54,14 +54,16 @@ class FibletSettings(Settings):
         None,
         "Name of settings that give a finished picture together; ``None`` where they are no look.\n\n"
         "``'plain'``: thin lines in gentle light. ``'illuminated'``: lines that shine and lie in each\n"
-        "other's shade. ``'tubes'``: round tubes. ``'ink'``: a drawing in black or white, whose gaps show\n"
-        "what lies behind. ``'studio'``: thick tubes in soft shade, which fade with the distance.\n\n"
+        "other's shade. ``'tubes'``: round tubes. ``'glass'``: lines through which one sees all others.\n"
+        "``'density'``: light that adds up where lines lie on each other. ``'ink'``: a drawing in black or\n"
+        "white, whose gaps show what lies behind. ``'studio'``: thick tubes in soft shade, which fade with\n"
+        "the distance.\n\n"
         "Setting it sets line width, style, tubes, opacity, light and shading, no colours; widths follow\n"
         "the distance between lines. Change any of these afterwards.",
         argument="Settings that give a finished picture together: ``\"plain\"``, ``\"illuminated\"``, ``\"tubes\"``, "
-        "``\"ink\"`` or ``\"studio\"``. Other arguments go before it.",
+        "``\"glass\"``, ``\"density\"``, ``\"ink\"`` or ``\"studio\"``. Other arguments go before it.",
         kind="str | None",
-        header='{"plain", "illuminated", "tubes", "ink", "studio"}, optional',
+        header='{"plain", "illuminated", "tubes", "glass", "density", "ink", "studio"}, optional',
         where=LATER,
         check=check_look,
     )
