@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 import numpy as np
 
-from pvfiblets.engine.fiblets.gathering import Gathered, Paint
+from pvfiblets.engine.fiblets.gathering import Gathered
+from pvfiblets.engine.fiblets.paint import Paint
 from pvfiblets.mappers.scene import others_opaque
 from pvfiblets.mappers.scene_depth import OutsideDepth
 from pvfiblets.mappers.scene_state import scene_state

@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pvfiblets.engine.fiblets.gathering import SLICES, Paint
+from pvfiblets.engine.fiblets.gathering import SLICES
+from pvfiblets.engine.fiblets.paint import Paint
 from pvfiblets.mappers.gathering import Sums, paint_of
 from pvfiblets.mappers.shader_effects import ShaderEffect
 

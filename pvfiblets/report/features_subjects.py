@@ -66,7 +66,7 @@ def _layers(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
 
 
 def _summed(source: str, *, sliced: bool) -> Callable[..., None]:
-    from pvfiblets.engine.fiblets.gathering import Paint
+    from pvfiblets.engine.fiblets.paint import Paint
 
     def effect(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
         drawn.renderer.gather(view, drawn.style, Paint(source), sliced=sliced)

@@ -7,7 +7,8 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
-from pvfiblets.engine.fiblets.gathering import SLICES, Paint, SliceDistances, slice_edges
+from pvfiblets.engine.fiblets.gathering import SLICES, SliceDistances, slice_edges
+from pvfiblets.engine.fiblets.paint import Paint
 
 from .cells import clear_of, line_samples
 from .pictures import EMPTY, EVERY_POINT, SIZE, read, unpacked_tangent

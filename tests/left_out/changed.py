@@ -93,7 +93,9 @@ CHANGED = {
         resolve="layers_covered, slices, slices_colour, sums",
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
-        modules="engine.fiblets.gathering, mappers.gathering, mappers.scene_state, mappers.slices",
+        modules="""
+            engine.fiblets.gathering, engine.fiblets.paint, mappers.gathering, mappers.scene_state, mappers.slices
+        """,
     ),
     "opacity, the nearest": What(),
     "density": What(
@@ -102,7 +104,9 @@ CHANGED = {
         resolve="-line_light, density, legend_colours, sums",
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
-        modules="engine.fiblets.gathering, mappers.density, mappers.gathering, mappers.scene_state",
+        modules="""
+            engine.fiblets.gathering, engine.fiblets.paint, mappers.density, mappers.gathering, mappers.scene_state
+        """,
     ),
     "density, by a map": What(
         ran="fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
@@ -110,7 +114,9 @@ CHANGED = {
         resolve="-line_light, -colour_orientation, colour_point_scalar, density_value, legend_colours, sums",
         passes="gather",
         buffers="fibletSumFloats (none), fibletTable, gathered",
-        modules="engine.fiblets.gathering, mappers.density, mappers.gathering, mappers.scene_state",
+        modules="""
+            engine.fiblets.gathering, engine.fiblets.paint, mappers.density, mappers.gathering, mappers.scene_state
+        """,
     ),
     "layers": What(
         ran="fiblets/layers/copy.frag",

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 
     from ...codec.fibletset import FibletSet
     from ...query.region import Region
-    from .gathering import Gathered, Gatherer, Paint
+    from .gathering import Gathered, Gatherer
+    from .paint import Paint
     from .region_query import RegionQuery
     from .sampled_volume import VolumeSource
 
@@ -222,7 +223,8 @@ class FibletRenderer(Drawable[FibletStyle]):
         EngineError
             As :meth:`render`.
         """
-        from .gathering import SLICES, Gatherer, Paint, SliceDistances
+        from .gathering import SLICES, Gatherer, SliceDistances
+        from .paint import Paint
 
         style = style or FibletStyle()
         nearest = self.render(view, style)
