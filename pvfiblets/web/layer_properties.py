@@ -82,7 +82,7 @@ TRACTOGRAM = _table(
     [
         own("look", "choice", "Look", "Widths, light and shading that give a finished picture together.", "Look",
             "plain",
-            choices=[(None, "my own"), *((name, f"{name}: {look.doc}") for name, look in LOOKS.items())]),
+            choices=[(None, "my own"), *((name, name) for name in LOOKS)]),
         _scalars(_line_scalars, "orientation", volumes=True),
     ],
     {
