@@ -40,8 +40,9 @@ def vertices(gl):
         array = gl.vertex_array(program, [])
         try:
             blocks.write(
-                view, reach=100.0, middle=MIDDLE, min_width=min_width, iterations=9, n_segments=tubes.n_segments
-            )
+                view, reach=100.0, middle=MIDDLE, min_width=min_width, drawn_width=min_width, iterations=9,
+                n_segments=tubes.n_segments,
+            )  # fmt: skip
             nodes.bind()
             for sampler, unit in TUBES.items():
                 library.set_sampler(program, sampler, unit)

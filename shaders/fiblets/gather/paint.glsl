@@ -10,11 +10,11 @@
 #if FEATURE_PAINT_SOLID
 uniform vec3 paint_solid;
 #endif
-#if FEATURE_PAINT_STREAMLINE
-uniform sampler2D paint_colours;   // one colour a streamline, row by row
+#if FEATURE_PAINT_STREAMLINE || FEATURE_PAINT_TABLE
+// Row by row, one colour a streamline; or a table's, then those of below, above and NaN (resolve/colour_point_scalar.glsl).
+uniform sampler2D paint_colours;
 #endif
 #if FEATURE_PAINT_TABLE
-uniform sampler2D paint_colours;   // of a table, row by row, then those of below, above and NaN (resolve/colour_point_scalar.glsl)
 uniform int paint_entries;
 uniform vec3 paint_range;          // lo, hi, entries / (hi - lo); logarithms where the table is spread over these
 #endif
