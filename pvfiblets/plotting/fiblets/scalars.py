@@ -35,7 +35,6 @@ UNITS = {
     "n_points": "points",
     "coding_error": "coding error [mm]",
     "distance": "distance [mm]",
-    "density": "streamlines per pixel",
 }
 UNNAMED = "Data"
 
@@ -89,7 +88,7 @@ class Scalars:
     @property
     def title(self) -> str:
         """What the scalar bar says."""
-        return UNITS.get(self.name, self.name)
+        return "streamlines per pixel" if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
 
     def distinct(self, fiblets: FibletSet) -> int:
         """Return how many different numbers there are, NaN not counted; at least 1.
