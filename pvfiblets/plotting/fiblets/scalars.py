@@ -36,6 +36,7 @@ UNITS = {
     "coding_error": "coding error [mm]",
     "distance": "distance [mm]",
 }
+COUNTED = "streamlines per pixel"
 UNNAMED = "Data"
 
 MOST = 98.0
@@ -88,7 +89,7 @@ class Scalars:
     @property
     def title(self) -> str:
         """What the scalar bar says."""
-        return "streamlines per pixel" if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
+        return COUNTED if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
 
     def distinct(self, fiblets: FibletSet) -> int:
         """Return how many different numbers there are, NaN not counted; at least 1.
