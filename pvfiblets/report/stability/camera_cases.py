@@ -239,7 +239,7 @@ def _no_camera(_: Setting) -> Outcome:
         lambda: View((0, 5), matrix),
         lambda: View(SIZE, matrix, [[1.0, 0.0, np.nan, 0.0]]),
         lambda: View(SIZE, matrix, np.ones((9, 4))),
-        lambda: FibletStyle(line_width=0.5),
+        lambda: FibletStyle(line_width=0.0),
         lambda: FibletStyle(tolerance=np.inf),
         lambda: FibletStyle(radius=0.0),
     )
