@@ -13,7 +13,7 @@ from typing import Any
 import moderngl
 
 from .errors import EngineError
-from .moderngl_extras import GLExtras
+from .moderngl_extras import GLExtras, Uniform
 
 __all__ = ["MeshProgram"]
 
@@ -104,8 +104,8 @@ class MeshProgram:
         self._call(f"glGet{of}InfoLog", thing, size, None, said)
         raise moderngl.Error(f"{name}: {said.value.decode(errors='replace').strip()}")
 
-    def _active(self) -> dict[str, tuple[int, int]]:
-        """Location and type of every uniform outside of blocks."""
+    def _active(self) -> dict[str, Uniform]:
+        """Every uniform outside of blocks."""
         found = {}
         name = ctypes.create_string_buffer(_LONGEST)
         size, kind = ctypes.c_int(0), ctypes.c_uint(0)
@@ -115,7 +115,7 @@ class MeshProgram:
             )
             location = self._call("glGetUniformLocation", self.glo, name.value)
             if location >= 0:
-                found[name.value.decode().removesuffix("[0]")] = location, kind.value
+                found[name.value.decode().removesuffix("[0]")] = Uniform(location, kind.value)
         return found
 
     def __contains__(self, name: str) -> bool:
@@ -134,9 +134,9 @@ class MeshProgram:
         data = (word * len(numbers))(*numbers)
         self._call(f"glProgramUniform{size}{letters}v", self.glo, location, len(numbers) // size, data)
 
-    def get(self, name: str, default: Any) -> Any:  # noqa: ARG002
-        """Return `default`, as moderngl's does for what is missing: uniforms are set by name here."""
-        return default
+    def get(self, name: str, default: Any) -> Any:
+        """Return where a uniform is, or `default` if there is none outside of blocks."""
+        return self._uniforms.get(name, default)
 
     def draw_mesh_tasks(self, first: int, count: int) -> None:
         """Run `count` task work groups; `first` is 0, as the extension has no other."""

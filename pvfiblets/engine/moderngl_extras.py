@@ -18,14 +18,14 @@ import ctypes
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import moderngl
 
 from .errors import EngineError
 from .gl_loader import loader
 
-__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras"]
+__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras", "Uniform"]
 
 _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 
@@ -144,6 +144,20 @@ _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
 _COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
 _COLOR, _DEPTH = 0x1800, 0x1801
+
+
+class Uniform(NamedTuple):
+    """Where a uniform of a program is that moderngl did not make.
+
+    Attributes
+    ----------
+    location : int
+    kind : int
+        OpenGL's number of its type.
+    """
+
+    location: int
+    kind: int
 
 
 class BufferTexture:
@@ -295,25 +309,21 @@ class GLExtras:
         self.function("glTexBuffer")(_TEXTURE_BUFFER, enum, buffer.glo)
         return texture
 
-    def set_sampler(self, program: moderngl.Program | moderngl.ComputeShader, name: str, unit: int) -> None:
+    def set_sampler(self, program: Any, name: str, unit: int) -> None:
         """Tell a program from which texture unit a sampler of its reads, once and for all draws.
 
         moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
 
         Parameters
         ----------
-        program : moderngl.Program
+        program : moderngl.Program, moderngl.ComputeShader or pvfiblets.engine.mesh_program.MeshProgram
             Stays in use; moderngl uses its own before every draw.
         name : str
             Passed over if the linked program has no such uniform.
         unit : int
         """
-        if not isinstance(program, (moderngl.Program, moderngl.ComputeShader)):  # a MeshProgram
-            if name in program:
-                program[name] = unit
-            return
         uniform = program.get(name, None)
-        if isinstance(uniform, moderngl.Uniform):
+        if isinstance(uniform, (moderngl.Uniform, Uniform)):
             self.function("glUseProgram")(program.glo)
             self.function("glUniform1i")(uniform.location, unit)
 

@@ -65,7 +65,7 @@ class Density(ShaderEffect):
             raise ValueError(f"most is {self.most!r}; give a finite number of lines above 0, or None")
 
     @property
-    def features(self) -> frozenset[str]:  # type: ignore[override]  # of all effects but this one the same
+    def features(self) -> frozenset[str]:
         """Pieces of the resolve; those of the table are its colouring's."""
         return frozenset({"sums", "density"} if self.bright else {"sums"})
 

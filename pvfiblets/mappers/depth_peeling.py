@@ -11,9 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import moderngl
-
 from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
+from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.shader_effects import ShaderEffect
 
 _BESIDE = {
@@ -33,9 +32,8 @@ class _Held:
     """What is kept in one window: the engine that has layers, or empty textures in their place."""
 
     def __init__(self, ctx: Any) -> None:
-        self._ctx = ctx
         self._engine: Any = None
-        self._empty: dict[str, Any] = {}
+        self._empty = BlankArrays(ctx, "no layer")
         self.count = 1
 
     def layers(self, draw: Any, count: int) -> dict[str, Any]:
@@ -50,19 +48,12 @@ class _Held:
         return {name: self.blank(name) for name in ("depth", "ids", "position")}
 
     def blank(self, name: str) -> Any:
-        """Return a texture of one texel, zero."""
-        if name not in self._empty:
-            components, dtype = _EMPTY[name]
-            data = bytes(components * int(dtype[1]))
-            self._empty[name] = self._ctx.texture_array((1, 1, 1), components, data, alignment=1, dtype=dtype)
-            self._empty[name].filter = moderngl.NEAREST, moderngl.NEAREST
-        return self._empty[name]
+        """Return what a sampler of these may look at."""
+        return self._empty.of(name, *_EMPTY[name])
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
         """Return ``passes``, of which there are none of its own, and ``buffers``, name and bytes."""
-        sizes = {name: components * int(dtype[1]) for name, (components, dtype) in _EMPTY.items()}
-        buffers = [{"name": f"{name} (no layer)", "bytes": sizes[name]} for name in self._empty]
-        return {"passes": [], "buffers": buffers}
+        return {"passes": [], "buffers": self._empty.buffers()}
 
     def _drop_layers(self) -> None:
         if self._engine is not None:
@@ -72,9 +63,7 @@ class _Held:
     def release(self) -> None:
         """Give everything back; twice is harmless."""
         self._drop_layers()
-        for array in self._empty.values():
-            array.release()
-        self._empty.clear()
+        self._empty.release()
 
 
 @dataclass(frozen=True)
@@ -94,7 +83,7 @@ class Layers(ShaderEffect):
     """
 
     count: int = 4
-    features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered"})
+    features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered", "layers_geometry"})
 
     def __post_init__(self) -> None:
         if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import moderngl
 import numpy as np
 
 from pvfiblets.engine.fiblets.gathering import Gathered
 from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.scene import others_opaque
 from pvfiblets.mappers.scene_depth import OutsideDepth
 from pvfiblets.mappers.scene_state import scene_state
@@ -77,14 +77,14 @@ class Sums:
     most : float
         Lines in its fullest pixel, where an effect asked for that.
     paint : Paint or None
-        Of the last draw, where an effect notes it.
+        Of the last draw.
     """
 
     def __init__(self, ctx: Any) -> None:
         self._ctx = ctx
         self._engine: Any = None
         self._outside: OutsideDepth | None = None
-        self._blank: dict[str, Any] = {}
+        self._blank = BlankArrays(ctx, "none")
         self.held: Gathered | None = None
         self.most = 1.0
         self.paint: Paint | None = None
@@ -100,6 +100,7 @@ class Sums:
         sliced : bool
             As of ``FibletRenderer.gather``.
         """
+        self.paint = paint
         if paint is None:
             self._drop()
         else:
@@ -116,7 +117,7 @@ class Sums:
         found = {}
         for name, dtype, words in (("fibletSumWords", "u4", True), ("fibletSumFloats", "f4", False)):
             here = self.held is not None and self.held.words is words
-            found[name] = self.held.texture if here and self.held is not None else self._empty(name, dtype)
+            found[name] = self.held.texture if here and self.held is not None else self._blank.of(name, 1, dtype)
         return found
 
     def _depth(self, draw: Draw) -> Any:
@@ -127,13 +128,6 @@ class Sums:
         found = self._outside.copy(viewport)
         return self._outside.copy_of_window(draw.renderer, viewport[2:]) if found is None else found
 
-    def _empty(self, name: str, dtype: str) -> Any:
-        """Return an array of one texel, zero: no other kind of texture will do for a sampler that reads none."""
-        if name not in self._blank:
-            self._blank[name] = self._ctx.texture_array((1, 1, 1), 1, bytes(4), alignment=1, dtype=dtype)
-            self._blank[name].filter = moderngl.NEAREST, moderngl.NEAREST
-        return self._blank[name]
-
     def set_uniforms(self, program: Any) -> None:
         """Say how to read the sums."""
         held = self.held
@@ -141,8 +135,7 @@ class Sums:
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
         """Return ``passes``, of which the engine tells, and ``buffers``, name and bytes."""
-        buffers = [{"name": f"{name} (none)", "bytes": 4} for name in self._blank]
-        return {"passes": [], "buffers": buffers}
+        return {"passes": [], "buffers": self._blank.buffers()}
 
     def _drop(self) -> None:
         if self._engine is not None:
@@ -152,9 +145,7 @@ class Sums:
     def release(self) -> None:
         """Give everything back; twice is harmless."""
         self._drop()
-        for array in self._blank.values():
-            array.release()
-        self._blank.clear()
+        self._blank.release()
         if self._outside is not None:
             self._outside.release()
             self._outside = None

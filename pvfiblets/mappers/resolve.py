@@ -25,6 +25,7 @@ from pvfiblets.engine.shaders import read_shader
 FEATURES = (
     "gbuffer",
     "sums",
+    "layers_geometry",
     "layers",
     "slices",
     "normal",

@@ -101,7 +101,10 @@ class MapperEffect(Protocol):
 class ShaderEffect:
     """What most effects have in common: nothing of their own on the GPU, and no wishes to the engine."""
 
-    features: ClassVar[frozenset[str]]
+    @property
+    def features(self) -> frozenset[str]:
+        """No pieces of the resolve."""
+        return frozenset()
 
     translucent: ClassVar[bool] = False
     """Whether VTK must draw the actor in its translucent pass, whatever its opacity is."""

@@ -30,7 +30,9 @@ class Slices(ShaderEffect):
     Lines of one slice are blended as if they were mixed evenly.
     """
 
-    features: ClassVar[frozenset[str]] = frozenset({"sums", "slices", "slices_colour", "layers_covered"})
+    features: ClassVar[frozenset[str]] = frozenset(
+        {"sums", "slices", "slices_colour", "layers_covered", "layers_geometry"}
+    )
     count: ClassVar[int] = SLICES + 1
 
     def make(self, ctx: Any) -> Sums:
@@ -40,8 +42,7 @@ class Slices(ShaderEffect):
     def prepare(self, kept: Sums, draw: Draw) -> Mapping[str, Any]:
         """Have the engine add up, unless nothing shows through or VTK selects."""
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
-        kept.paint = _paint(draw) if through else None
-        textures = kept.textures(draw, kept.paint, sliced=True)
+        textures = kept.textures(draw, _paint(draw) if through else None, sliced=True)
         keys = None if kept.held is None else kept.held.keys
         return {**textures, "fibletSliceKeys": draw.buffer.depth if keys is None else keys}
 
@@ -50,8 +51,8 @@ class Slices(ShaderEffect):
         kept.set_uniforms(program)
         program.SetUniformi("fibletLayerCount", 1 if kept.held is None else self.count)
         paint = kept.paint
-        varied = paint is not None and paint.opacity is not None
-        program.SetUniformf("fibletAbsorbance", paint.absorbance if paint is not None and varied else 0.0)
+        varied = 0.0 if paint is None or paint.opacity is None else paint.absorbance
+        program.SetUniformf("fibletAbsorbance", varied)
 
 
 def _paint(draw: Draw) -> Paint:

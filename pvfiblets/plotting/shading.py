@@ -110,8 +110,6 @@ class Shading(SurfaceShading):
         return self._style
 
     def _write_style(self, style: str) -> None:
-        if style not in STYLES:
-            raise ValueError(f"style is {style!r}; choose one of {STYLES}")
         if style == self._style:
             return
         self._style = style

@@ -1,31 +1,15 @@
 // Layers: what lies behind the nearest line shows through it (pvfiblets/engine/fiblets/depth_peeling.py).
 //
-// VTK's geometry holds two triangles for each layer. The first are drawn first, and are the farthest: blended in this order
-// by a translucent actor every layer has its own colour, light and depth. With depth peeling VTK sorts them itself, among
-// whatever else is translucent. Layer 0 is the picture that is there anyway.
+// Every layer (layers_geometry.glsl) has its own colour, light and depth.
 //
 //   fibletDepthLayers  r32ui   as fibletDepthMap, layer by layer
 //   fibletIdLayers     rg32ui  as fibletIdMap
 //
 // Other pieces that look at a pixel's neighbours go on seeing the nearest lines alone.
 
-//@ vertex after //VTK::CustomUniforms::Dec
-uniform int fibletLayerCount;      // layers to be drawn; the geometry may have more
-flat out int fibletLayer;
-
-//@ vertex after //VTK::PositionVC::Impl
-  int fibletCorner = gl_VertexID % 6;
-  fibletLayer = fibletLayerCount - 1 - gl_VertexID / 6;
-  fibletRight = fibletCorner == 1 || fibletCorner == 3 || fibletCorner == 5;
-  fibletUpper = fibletCorner >= 2 && fibletCorner <= 4;
-  gl_Position = fibletLayer < 0 ? vec4(2.0, 2.0, 2.0, 1.0) :
-                vec4(fibletRight ? fibletRectangle.z : fibletRectangle.x,
-                     fibletUpper ? fibletRectangle.w : fibletRectangle.y, 0.0, 1.0);
-
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform usampler2DArray fibletDepthLayers;
 uniform usampler2DArray fibletIdLayers;
-flat in int fibletLayer;
 
 //@ fragment after //pvfiblets::Key::Impl
   if (fibletLayer > 0 && fibletSize.x > 0)

@@ -2,12 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .what import What
 
 # Of how far apart lines lie: some of them are decoded.
 MEASURING = (
     "codec.capsule_kernels, codec.decode_kernels, codec.decompress, codec.direction_kernels, codec.jit, codec.nearest, "
     "codec.tangents, codec.turn_kernels, halos.spacing"
+)
+
+# The hardware's rasteriser in place of compute shaders.
+HARDWARE = """
+    -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+    -fiblets/compute/depth.comp, -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp,
+    -fiblets/compute/plan.comp, -fiblets/compute/refine.comp, -fiblets/compute/resolve_ties.comp,
+    fiblets/hardware_raster/between.frag, fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
+    fiblets/hardware_raster/survivors.vert
+"""
+HARDWARE_PASSES = (
+    "-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits"
+)
+
+TUBES = What(
+    ran=f"{HARDWARE}, fiblets/geometry/capsules.geom, fiblets/hardware_raster/capsule.frag",
+    features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+    resolve="-line_light, tube_normal",
+    passes=HARDWARE_PASSES,
+    buffers="depth of tubes, visibility_bits of tubes, tubes",
+    modules="engine.fiblets.pipelines.geometry",
 )
 
 CHANGED = {
@@ -53,44 +76,16 @@ CHANGED = {
         features="CROSS_LINE, WIDE_LINES",
         resolve="-line_light, tube_shading",
     ),
-    "tubes": What(
-        ran="""
-            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
-            -fiblets/compute/depth.comp,
-            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
-            -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
-            fiblets/hardware_raster/capsule.frag,
-            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
-            fiblets/hardware_raster/survivors.vert
-        """,
-        features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
-        resolve="-line_light, tube_normal",
-        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
-        buffers="depth of tubes, visibility_bits of tubes, tubes",
-        modules="engine.fiblets.pipelines.geometry",
-    ),
-    "tubes, shaded": What(
-        ran="""
-            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
-            -fiblets/compute/depth.comp,
-            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
-            -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/capsules.geom, fiblets/hardware_raster/between.frag,
-            fiblets/hardware_raster/capsule.frag,
-            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
-            fiblets/hardware_raster/survivors.vert
-        """,
-        features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+    "tubes": TUBES,
+    "tubes, shaded": replace(
+        TUBES,
         resolve="-line_light, tube_normal, tube_shading",
-        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
         buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
-        modules="engine.fiblets.pipelines.geometry",
     ),
     "opacity": What(
         ran="fiblets/compute/gather.comp, fiblets/gather/slice_keys.frag",
         features="GATHER_SLICES, PAINTED, PAINT_DIRECTION, PAINT_LIGHT",
-        resolve="layers_covered, slices, slices_colour, sums",
+        resolve="layers_covered, layers_geometry, slices, slices_colour, sums",
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
         modules="""
@@ -121,7 +116,7 @@ CHANGED = {
     "layers": What(
         ran="fiblets/layers/copy.frag",
         features="PEEL",
-        resolve="layers, layers_covered",
+        resolve="layers, layers_covered, layers_geometry",
         buffers="across (no layer), layers, normal (no layer)",
     ),
     "illuminated": What(
@@ -251,32 +246,19 @@ CHANGED = {
         modules="engine.culling.coverage",
     ),
     "pipeline: geometry": What(
-        ran="""
-            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
-            -fiblets/compute/depth.comp,
-            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
-            -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/geometry/lines.geom, fiblets/hardware_raster/between.frag,
-            fiblets/hardware_raster/line.frag, fiblets/hardware_raster/visible.frag,
-            fiblets/hardware_raster/visible.vert, fiblets/hardware_raster/survivors.vert
-        """,
+        ran=f"{HARDWARE}, fiblets/geometry/lines.geom, fiblets/hardware_raster/line.frag",
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes=HARDWARE_PASSES,
         buffers="depth",
         modules="engine.fiblets.pipelines.geometry",
     ),
     "pipeline: tessellation": What(
-        ran="""
-            -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
-            -fiblets/compute/depth.comp,
-            -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
-            -fiblets/compute/refine.comp,
-            -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/between.frag, fiblets/hardware_raster/line.frag,
-            fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
-            fiblets/hardware_raster/survivors.vert, fiblets/tessellation/decode.tesc, fiblets/tessellation/lines.tese
+        ran=f"""
+            {HARDWARE}, fiblets/hardware_raster/line.frag, fiblets/tessellation/decode.tesc,
+            fiblets/tessellation/lines.tese
         """,
         features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
-        passes="-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits",
+        passes=HARDWARE_PASSES,
         buffers="depth",
         modules="engine.fiblets.pipelines.tessellation",
     ),

@@ -2,85 +2,24 @@
 
 from __future__ import annotations
 
-import asyncio
-import os
-import shutil
-import subprocess
-import sys
-import time
-
 import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 from pvfiblets.antialias import VARIABLE
 from pvfiblets.engine.effects.sample_positions import sample_positions
-from pvfiblets.mappers import windows
 from pvfiblets.mappers.shifted_cameras import shifted
 
-SIZE = (150, 110)
-
-
-@pytest.fixture(autouse=True)
-def _real_default(monkeypatch):
-    monkeypatch.delenv(VARIABLE)
-
-
-def fill(plotter, **more):
-    """Show slanted lines, a mesh's slanted edges and something translucent, without light."""
-    t = np.linspace(0.0, 1.0, 20)[:, None]
-    lines = [np.array([-30.0, -20 + 5 * k, 0.0]) + t * np.array([60.0, 17 + k, 4.0]) for k in range(4)]
-    actor = plotter.add_fiblets(lines, color="yellow", lighting=False, line_width=2, **more)
-    plotter.add_mesh(pv.Cone(center=(0, -14, -9), height=30, radius=8), color="red", lighting=False)
-    plotter.add_mesh(pv.Disc(center=(9, 9, 5), inner=0, outer=11), color="blue", opacity=0.5, lighting=False)
-    plotter.camera_position = [(0, 0, 100), (0, 0, 0), (0, 1, 0)]
-    plotter.renderer.ResetCameraClippingRange()
-    return actor
+from .refined_scene import SIZE, Renders, drawn, fill, grabbed, ours, real_default, shot  # noqa: F401 - a fixture
 
 
 @pytest.fixture
 def scene():
-    """Return a plotter of such things, drawn once."""
-    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    plotter.set_background("black")
-    plotter.disable_anti_aliasing()
-    fill(plotter)
-    plotter.show(auto_close=False)
-    yield plotter
-    for context in windows._contexts.values():
-        context.window.MakeCurrent()
-        assert context.ctx.error == "GL_NO_ERROR"
-    plotter.close()
-    assert not any(context.alive for context in windows._contexts.values())
-
-
-def ours(plotter):
-    """Return the plotter's first actor of fiblets."""
-    return next(iter(plotter.fiblets))
-
-
-class Renders:
-    """Counts frames of a window."""
-
-    def __init__(self, plotter):
-        self.count = 0
-        plotter.render_window.AddObserver("EndEvent", self._count)
-
-    def _count(self, *_):
-        self.count += 1
-
-    def since(self):
-        count, self.count = self.count, 0
-        return count
-
-
-def shot(plotter, **how):
-    return np.asarray(plotter.screenshot(None, **how)).astype(int)
-
+    with drawn() as plotter:
+        yield plotter
 
 def mean_of_pictures(plotter, n, *, renderer=None, size=SIZE, **how):
     """Draw the pictures apart, with a camera that is moved by hand, and let NumPy say their mean."""
@@ -415,136 +354,6 @@ def test_frames_of_movies_and_pictures_that_shows_return_are_finished(scene, tmp
     image = plotter.show(screenshot=str(tmp_path / "shown.png"), return_img=True)
     assert len(np.unique(image[..., 1])) > 10
     assert np.array_equal(pv.read(tmp_path / "shown.png").point_data.values()[0].shape, (SIZE[0] * SIZE[1], 3))
-
-
-def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
-    """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
-    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
-    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.05)
-    interactor, asked = scene.iren.interactor, []
-    interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
-    renders = Renders(scene)
-    interactor.InvokeEvent("TimerEvent")
-    assert renders.since() == 0
-    scene.camera.Azimuth(3.0)
-    scene.render()
-    assert renders.since() == 1
-    plain = grabbed(scene)
-    interactor.InvokeEvent("TimerEvent")  # too early: somebody else's
-    assert renders.since() == 0
-    time.sleep(0.06)
-    for count in range(1, 17):
-        interactor.InvokeEvent("TimerEvent")
-        assert (renders.since(), scene.picture.samples) == (1, count)
-        assert np.array_equal(grabbed(scene), plain) == (count < 8)
-        time.sleep(0.002)
-    for _ in range(3):
-        interactor.InvokeEvent("TimerEvent")
-        time.sleep(0.06)
-    assert renders.since() == 0
-    finished = grabbed(scene)
-    assert np.array_equal(shot(scene), finished)
-
-
-def grabbed(plotter):
-    """Return the picture as it is, unfinished or not."""
-    interactor = plotter.iren.interactor
-    interactor.EnableRenderOff()
-    grab = vtkWindowToImageFilter()
-    grab.SetInput(plotter.render_window)
-    grab.ShouldRerenderOff()
-    grab.ReadFrontBufferOff()
-    grab.Update()
-    interactor.EnableRenderOn()
-    width, height, _ = grab.GetOutput().GetDimensions()
-    pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
-    return pixels[::-1].astype(int)
-
-
-def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
-    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
-    scene.enable_trackball_style()
-    interactor, renders = scene.iren.interactor, Renders(scene)
-    interactor.SetEventInformation(60, 60)
-    interactor.LeftButtonPressEvent()
-    for x in (70, 80, 90):
-        interactor.SetEventInformation(x, 65)
-        interactor.MouseMoveEvent()
-        assert scene.picture.samples == 1
-        assert scene.picture._pacer._due == 0.0
-        assert not scene.picture.refine()
-    assert renders.since() == 3
-    interactor.LeftButtonReleaseEvent()
-    assert scene.picture._pacer._due > 0.0
-    assert renders.since() == 1
-    time.sleep(0.2)
-    interactor.InvokeEvent("TimerEvent")
-    assert (renders.since(), scene.picture.samples) == (1, 1)
-    assert scene.picture.refine()
-
-
-def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
-    """As in a notebook: the interactor must not render, pictures are sent when the plotter renders."""
-    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.02)
-    sent = []
-    scene.add_on_render_callback(lambda _: sent.append(scene.picture.samples))
-    scene.iren.interactor.EnableRenderOff()
-    renders = Renders(scene)
-
-    async def look():
-        scene.camera.Azimuth(3.0)
-        scene.render()
-        assert sent == [1]
-        async with asyncio.timeout(20):
-            while len(sent) < 2:
-                await asyncio.sleep(0.01)
-        await asyncio.sleep(0.1)
-
-    asyncio.run(look())
-    assert sent == [1, 16]
-    assert renders.since() == 18  # plain, samples, and one more to be sent
-    scene.iren.interactor.EnableRenderOn()
-
-
-WINDOW = """
-import sys, time
-import numpy as np, pyvista as pv
-plotter = pv.Plotter(window_size=(200, 150))
-plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
-frames = []
-plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(plotter.picture.samples))
-plotter.show(interactive_update=True, auto_close=False)
-def wait(seconds):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        plotter.iren.process_events()
-        time.sleep(0.002)
-def until_finished():
-    end = time.monotonic() + 20.0
-    while plotter.picture.samples < 16 and time.monotonic() < end:
-        wait(0.01)
-    count = len(frames)
-    wait(0.5)
-    return len(frames) - count
-until_finished()  # VTK draws once more when the window appears
-plotter.iren.interactor.SetEventInformation(90, 70)
-plotter.iren.interactor.MouseWheelForwardEvent()
-print("turned", plotter.picture.samples)
-print("at rest", until_finished(), frames[-1])
-plotter.close()
-"""
-
-
-def test_a_window_on_a_screen_refines_by_itself(tmp_path):
-    if shutil.which("Xvfb") is None:
-        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
-    without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
-    environment = {name: value for name, value in os.environ.items() if name not in without}
-    command = ["xvfb-run", "-a", sys.executable, "-c", WINDOW]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
-    told = [line for line in done.stdout.splitlines() if not line.startswith("\x1b")]
-    # One more after the last sample: thin lines are drawn as wide as they are in samples only.
-    assert told == ["turned 1", "at rest 1 16"], done.stderr
 
 
 @pytest.mark.parametrize("bad", ["on", 1, 0, 257, 3.5, True, None, "16"])

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets.mappers import density
+from pvfiblets.plotting.fiblets import settings
+
 PLAIN = {"show_scalar_bar": False}
 
 
@@ -38,6 +41,10 @@ TONES = {
     "sqrt": lambda n, m: np.sqrt(n / m),
     "linear": lambda n, m: n / m,
 }
+
+
+def test_tones_are_the_same_for_actors_and_mappers():
+    assert tuple(TONES) == settings.TONES == density.TONES
 
 
 @pytest.mark.parametrize("tone", TONES)

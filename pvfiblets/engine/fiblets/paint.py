@@ -11,7 +11,7 @@ from ..bindings import GATHERING
 __all__ = ["Paint", "set_uniforms"]
 
 MOST_OPAQUE = 0.999
-"""Opacity of a line beyond which it counts as no more opaque (``shaders/fiblets/gather/paint.glsl``)."""
+"""Opacity of a line beyond which it counts as no more opaque (``shaders/fiblets/gather/paint_weight.glsl``)."""
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,14 @@ import moderngl
 
 from ..capabilities import check_choices, choose
 from ..culling import Occlusion, make_occlusion
-from ..drawable import Drawable
 from ..errors import EngineError
 from ..frame import local_frame
 from ..gbuffer import GBuffer
 from ..view import Style, View
 from .census import Census, count_fiblets, no_counts
 from .chunks import Chunk
-from .depth_peeling import LayeredBuffer, Layers
 from .filter_textures import Filter
+from .lines_behind import LinesBehind
 from .memory_fit import MemoryBudget
 from .pipelines import CONSTANTS, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
@@ -27,22 +26,18 @@ from .upload import release_chunks, upload_fitting
 from .visibility import Visibility
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import numpy as np
     import numpy.typing as npt
 
     from ...codec.fibletset import FibletSet
     from ...query.region import Region
-    from .gathering import Gathered, Gatherer
-    from .paint import Paint
     from .region_query import RegionQuery
     from .sampled_volume import VolumeSource
 
 __all__ = ["FibletRenderer"]
 
 
-class FibletRenderer(Drawable[FibletStyle]):
+class FibletRenderer(LinesBehind):
     """Draws one fiblet set.
 
     What others in the scene hide may be missing from a picture for which their depth was given: two-phase culling
@@ -106,9 +101,6 @@ class FibletRenderer(Drawable[FibletStyle]):
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
         self._last: tuple[View, FibletStyle] | None = None
-        self._features_of_layers: frozenset[str] = frozenset()
-        self._layers: Layers | None = None
-        self._gatherer: Gatherer | None = None
         self._query: RegionQuery | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
@@ -145,122 +137,9 @@ class FibletRenderer(Drawable[FibletStyle]):
         self._pipeline.draw(request)
         if self._occlusion is not None:
             self._occlusion.after(target, view, style)
-        self._features_of_layers = frozenset()
+        self._features_behind = frozenset()
         self._last = view, style
         return target
-
-    def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
-        """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle, optional
-        count : int
-            Layers, the picture of :meth:`render` included.
-
-        Returns
-        -------
-        LayeredBuffer
-            The renderer's own (:mod:`pvfiblets.engine.fiblets.depth_peeling`); the same object until the size changes.
-
-        Raises
-        ------
-        EngineError
-            As :meth:`render`.
-        ValueError
-            If the number of layers is not from 2 to 64.
-        """
-        style = style or FibletStyle()
-        nearest = self.render(view, style)
-        if self._layers is None:
-            self._layers = self._keep(Layers(self._ctx, self._gl, self._programs, self._make_stage), "layers")
-        with self._programs.noting() as features:
-            layers = self._layers.of(nearest, count, view, style, lambda: self._request(view, style, nearest))
-        self._features_of_layers |= features
-        return layers
-
-    def drop_layers(self) -> None:
-        """Give back what :meth:`render_layers` keeps; twice is harmless."""
-        if self._layers is not None:
-            self._drop(self._layers)
-            self._layers = None
-        self._features_of_layers = frozenset()
-
-    def gather(
-        self,
-        view: View,
-        style: FibletStyle | None = None,
-        paint: Paint | None = None,
-        *,
-        sliced: bool = False,
-        outside: Callable[[], moderngl.Texture | None] | None = None,
-        state: Any = None,
-    ) -> Gathered:
-        """Add up what all lines show in each pixel; nothing is done that has been done for this picture.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle, optional
-        paint : Paint, optional
-            Their colours. Without, lines are counted.
-        sliced : bool
-            Whether the nearest line is left out and the others are parted by how far behind it they are.
-        outside : callable, optional
-            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is
-            to be done. Lines behind it are left out.
-        state : object
-            Another one where that depth may be another.
-
-        Returns
-        -------
-        Gathered
-            The renderer's own (:mod:`pvfiblets.engine.fiblets.gathering`).
-
-        Raises
-        ------
-        EngineError
-            As :meth:`render`.
-        """
-        from .gathering import SLICES, Gatherer, SliceDistances
-        from .paint import Paint
-
-        style = style or FibletStyle()
-        nearest = self.render(view, style)
-        if self._gatherer is None:
-            maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
-            self._gatherer = self._keep(maker, "gathered")
-        origin, scale, top = self._shared.place
-        distances = SliceDistances.of(view, origin, origin + top * scale)
-        with self._programs.noting() as features:
-            found = self._gatherer.of(
-                nearest,
-                paint or Paint(),
-                SLICES if sliced else 1,
-                distances,
-                lambda: self._request(view, style, nearest),
-                outside,
-                state,
-            )
-        self._features_of_layers |= features
-        return found
-
-    def most_lines(self) -> float:
-        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
-        if self._gatherer is None:
-            return 0.0
-        with self._programs.noting() as features:
-            found = self._gatherer.greatest()
-        self._features_of_layers |= features
-        return found
-
-    def drop_gathered(self) -> None:
-        """Give back what :meth:`gather` keeps; twice is harmless."""
-        if self._gatherer is not None:
-            self._drop(self._gatherer)
-            self._gatherer = None
-        self._features_of_layers = frozenset()
 
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
         # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
@@ -392,23 +271,6 @@ class FibletRenderer(Drawable[FibletStyle]):
         found = self._count(total) if counts else no_counts(total)
         return {"fiblets_total": total, "fiblets": found, "share": self.share}
 
-    def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Say what the last redraw was made of, and wait for it to end.
-
-        Parameters
-        ----------
-        counts : bool
-            Whether to count fiblets, which takes a pass over all of them and reads the picture back.
-
-        Returns
-        -------
-        dict
-            As :meth:`.Drawable.explain`, the features of layers included; ``fiblets_total``, ``share``; ``fiblets``:
-            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.fiblets.census`), None where
-            not known.
-        """
-        return super().explain(counts=counts) | {"features": sorted(self._features | self._features_of_layers)}
-
     def _sizes(self) -> dict[str, int]:
         sizes = super()._sizes()
         for chunk in self._chunks:
@@ -432,5 +294,4 @@ class FibletRenderer(Drawable[FibletStyle]):
         """Give back everything on the GPU; twice is harmless."""
         release_chunks(self._chunks)
         super().release()
-        self._layers = self._query = self._gatherer = None
-        self._features_of_layers = frozenset()
+        self._query = None

@@ -37,6 +37,11 @@ _COUNTS = Scalars("density", "pixel_count")
 _SOME_LAYERS = 4
 
 
+def _layers(transparency: Any) -> Layers:
+    """Return the effect of a number of layers, or of ``'layers'``."""
+    return Layers(_SOME_LAYERS if transparency == "layers" else transparency)
+
+
 class PlottedMapper(Plotted, FibletMapper):
     """A fiblet mapper with scalar bars.
 
@@ -310,15 +315,13 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _count_lines(self) -> None:
         """Have all lines of a pixel counted where style or colours ask for it."""
         thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
-        if not thin and not counted:
-            self._mapper.set_effect(_DENSITY, None)
-            self._see_through()
-            return
-        from pvfiblets.mappers.density import Density
+        effect = None
+        if thin or counted:
+            from pvfiblets.mappers.density import Density
 
-        clim = self._settings.clim
-        most = None if clim is None else limits(replace(self._settings, log_scale=False), _COUNTS)[1]
-        effect = Density(thin and not counted, thin, most, self._tone, self._most_found if counted else None)
+            clim = self._settings.clim
+            most = None if clim is None else limits(replace(self._settings, log_scale=False), _COUNTS)[1]
+            effect = Density(not counted, thin, most, self._tone, self._most_found if counted else None)
         if effect != self._mapper.effects.get(_DENSITY):
             self._mapper.set_effect(_DENSITY, effect)
         self._see_through()
@@ -334,8 +337,6 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         return self._tone
 
     def _write_density_tone(self, tone: str) -> None:
-        if tone not in TONES:
-            raise ValueError(f"density_tone is {tone!r}; choose one of {TONES}")
         self._tone = tone
         self._count_lines()
 
@@ -345,7 +346,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _write_transparency(self, transparency: str | int | None) -> None:
         if transparency is not None and transparency != ALL:
             try:
-                Layers(_SOME_LAYERS if transparency == "layers" else transparency)  # type: ignore[arg-type]
+                _layers(transparency)
             except (TypeError, ValueError) as error:  # what is no number is refused by it
                 raise ValueError(
                     f"transparency is {transparency!r}; give 'all', 'layers', a number of layers from 2 to 64, or None"
@@ -359,8 +360,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         if _DENSITY in self._mapper.effects or self._transparency is None:
             pass
         elif self._transparency != ALL:
-            count = _SOME_LAYERS if self._transparency == "layers" else int(self._transparency)
-            effect = Layers(count)
+            effect = _layers(self._transparency)
         elif self._mapper.colouring.translucent() or self.prop.GetOpacity() < 1.0:
             from pvfiblets.mappers.slices import Slices
 

@@ -1,0 +1,138 @@
+"""Windows, movement and servers: when samples are drawn, and which pictures are plain."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from pvfiblets.antialias import VARIABLE
+
+from .refined_scene import Renders, drawn, grabbed, real_default, shot  # noqa: F401 - a fixture
+
+
+@pytest.fixture
+def scene():
+    with drawn() as plotter:
+        yield plotter
+
+
+def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
+    """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.05)
+    interactor, asked = scene.iren.interactor, []
+    interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
+    renders = Renders(scene)
+    interactor.InvokeEvent("TimerEvent")
+    assert renders.since() == 0
+    scene.camera.Azimuth(3.0)
+    scene.render()
+    assert renders.since() == 1
+    plain = grabbed(scene)
+    interactor.InvokeEvent("TimerEvent")  # too early: somebody else's
+    assert renders.since() == 0
+    time.sleep(0.06)
+    for count in range(1, 17):
+        interactor.InvokeEvent("TimerEvent")
+        assert (renders.since(), scene.picture.samples) == (1, count)
+        assert np.array_equal(grabbed(scene), plain) == (count < 8)
+        time.sleep(0.002)
+    for _ in range(3):
+        interactor.InvokeEvent("TimerEvent")
+        time.sleep(0.06)
+    assert renders.since() == 0
+    finished = grabbed(scene)
+    assert np.array_equal(shot(scene), finished)
+
+
+def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
+    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    scene.enable_trackball_style()
+    interactor, renders = scene.iren.interactor, Renders(scene)
+    interactor.SetEventInformation(60, 60)
+    interactor.LeftButtonPressEvent()
+    for x in (70, 80, 90):
+        interactor.SetEventInformation(x, 65)
+        interactor.MouseMoveEvent()
+        assert scene.picture.samples == 1
+        assert scene.picture._pacer._due == 0.0
+        assert not scene.picture.refine()
+    assert renders.since() == 3
+    interactor.LeftButtonReleaseEvent()
+    assert scene.picture._pacer._due > 0.0
+    assert renders.since() == 1
+    time.sleep(0.2)
+    interactor.InvokeEvent("TimerEvent")
+    assert (renders.since(), scene.picture.samples) == (1, 1)
+    assert scene.picture.refine()
+
+
+def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
+    """As in a notebook: the interactor must not render, pictures are sent when the plotter renders."""
+    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.02)
+    sent = []
+    scene.add_on_render_callback(lambda _: sent.append(scene.picture.samples))
+    scene.iren.interactor.EnableRenderOff()
+    renders = Renders(scene)
+
+    async def look():
+        scene.camera.Azimuth(3.0)
+        scene.render()
+        assert sent == [1]
+        async with asyncio.timeout(20):
+            while len(sent) < 2:
+                await asyncio.sleep(0.01)
+        await asyncio.sleep(0.1)
+
+    asyncio.run(look())
+    assert sent == [1, 16]
+    assert renders.since() == 18  # plain, samples, and one more to be sent
+    scene.iren.interactor.EnableRenderOn()
+
+
+WINDOW = """
+import sys, time
+import numpy as np, pyvista as pv
+plotter = pv.Plotter(window_size=(200, 150))
+plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
+frames = []
+plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(plotter.picture.samples))
+plotter.show(interactive_update=True, auto_close=False)
+def wait(seconds):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        plotter.iren.process_events()
+        time.sleep(0.002)
+def until_finished():
+    end = time.monotonic() + 20.0
+    while plotter.picture.samples < 16 and time.monotonic() < end:
+        wait(0.01)
+    count = len(frames)
+    wait(0.5)
+    return len(frames) - count
+until_finished()  # VTK draws once more when the window appears
+plotter.iren.interactor.SetEventInformation(90, 70)
+plotter.iren.interactor.MouseWheelForwardEvent()
+print("turned", plotter.picture.samples)
+print("at rest", until_finished(), frames[-1])
+plotter.close()
+"""
+
+
+def test_a_window_on_a_screen_refines_by_itself(tmp_path):
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
+    without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
+    environment = {name: value for name, value in os.environ.items() if name not in without}
+    command = ["xvfb-run", "-a", sys.executable, "-c", WINDOW]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
+    told = [line for line in done.stdout.splitlines() if not line.startswith("\x1b")]
+    # One more after the last sample: thin lines are drawn as wide as they are in samples only.
+    assert told == ["turned 1", "at rest 1 16"], done.stderr
