@@ -10,7 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .visible_volumes import (
     HALF,
