@@ -97,7 +97,12 @@ class Visit:
 
     def ready(self):
         picture = self.page.locator("#pv-view img[src^=blob]")
-        self.wait(picture.count, "the first picture")
+
+        def comes():
+            assert "(exit code" not in self.served.log.read_text(), self.served.log.read_text()
+            return picture.count()
+
+        self.wait(comes, "the first picture")
         self.wait(lambda: self.layers() and self.picture().std() > 1.0, "a picture with something in it")
         return self
 
