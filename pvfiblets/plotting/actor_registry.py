@@ -46,6 +46,11 @@ class Registered(Protocol):
         """Whether its scalar bar names numbers."""
         ...
 
+    @property
+    def legend_color(self) -> pv.Color:
+        """The colour of its entry in a legend."""
+        ...
+
     def watch(self, bar_changed: Any) -> None:
         """Call that whenever another scalar bar is needed."""
         ...
@@ -182,14 +187,16 @@ class ActorRegistry(Generic[A]):
         )
         self._track(actor, renderer)
         if label is not None:
-            self._add_label(actor, label, renderer)
+            self._set_label(actor, label, renderer)
+        if actor.scalars_title is not None:
+            self._plotter.mapper = actor.mapper  # of which `add_scalar_bar` makes one, as after `add_mesh`
         self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
         try:
             self._update_bar(actor)
         except Exception:
             self._plotter.remove_actor(actor, render=False)
             raise
-        actor.watch(self._update_bar)
+        actor.watch(self._recoloured)
         if render:
             self._plotter.render()
         return actor
@@ -242,9 +249,19 @@ class ActorRegistry(Generic[A]):
 
     # Scalar bars and legend ---------------------------------------------------------------------
 
+    def _recoloured(self, actor: A) -> None:
+        """Have scalar bar and legend say what the picture shows."""
+        self._update_bar(actor)
+        for renderer, _tag in self._renderers.values():
+            entry = renderer._labels.get(actor.memory_address)  # noqa: SLF001
+            if entry is not None:
+                self._set_label(actor, entry[1], renderer)
+
     def _update_bar(self, actor: A) -> None:
         """Add, replace or remove the actor's scalar bar so that it says what the picture shows."""
         state = self._bars[actor.memory_address]
+        if state.title is not None and not self._has_bar(actor):
+            state.show, state.title = False, None  # the user removed it: it stays away
         wanted = actor.scalars_title if state.show else None
         if wanted is not None:
             wanted = state.arguments.get("title", wanted)
@@ -264,7 +281,12 @@ class ActorRegistry(Generic[A]):
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
         state.title, state.labels = wanted, actor.shows_labels
 
-    def _add_label(self, actor: A, label: str, renderer: Any) -> None:
+    def _has_bar(self, actor: A) -> bool:
+        """Whether any scalar bar is the actor's."""
+        shown = self._plotter.scalar_bars._scalar_bar_mappers  # noqa: SLF001
+        return any(actor.mapper in mappers for mappers in shown.values())
+
+    def _set_label(self, actor: A, label: str, renderer: Any) -> None:
         face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
-        entry = (face, label, pv.Color(actor.prop.color))
+        entry = (face, label, actor.legend_color)
         renderer._labels[actor.memory_address] = entry  # noqa: SLF001 - as add_mesh does

@@ -88,6 +88,21 @@ class Coloured(Settings, LinkedProperty):
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
 
     @property
+    def legend_color(self) -> pv.Color:
+        """One colour that stands for all: their own, the middle of the colour map, or the mean."""
+        if self._scalars is None:
+            return pv.Color(self.prop.color)
+        if self._scalars.mapped:
+            return pv.Color(self._table.values[self._table.n_values // 2, :3].tolist())
+        return pv.Color(self._mean_colour(self._scalars))
+
+    def _mean_colour(self, scalars: Scalars) -> Any:
+        """Return what stands for many colours; a grey that shows on black and on white where none is known."""
+        if scalars.values is None or not len(scalars.values):
+            return "#808080"
+        return [float(part) for part in scalars.values[:, :3].mean(axis=0) / 255.0]
+
+    @property
     def shows_labels(self) -> bool:
         """Whether the numbers that colour the actor are labels, each with a name."""
         return self._scalars is not None and self._scalars.categories is not None
@@ -120,6 +135,7 @@ class Coloured(Settings, LinkedProperty):
         except Exception:
             setattr(self._settings, setting, before)
             raise
+        self._bar()
 
     def _colour_by(self, choice: Any, found: Scalars | None) -> None:
         """Take other scalars, which were found already; refused, the actor keeps those it has."""
@@ -129,6 +145,10 @@ class Coloured(Settings, LinkedProperty):
         except Exception:
             self._choice = before
             raise
+        self._bar()
+
+    def _bar(self) -> None:
+        """Have scalar bar and legend follow."""
         if self._bar_changed is not None:
             self._bar_changed(self)
 

@@ -54,6 +54,8 @@ class ColourSettings:
         Reverse the colour map.
     categories : bool, default: False
         As many colours as there are different values, instead of ``n_colors``.
+    annotations : dict of float to str, optional
+        What the scalar bar writes beside values.
     """
 
     color: Any = None
@@ -66,6 +68,7 @@ class ColourSettings:
     above_color: Any = None
     flip_scalars: bool = False
     categories: bool = False
+    annotations: dict[float, str] | None = None
 
 
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
@@ -77,7 +80,9 @@ def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
         If ``clim`` is not one or two finite increasing numbers, or not positive on a log scale.
     """
     if settings.clim is None:
-        low, high = scalars.range
+        # A table of the user's own has a range, which `add_mesh` takes, too.
+        own = isinstance(settings.cmap, pv.LookupTable)
+        low, high = settings.cmap.scalar_range if own else scalars.range
         if settings.log_scale and low <= 0.0:
             low = min(scalars.positive, high) if high > 0.0 else 1e-6
             high = max(high, low)
@@ -120,7 +125,8 @@ def update_table(
     cmap = usual if settings.cmap is None else settings.cmap
     if isinstance(cmap, (list, tuple)) and not cmap:
         raise ValueError("cmap is an empty list; give at least one colour, or the name of a colour map")
-    if isinstance(cmap, pv.LookupTable):
+    own = isinstance(cmap, pv.LookupTable)
+    if own:
         table.DeepCopy(cmap)
     else:
         count = int(settings.n_colors)
@@ -131,10 +137,17 @@ def update_table(
     table.log_scale = False
     table.scalar_range = (low, high)
     table.log_scale = bool(settings.log_scale)
-    table.annotations = scalars.categories
-    table.nan_color = theme.nan_color if settings.nan_color is None else settings.nan_color
-    table.below_range_color = settings.below_color
-    table.above_range_color = settings.above_color
+    words = _first(settings.annotations, scalars.categories)
+    if words is not None or not own:
+        table.annotations = words
+    table.nan_color = _first(settings.nan_color, cmap.nan_color if own else None, theme.nan_color)
+    table.below_range_color = _first(settings.below_color, cmap.below_range_color if own else None)
+    table.above_range_color = _first(settings.above_color, cmap.above_range_color if own else None)
+
+
+def _first(*found: Any) -> Any:
+    """Return the first that is not ``None``."""
+    return next((one for one in found if one is not None), None)
 
 
 def make_colouring(

@@ -30,10 +30,10 @@ class _AddFiblets(Protocol):
         per_point: Iterable[str] = (), max_error: float | None = None, progress: bool = False,
         look: str | None = None, color: Any = None, cmap: Any = None, clim: Any = None, n_colors: int = 256,
         log_scale: bool = False, nan_color: Any = None, below_color: Any = None, above_color: Any = None,
-        flip_scalars: bool = False, categories: bool = False, opacity: Any = None,
-        transparency: str | int | None = "all", line_width: float | None = None, style: Any = "surface",
-        lighting: bool | None = None, pipeline: str = "auto", culling: str | None = "two-phase",
-        fit: str | None = None, name: str | None = None, label: str | None = None,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False, categories: bool = False,
+        opacity: Any = None, transparency: str | int | None = "all", line_width: float | None = None,
+        style: Any = "surface", lighting: bool | None = None, pipeline: str = "auto",
+        culling: str | None = "two-phase", fit: str | None = None, name: str | None = None, label: str | None = None,
         show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
         user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True, **options: Any,
     ) -> FibletActor: ...
@@ -49,11 +49,12 @@ class _AddSplineTubes(Protocol):
         radius_slopes: float | str | np.ndarray | None = None, scalar_slopes: str | np.ndarray | None = None,
         scaled: bool | None = None, rgb: bool = False, color: Any = None, cmap: Any = None, clim: Any = None,
         n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
-        above_color: Any = None, flip_scalars: bool = False, opacity: float | None = None,
-        lighting: bool | None = None, min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto",
-        iterations: int | None = None, culling: str | None = "two-phase", name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: float | None = None, lighting: bool | None = None, min_width: float = 1.0,
+        silhouettes: str = "auto", solver: str = "auto", iterations: int | None = None,
+        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
     ) -> TubeActor: ...
 
 class _SplineTubesComponent(SplineTubesComponent):
@@ -69,10 +70,11 @@ class _AddHaloLines(Protocol):
         displacement: Displacement = "linear", width_cue: float = 0.5, threshold: Threshold = None,
         color: Any = None, halo_color: Any = None, light_on_dark: bool = False, cmap: Any = None, clim: Any = None,
         n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
-        above_color: Any = None, flip_scalars: bool = False, opacity: float | None = None, lighting: bool = False,
-        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: float | None = None, lighting: bool = False, smooth: bool = True, min_width: float = 1.0,
+        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
     ) -> HaloLineActor: ...
 
 class _HaloLinesComponent(HaloLinesComponent):
@@ -87,10 +89,11 @@ class _AddHaloPoints(Protocol):
         width_cue: float = 0.5, threshold: Threshold = None, color: Any = None, halo_color: Any = None,
         light_on_dark: bool = False, cmap: Any = None, clim: Any = None, n_colors: int = 256,
         log_scale: bool = False, nan_color: Any = None, below_color: Any = None, above_color: Any = None,
-        flip_scalars: bool = False, opacity: float | None = None, lighting: bool = False, smooth: bool = True,
-        min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
-        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
-        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False, opacity: float | None = None,
+        lighting: bool = False, smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase",
+        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
+        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True, user_matrix: Any = None,
+        reset_camera: bool | None = None, render: bool = True,
     ) -> HaloPointActor: ...
 
 class _HaloPointsComponent(HaloPointsComponent):
@@ -102,15 +105,16 @@ class _AddRaycastVolume(Protocol):
         self, source: RaycastVolumesSource, *, scalars: str | np.ndarray | None = None, spacing: Any = None,
         origin: Any = None, direction: Any = None, affine: Any = None, shape: Any = None, dtype: Any = None,
         mode: str = "composite", values: float | Any = None, color: Any = None, cmap: Any = None, clim: Any = None,
-        n_colors: int = 256, flip_scalars: bool = False, opacity: str | float | Any = "linear",
-        opacity_unit_distance: float | None = None, thresholds: Any = None, peak: float | None = None,
-        smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear", refine: str = "regula-falsi",
-        iterations: int = 5, integrator: str = "adaptive", jitter: bool = False, octree: bool = True,
-        homogeneous: float = 0.0, recon: bool = False, sparse: int = 1, sparse_threshold: float = 0.05,
-        stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5, box: Any = None,
-        lighting: bool | None = None, ray_occlusion: bool | dict[str, Any] = False, name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        n_colors: int = 256, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: str | float | Any = "linear", opacity_unit_distance: float | None = None, thresholds: Any = None,
+        peak: float | None = None, smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear",
+        refine: str = "regula-falsi", iterations: int = 5, integrator: str = "adaptive", jitter: bool = False,
+        octree: bool = True, homogeneous: float = 0.0, recon: bool = False, sparse: int = 1,
+        sparse_threshold: float = 0.05, stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5,
+        box: Any = None, lighting: bool | None = None, ray_occlusion: bool | dict[str, Any] = False,
+        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
+        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True, user_matrix: Any = None,
+        reset_camera: bool | None = None, render: bool = True,
     ) -> VolumeActor: ...
 
 class _RaycastVolumesComponent(RaycastVolumesComponent):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+from numbers import Real
 from typing import Any
 
 from pvfiblets.plotting.setting_places import COLOURS, OWN, PROPERTY, Effect
@@ -14,7 +16,8 @@ CMAPS = (
 )  # fmt: skip
 """Colour maps that a page offers; each also reversed, with ``_r``."""
 
-MAPS = [(name, name.replace("_", " ")) for name in (*CMAPS, *(f"{name}_r" for name in CMAPS))]
+MAP_NAMES = (*CMAPS, *(f"{name}_r" for name in CMAPS))
+MAPS = [(name, name.replace("_", " ")) for name in MAP_NAMES]
 
 
 def bounds_size(data: Any) -> float:
@@ -27,6 +30,32 @@ def bounds_size(data: Any) -> float:
 def by_numbers(settings: Any) -> bool:
     """Whether numbers colour, as the other settings are."""
     return settings["scalars"] not in (None, "orientation")
+
+
+def _colour_map(name: str, value: Any) -> Any:
+    """Return a colour map; a name that is none is refused, whether numbers colour now or later."""
+    if isinstance(value, str):
+        from pyvista.plotting.colors import get_cmap_safe
+
+        try:
+            get_cmap_safe(value)
+        except ValueError as error:
+            near = ", ".join(repr(one) for one in get_close_matches(value, MAP_NAMES)) or "'viridis' or 'coolwarm'"
+            raise ValueError(
+                f"{name} is {value!r}, which is no colour map; give a name that matplotlib knows, such as {near}, a "
+                "list of colours, or a LookupTable"
+            ) from error
+    return value
+
+
+def _annotations(name: str, value: Any) -> Any:
+    """Return words of a scalar bar by their values."""
+    if value is None:
+        return None
+    good = isinstance(value, dict) and all(isinstance(at, Real) and isinstance(word, str) for at, word in value.items())
+    if not good:
+        raise ValueError(f"{name} is {value!r}; give a dict from numbers to words, such as {{50.0: 'half'}}")
+    return {float(at): word for at, word in value.items()}
 
 
 def color(doc: str) -> Setting[Any]:
@@ -45,9 +74,11 @@ def color(doc: str) -> Setting[Any]:
 CMAP: Setting[Any] = Setting(
     None,
     "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
-    argument="Colour map; the theme's by default.",
-    header="str, list or colormap, optional",
+    argument="Colour map; the theme's by default. A :class:`pyvista.LookupTable` brings its range and its colours "
+    "of what lies outside.",
+    header="str, list, colormap or LookupTable, optional",
     where=COLOURS,
+    check=_colour_map,
     read=lambda actor: actor._theme.cmap if actor._settings.cmap is None else actor._settings.cmap,  # noqa: SLF001
     row=Row("Map", "Colours from the low end of the range to the high one.", type="choice",
             choices=[(None, "usual"), *MAPS], matters=by_numbers),
@@ -105,6 +136,15 @@ ABOVE_COLOR: Setting[Any] = Setting(
     "Colour of values above ``clim``; ``None`` uses the last of the map.",
     header="color-like, optional",
     where=COLOURS,
+)
+
+ANNOTATIONS: Setting[dict[float, str] | None] = Setting(
+    None,
+    "Words that the scalar bar writes beside values; ``None`` for those of labels, if there are any.",
+    kind="dict[float, str] | None",
+    header="dict of float to str, optional",
+    where=COLOURS,
+    check=_annotations,
 )
 
 FLIP_SCALARS = Argument(False, "Reverse the colour map.", kind="bool", where=COLOURS)

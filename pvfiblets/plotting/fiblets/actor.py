@@ -18,7 +18,7 @@ from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
-from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars
+from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import with_point_values
@@ -207,6 +207,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         if fiblets is not self._fiblets:
             self._draw(fiblets)
         self._colour_by(scalars, found)
+
+    def _mean_colour(self, scalars: Scalars) -> Any:
+        return mean_direction(self._fiblets) if scalars.kind == "orientation" else super()._mean_colour(scalars)
 
     def _explain_colours(self) -> dict[str, Any] | None:
         if self._scalars is None or not self._scalars.mapped:

@@ -18,6 +18,7 @@ from pvfiblets.query.measures import COMPUTED, Distance, measure
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.streamlines import Streamlines
 
 ORIENTATION = "orientation"
 GROUP = "group"
@@ -278,11 +279,27 @@ def _longest(fiblets: FibletSet) -> float:
     return float(fiblets.decompress(most).lengths().max())
 
 
+def mean_direction(fiblets: FibletSet) -> tuple[float, float, float]:
+    """Return the mean colour of an even sample of streamlines coloured by orientation: red, green, blue from 0 to 1."""
+    sample = _even_sample(fiblets)
+    moves = np.abs(np.diff(sample.points.astype(np.float64), axis=0))
+    between = sample.offsets[1:-1]
+    moves[between[(between > 0) & (between <= len(moves))] - 1] = 0.0  # from one streamline to the next
+    total = moves.sum(axis=0)
+    size = float(np.linalg.norm(total))
+    red, green, blue = total / size if size > 0.0 else (0.5, 0.5, 0.5)
+    return float(red), float(green), float(blue)
+
+
+def _even_sample(fiblets: FibletSet) -> Streamlines:
+    """Return streamlines at even distances in the set, `_SAMPLE` at most."""
+    count = min(_SAMPLE, fiblets.n_streamlines)
+    return fiblets.decompress(np.unique(np.linspace(0, fiblets.n_streamlines - 1, count).astype(np.int64)))
+
+
 def _curvature_range(fiblets: FibletSet) -> tuple[float, float]:
     """Return 0 and the 98th percentile of curvature (1/mm) on an even sample of streamlines."""
-    count = min(_SAMPLE, fiblets.n_streamlines)
-    ids = np.unique(np.linspace(0, fiblets.n_streamlines - 1, count).astype(np.int64))
-    sample = fiblets.decompress(ids)
+    sample = _even_sample(fiblets)
     moves = np.diff(sample.points.astype(np.float64), axis=0)
     inside = np.ones(len(moves), bool)
     inside[sample.offsets[1:-1][sample.offsets[1:-1] <= len(moves)] - 1] = False

@@ -75,6 +75,7 @@ class FibletSettings(Settings):
     nan_color = shared.NAN_COLOR
     below_color = shared.BELOW_COLOR
     above_color = shared.ABOVE_COLOR
+    annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     categories: Setting[bool] = Setting(
         False,

@@ -112,6 +112,7 @@ class HaloSettings(Settings):
     nan_color = shared.NAN_COLOR
     below_color = shared.BELOW_COLOR
     above_color = shared.ABOVE_COLOR
+    annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity = shared.opacity("Of all and its halos; what lies behind the nearest does not show through.")
     lighting = shared.lighting("Shade by the scene's lights.", False)

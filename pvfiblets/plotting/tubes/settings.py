@@ -28,6 +28,7 @@ class TubeSettings(Settings):
     nan_color = shared.NAN_COLOR.but(row=None)
     below_color = shared.BELOW_COLOR
     above_color = shared.ABOVE_COLOR
+    annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity = shared.opacity("Of all tubes; what lies behind the nearest surface of the tubes does not show through.")
     lighting = shared.lighting("Shade the tubes by the scene's lights; the theme's by default.", None)

@@ -80,7 +80,6 @@ class RaySettings(VolumeSettings, Coloured):
 
     def _write_color(self, color: Any) -> None:
         self._set("color", None if color is None else pv.Color(color))
-        self._bar()
 
     @property
     def scalars_title(self) -> str | None:
@@ -107,6 +106,7 @@ class RaySettings(VolumeSettings, Coloured):
             self._settings = before
             self._made({})
             raise
+        self._bar()
 
     def _choose(self, name: str, value: Any) -> None:
         """Change what the casting is made from; a refused value leaves all as it was."""
@@ -165,10 +165,6 @@ class RaySettings(VolumeSettings, Coloured):
         if held is not None and (held.clim, held.unit) == (clim, unit) and np.array_equal(held.table, table):
             return held
         return Transfer(table, clim, unit)
-
-    def _bar(self) -> None:
-        if self._bar_changed is not None:
-            self._bar_changed(self)
 
 
 def _widen(table: pv.LookupTable, count: int) -> None:

@@ -97,6 +97,7 @@ class VolumeSettings(Settings):
         row=replace(shared.CLIM_ROW, span=_values_span, matters=None)
     )
     n_colors = shared.N_COLORS.but(argument_doc="Number of colours in the map, between which light is linear.")
+    annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity: Setting[Any] = Setting(
         "linear",

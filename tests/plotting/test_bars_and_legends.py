@@ -1,0 +1,137 @@
+"""Scalar bars, look-up tables and legends are those of a PyVista user's habits; `add_mesh` is the measure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets import Streamlines
+
+ADDERS = ("add_fiblets", "add_spline_tubes", "add_halo_lines")
+
+
+@pytest.fixture
+def mesh(three_lines):
+    """The three lines as PyVista has them, with a number at every point."""
+    lines = [np.asarray(line) for line in three_lines]
+    cells = np.concatenate([[len(line), *(41 * i + np.arange(len(line)))] for i, line in enumerate(lines)])
+    data = pv.PolyData(np.concatenate(lines), lines=cells)
+    data["height"] = np.tile(np.linspace(0.0, 1.0, 41), 3)
+    return data
+
+
+def annotated(table):
+    """Return words by values; PyVista's own getter reads past their end."""
+    count = table.GetNumberOfAnnotatedValues()
+    return {table.GetAnnotatedValue(i).ToDouble(): table.GetAnnotation(i) for i in range(count)}
+
+
+@pytest.mark.parametrize("add", ADDERS)
+def test_a_scalar_bar_can_be_added_later(plotter, mesh, add):
+    actor = getattr(plotter, add)(mesh, scalars="height", show_scalar_bar=False)
+    bar = plotter.add_scalar_bar("mine", vertical=True)
+    plotter.show(auto_close=False)
+    assert list(plotter.scalar_bars.keys()) == ["mine"]
+    assert bar.GetLookupTable() is actor.lookup_table
+    assert tuple(bar.GetLookupTable().GetRange()) == pytest.approx((0.0, 1.0))
+
+
+def test_one_colour_takes_no_scalar_bar_from_a_mesh(plotter, mesh):
+    ball = plotter.add_mesh(pv.Sphere().elevation(), scalars="Elevation", show_scalar_bar=False)
+    plotter.add_fiblets(mesh, color="red")
+    assert plotter.add_scalar_bar("ball").GetLookupTable() is ball.mapper.lookup_table
+
+
+@pytest.mark.parametrize("change", [("scalars", "length"), ("clim", (0.0, 3.0)), ("cmap", "jet")])
+def test_a_removed_bar_stays_removed(plotter, mesh, change):
+    actor = plotter.add_fiblets(mesh, scalars="height")
+    plotter.remove_scalar_bar()
+    setattr(actor, *change)
+    plotter.show(auto_close=False)
+    assert list(plotter.scalar_bars.keys()) == []
+    assert plotter.add_scalar_bar("again").GetLookupTable() is actor.lookup_table
+
+
+@pytest.mark.parametrize("add", ADDERS)
+def test_a_lookup_table_keeps_its_range_and_colours(plotter, mesh, add):
+    table = pv.LookupTable("jet", n_values=7, scalar_range=(0.25, 0.5), below_range_color="blue",
+                           above_range_color="red", nan_color="green", annotations={0.3: "here"})  # fmt: skip
+    theirs = plotter.add_mesh(mesh, scalars="height", cmap=table, name="one")
+    actor = getattr(plotter, add)(mesh, scalars="height", cmap=table, name="one")
+    assert actor.clim == theirs.mapper.scalar_range == (0.25, 0.5)
+    for name in ("n_values", "below_range_color", "above_range_color", "nan_color"):
+        assert getattr(actor.lookup_table, name) == getattr(table, name)
+    assert annotated(actor.lookup_table) == {0.3: "here"}
+    actor.clim = (0.0, 1.0)
+    assert actor.lookup_table.scalar_range == (0.0, 1.0)
+    actor.above_color = "white"
+    assert actor.lookup_table.above_range_color == pv.Color("white")
+    actor.cmap = "viridis"
+    assert annotated(actor.lookup_table) == {}
+
+
+def test_colours_beyond_the_range_of_a_table_are_those_of_add_mesh(plotter, mesh, colours_in):
+    table = pv.LookupTable("gray", n_values=2, scalar_range=(0.25, 0.5))
+    table.below_range_color, table.above_range_color = "blue", "red"
+    plotter.add_fiblets(mesh, scalars="height", cmap=table, show_scalar_bar=False, lighting=False)
+    plotter.show(auto_close=False)
+    assert {(0, 0, 255), (255, 0, 0), (255, 255, 255)} <= colours_in(plotter.screenshot(None))
+
+
+@pytest.mark.parametrize("add", ADDERS)
+def test_annotations_are_written_on_the_bar(plotter, mesh, add):
+    words = {0.2: "low", 0.8: "high"}
+    plotter.add_mesh(mesh, scalars="height", annotations=words, name="one")
+    theirs = annotated(plotter.mapper.lookup_table)
+    actor = getattr(plotter, add)(mesh, scalars="height", annotations=words, name="one")
+    plotter.show(auto_close=False)
+    assert annotated(actor.lookup_table) == theirs == words
+    actor.annotations = None
+    assert annotated(actor.lookup_table) == {}
+    with pytest.raises(ValueError, match=r"annotations is \['low'\]; give a dict from numbers to words"):
+        actor.annotations = ["low"]
+
+
+@pytest.mark.parametrize("add", [*ADDERS, "add_raycast_volume"])
+@pytest.mark.parametrize("more", [{}, {"color": "red"}])
+def test_a_wrong_colour_map_fails_at_once(plotter, mesh, add, more):
+    source = pv.ImageData(dimensions=(4, 4, 4)) if add == "add_raycast_volume" else mesh
+    if add == "add_raycast_volume":
+        source["values"] = np.arange(64.0)
+    with pytest.raises(ValueError, match="cmap is 'viridsi', which is no colour map; .*'viridis'"):
+        getattr(plotter, add)(source, cmap="viridsi", **more)
+    assert len(plotter.actors) == 0
+    actor = getattr(plotter, add)(source, **more)
+    with pytest.raises(ValueError, match="no colour map"):
+        actor.cmap = "viridsi"
+
+
+def entry(plotter, text):
+    return next(color for _face, label, color in plotter.renderer._labels.values() if label == text)
+
+
+def test_legends_show_a_colour_of_the_lines(plotter, mesh):
+    along_x = Streamlines.from_list([np.array([[0.0, 0, 0], [10, 0, 0]]), np.array([[0.0, 5, 0], [10, 5, 0]])])
+    plotter.add_fiblets(along_x, label="direction")
+    mapped = plotter.add_fiblets(mesh, scalars="height", cmap="jet", n_colors=5, label="numbers")
+    plotter.add_fiblets(mesh, scalars=np.tile([[0, 255, 0]], (3, 1)).astype(np.uint8), label="colours")
+    solid = plotter.add_fiblets(mesh, color="red", label="one")
+    assert entry(plotter, "direction") == pv.Color("red")  # along x is red, by the usual convention
+    middle = pv.LookupTable("jet", n_values=5).values[2, :3]
+    np.testing.assert_array_equal(entry(plotter, "numbers").int_rgb, middle)
+    assert entry(plotter, "colours") == pv.Color([0, 255, 0])
+    assert entry(plotter, "one") == pv.Color("red")
+    solid.color = "blue"
+    mapped.cmap = "gray"
+    assert entry(plotter, "one") == pv.Color("blue")
+    assert len(set(entry(plotter, "numbers").int_rgb)) == 1
+    plotter.add_legend(face=None)
+    plotter.show(auto_close=False)
+
+
+def test_entries_of_legends_go_with_their_actors(plotter, mesh):
+    actor = plotter.add_fiblets(mesh, color="red", label="one")
+    plotter.remove_actor(actor)
+    actor.color = "blue"
+    assert not plotter.renderer._labels
