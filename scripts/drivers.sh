@@ -15,7 +15,7 @@ export LEAST=4.3 GALLIVM_PERF=nopt
 PIPELINES="tests/engine/test_pipelines.py tests/engine/test_census.py tests/engine/test_limits.py"
 PICTURES="tests/engine/test_thin_lines.py tests/engine/test_wide_lines.py tests/engine/test_line_tubes.py tests/engine/test_two_phase.py
     tests/engine/test_clip_planes.py tests/engine/test_clip_regions.py tests/engine/test_tube_pictures.py tests/engine/test_halo_pictures.py
-    tests/engine/test_volume.py tests/engine/test_volume_clip.py"
+    tests/engine/test_gathering.py tests/engine/test_filter_textures.py tests/engine/test_volume.py tests/engine/test_volume_clip.py"
 MAPPER="tests/mappers/test_picture.py tests/mappers/test_passes.py tests/mappers/test_tubes.py tests/mappers/test_halos.py tests/mappers/test_volume.py"
 
 run() { # run DRIVER COMMAND ... FILES

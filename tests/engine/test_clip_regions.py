@@ -8,11 +8,12 @@ import pytest
 from pvfiblets import compress, regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.synthetic import brain_streamlines
+from tests.drivers import MESH
 
 from .likeness import assert_like
 from .pictures import EVERY_POINT, SIZE, assert_same, draw, read
 
-PIPELINES = ["compute", "tessellation", "geometry"]
+PIPELINES = ["compute", "tessellation", "geometry", *MESH]
 FAR = {"eye": (120, -200, 110), "target": (0, 0, 0), "far": 700.0}
 
 

@@ -12,10 +12,11 @@ from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.filter_textures import Filter, FilterTextures, _stretch
 from pvfiblets.synthetic import brain_streamlines
+from tests.drivers import MESH
 
 from .pictures import EVERY_POINT, SIZE, assert_same, read
 
-PIPELINES = ["compute", "tessellation", "geometry"]
+PIPELINES = ["compute", "tessellation", "geometry", *MESH]
 STYLES = {"thin": EVERY_POINT, "far detail": FibletStyle(), "wide": FibletStyle(5.0, tolerance=0.0)}
 
 

@@ -9,11 +9,12 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.gathering import SLICES, SliceDistances, slice_edges
 from pvfiblets.engine.fiblets.paint import Paint
+from tests.drivers import MESH
 
 from .cells import clear_of, line_samples
 from .pictures import EMPTY, EVERY_POINT, SIZE, read, unpacked_tangent
 
-PIPELINES = ["compute", "tessellation", "geometry"]
+PIPELINES = ["compute", "tessellation", "geometry", *MESH]
 
 
 def counted(lines, matrix, size):
