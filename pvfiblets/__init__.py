@@ -22,7 +22,9 @@ _HOME = {
     "density": "query.density",
     "iter_chunks": "formats",
     "measure_error": "codec.error",
+    "plot": "plotting.plot",
     "read": "formats",
+    "table": "query.table",
     "write": "formats",
 }
 
@@ -41,8 +43,10 @@ if TYPE_CHECKING:
     from .codec.fibletset import FibletSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
+    from .plotting.plot import plot as plot
     from .query.density import density as density
     from .query.density_map import DensityMap
+    from .query.table import table as table
     from .streamlines import Streamlines
     from .tubes.spline_tubes import SplineTubes
 
