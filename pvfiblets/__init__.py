@@ -37,7 +37,7 @@ __all__ = ["__version__", *_HOME, *_ROOMS]
 
 if TYPE_CHECKING:
     from . import synthetic
-    from .codec.compress import compress
+    from .codec.compress import compress as compress
     from .codec.convert import compress_file
     from .codec.error import CodingError, measure_error
     from .codec.fibletset import FibletSet
