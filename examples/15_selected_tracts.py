@@ -56,7 +56,7 @@ def main(folder: Path) -> None:
     )
     tubes.prop.specular, tubes.prop.specular_power = 0.4, 30
     tubes.ambient_occlusion = {"radius": 8.0}
-    plotter.add_fiblets(fiblets, color="white", opacity=0.1)
+    plotter.add_fiblets(fiblets, color="white", opacity=0.01)
     plotter.view_vector((0.6, 1.0, 0.6), viewup=(0, 0, 1))
     plotter.camera.zoom(1.5)
     plotter.scalar_bars["FA"].SetVerticalTitleSeparation(12)  # off the first number

@@ -205,7 +205,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
-        help="codec, decode, culling, tubes, volumes, halos, features, antialias, stability",
+        help="codec, decode, culling, tubes, volumes, halos, features, antialias, translucency, stability",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

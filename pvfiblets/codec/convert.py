@@ -20,6 +20,7 @@ from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
 from .decompress import iter_chunks
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
+from .fiblets_file import make_header
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
@@ -27,7 +28,6 @@ from .parameters import DEFAULT_ANGLE, Parameters, survey
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 from .resample import resample
-from .storage import make_header
 
 __all__ = ["compress_file", "measure_file_error"]
 

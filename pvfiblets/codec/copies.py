@@ -24,9 +24,9 @@ import numpy.typing as npt
 
 from . import copy_kernels
 from .archive import Member, array_member, write_archive
+from .fiblets_file import make_header
 from .fibletset import FibletSet
 from .layout import PAGE, WORDS, unpack
-from .storage import make_header
 
 __all__ = ["CHUNK", "Copies"]
 

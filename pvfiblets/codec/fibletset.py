@@ -448,7 +448,7 @@ class FibletSet:
             If no format has this suffix, or it can only be read, such as ``.trk.gz``.
         """
         from ..formats import registry
-        from .storage import save
+        from .fiblets_file import save
 
         path = Path(path).expanduser()
         if path.suffix and registry.suffix_of(path) != ".fiblets":
@@ -467,7 +467,7 @@ class FibletSet:
         FormatError
             If the file at `path` is damaged, or of another version.
         """
-        from .storage import open_fiblets
+        from .fiblets_file import open_fiblets
 
         return open_fiblets(Path(path).expanduser(), cls)
 

@@ -12,7 +12,7 @@ from pvfiblets.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring
-    from pvfiblets.mappers.engines import EngineOptions
+    from pvfiblets.mappers.engine_options import EngineOptions
     from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.mappers.halos import HaloMapper, HaloOptions
     from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
@@ -33,7 +33,7 @@ __all__ = [
 
 _HOME = {
     "Colouring": "colouring",
-    "EngineOptions": "engines",
+    "EngineOptions": "engine_options",
     "FibletMapper": "fiblets",
     "HaloMapper": "halos",
     "HaloOptions": "halos",

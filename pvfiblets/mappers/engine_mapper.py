@@ -23,7 +23,7 @@ from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active_renderer import ActiveRenderer
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import layers_of, with_layers
-from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn

@@ -11,7 +11,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.fiblets.style import FibletStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
-from pvfiblets.mappers.engines import EngineOptions, engine_renderer
+from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
@@ -32,7 +32,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         By orientation when left out.
     line_width : float, default 1.0
         Pixels of the window, above 0. Lines thinner than a pixel are drawn a pixel wide, and fainter where edges are
-        smoothed (`pvfiblets.mappers.coverage`).
+        smoothed (`pvfiblets.mappers.antialias_coverage`).
     options : EngineOptions, optional
         Pipeline and culling; the defaults suit every machine.
     renderer_factory : callable, optional

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
-from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.proxy import proxy_polydata

@@ -7,8 +7,8 @@ picture is complete, its depths are those of VTK's framebuffer, and nothing lies
 read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
 they are.
 
-Refinement (`pvfiblets.mappers.refinement`) takes the picture as smooth edges (`pvfiblets.mappers.coverage`) and effects
-leave it. Whoever reads a window's picture gets the finished one: all do that with ``vtkWindowToImageFilter``, PyVista's
+Refinement (`antialias_refinement.py`) takes the picture as smooth edges (`antialias_coverage.py`) and effects leave it.
+Whoever reads a window's picture gets the finished one: all do that with ``vtkWindowToImageFilter``, PyVista's
 ``screenshot`` and ``image`` too. It gives each renderer a copy of its camera before, and VTK tells of that
 (``ActiveCameraEvent``). Where an interactor must not render (``EnableRenderOff``), the window is a server's, whose
 pictures follow the camera: it has them refined itself.
@@ -26,11 +26,11 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
+from pvfiblets.mappers.antialias_refinement import Refinement
+from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
-from pvfiblets.mappers.refinement import Refinement
-from pvfiblets.mappers.refining import finish, shown_pictures
 from pvfiblets.mappers.scene import in_motion
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
@@ -128,7 +128,7 @@ class Picture:
 
     @property
     def antialias(self) -> str:
-        """How edges of lines are smoothed: ``'off'``, or ``'coverage'`` (`pvfiblets.mappers.coverage`)."""
+        """How edges of lines are smoothed: ``'off'``, or ``'coverage'`` (`pvfiblets.mappers.antialias_coverage`)."""
         return "off" if self._smoothing is None else "coverage"
 
     @antialias.setter
@@ -142,7 +142,7 @@ class Picture:
             self._smoothing = None
             self._drop(_COVERAGE)
         else:
-            from pvfiblets.mappers.coverage import EdgeSmoothing
+            from pvfiblets.mappers.antialias_coverage import EdgeSmoothing
 
             self._smoothing = EdgeSmoothing(self.renderer)
         self._hang()
@@ -401,7 +401,7 @@ def _starts_empty(renderer: Any) -> bool:
 def _smoother(context: WindowContext, slot: Slot) -> Any:
     """Return what smooths edges in a window, made when it is first needed."""
     if _COVERAGE not in slot.effects:
-        from pvfiblets.engine.effects.coverage import Coverage
+        from pvfiblets.engine.effects.antialias_coverage import Coverage
 
         slot.effects[_COVERAGE] = Coverage, Coverage(context.ctx)
     return slot.effects[_COVERAGE][1]

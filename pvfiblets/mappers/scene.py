@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
 Matrix = npt.NDArray[np.float64]
 
 smoothers: dict[str, Any] = {}
-"""What smooths the edges of lines, by the address of its vtkRenderer: `pvfiblets.mappers.coverage.EdgeSmoothing`."""
+"""What smooths the edges of lines (`pvfiblets.mappers.antialias_coverage`), by the address of its vtkRenderer."""
 
 USUAL_DPI = 72
 """Dots per inch of a vtkRenderWindow that nobody has changed."""

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
-from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame

@@ -18,7 +18,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
-from pvfiblets.mappers.engines import Options
+from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import PixelHit, nearest_pixel
 from pvfiblets.mappers.scene import in_motion, others_opaque
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes import VolumeStyle
     from pvfiblets.volumes import RaycastVolume
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
-    from pvfiblets.volumes.options import RaycastOptions
+    from pvfiblets.volumes.raycast_options import RaycastOptions
 
 __all__ = ["RayHit", "VolumeMapper", "volume_renderer"]
 

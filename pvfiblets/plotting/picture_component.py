@@ -15,11 +15,11 @@ import pyvista as pv
 
 from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
+from pvfiblets.mappers.antialias_refinement import Refinement
+from pvfiblets.mappers.antialias_windows import refine
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.picture import DepthOfField, Picture
-from pvfiblets.mappers.refinement import Refinement
-from pvfiblets.mappers.refining import refine
-from pvfiblets.plotting.pacing import Pacer
+from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.setting_places import OWN, Place
 from pvfiblets.plotting.settings import Setting, number
 

@@ -210,7 +210,7 @@ def volume_subject(volume: Any) -> Subject:
     from pvfiblets import regions
     from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
     from pvfiblets.volumes import Transfer
-    from pvfiblets.volumes.options import RaycastOptions
+    from pvfiblets.volumes.raycast_options import RaycastOptions
 
     box = np.array(volume.bounds, np.float64).reshape(3, 2)
     middle, sides = box.mean(axis=1), box[:, 1] - box[:, 0]

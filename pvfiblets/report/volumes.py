@@ -10,7 +10,7 @@ import numpy as np
 
 from pvfiblets.synthetic.vessels import vessel_tree
 from pvfiblets.volumes import FILTERS
-from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
+from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from .cameras import by_turns
 from .drawing import LATE, Part, run_parts

@@ -11,7 +11,7 @@ import numpy as np
 
 from pvfiblets.volumes import RaycastVolume, Transfer, reference
 from pvfiblets.volumes.integrators import STABLE_UP_TO, study
-from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
+from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 from pvfiblets.volumes.reference_profiles import profiles
 
 from .cameras import Camera, by_turns

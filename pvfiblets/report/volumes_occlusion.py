@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.volumes import RaycastVolume, reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .drawing import LATE
 from .record import Figure, LeftOut, Record

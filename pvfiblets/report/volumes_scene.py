@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.volumes import RaycastVolume, Transfer, reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .cameras import ELEVATION, VERTICAL_ANGLE, Camera
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
-from .options import RaycastOptions
+from .raycast_options import RaycastOptions
 
 __all__ = ["COARSEST_STEP", "InteractiveQuality"]
 

@@ -35,6 +35,9 @@ LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choos
 
 def build(app: Any) -> None:
     """Build all of them."""
+    # Beside the dialogs: what is in one that is closed meanwhile, by another who looks at the page, hears of no file.
+    html.Input(type="file", hidden=True, id="pv-upload", data_upload=True, data_limit=("upload_limit",))
+    html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True)
     _files(app)
     _sessions(app)
     _script()
@@ -82,9 +85,8 @@ def _files(app: Any) -> None:
                 v3.VIcon("mdi-arrow-up")
             html.Span("/{{ folder }}", classes="pv-value", style="flex: 1")
             with html.Label(v_if="upload_limit > 0", classes="v-btn v-btn--density-default v-btn--size-small "
-                            "v-btn--variant-tonal px-3 text-none", style=LABEL):  # fmt: skip
+                            "v-btn--variant-tonal px-3 text-none", style=LABEL, **{"for": "pv-upload"}):  # fmt: skip
                 html.Span("Upload…")
-                html.Input(type="file", hidden=True, data_upload=True, data_limit=("upload_limit",))
         with v3.VCardText(classes="pa-0", style="max-height: 60vh"):
             with v3.VList(density="compact"):
                 with v3.VListItem(
@@ -111,9 +113,8 @@ def _sessions(app: Any) -> None:
                     click="utils.download('session.json', trigger('save_session'), 'application/json')",
                 )  # fmt: skip
                 with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4 "
-                                "text-none", style=LABEL):  # fmt: skip
+                                "text-none", style=LABEL, **{"for": "pv-session"}):  # fmt: skip
                     html.Span("Load…")
-                    html.Input(type="file", accept=".json,application/json", hidden=True, data_session=True)
             html.Div("Or in the served folder, beside the data; it is opened there like any other file.",
                      classes="pv-small mt-4 mb-1")  # fmt: skip
             with html.Form(

@@ -107,6 +107,7 @@ def test_kernels_write_the_references_codes(name: str) -> None:
 )
 def test_kernels_write_the_references_codes_on_real_files(shared_data: Path, name: str) -> None:
     streamlines = pf.read(shared_data / name)
+    streamlines = streamlines[:: 1 + streamlines.n_points // 20_000]  # the reference is slow
     assert_matches_reference(streamlines, pf.compress(streamlines))
 
 

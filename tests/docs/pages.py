@@ -12,6 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 INSTALLS = re.compile(r"\b(sudo|pip|source|make)\b")
 WINDOWS = re.compile(r"^pvfiblets (show|serve)\b")
+DEMO = re.compile(r"^(pvfiblets demo)\b(?!.*--streamlines)", re.MULTILINE)
 
 BRAIN = """
 import pyvista as pv
@@ -86,7 +87,8 @@ RUN_ELSEWHERE = {
     "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",
     "docs/reference/fiblets-files.md": "test_fiblets_files.py runs the reader that it prints",
 }
-# A smaller brain, a smaller print, and windows that stay open for what a page says after it has shown them.
+# A smaller brain (of the demo DEMO sees to it), a smaller print, and windows that stay open for what a page says after
+# it has shown them.
 INSTEAD = {
     "brain_streamlines(20_000, seed=1, fa=True)": "brain_streamlines(400, seed=1, fa=True)",
     "plotter.show()": "plotter.show(auto_close=False)",
@@ -116,6 +118,7 @@ def program(page: str) -> str:
             if INSTALLS.search(text):  # of an install only what comes after it
                 text = "\n".join(line for line in text.splitlines() if line.startswith("pvfiblets"))
             text = "\n".join(line for line in text.splitlines() if not WINDOWS.match(line))  # these wait for someone
+            text = DEMO.sub(r"\1 --streamlines 1000", text)
             parts.append(f"subprocess.run(['bash', '-e', '-c', {text!r}], check=True)")
         else:
             for told, run in INSTEAD.items():

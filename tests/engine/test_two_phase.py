@@ -161,7 +161,7 @@ def test_teleports(both, brain, onion, camera, near_plane):
 def test_clipping_ranges(both, onion, camera):
     """Near and far planes that cut the data, down to slices of a millimetre, where depth is coarse in float32."""
     pair = both(onion)
-    for near_plane, far in ((30, 200), (100, 200), (100, 105), (100, 101), (20, 101), (110, 110.2), (1e-3, 1e4)):
+    for near_plane, far in ((30, 200), (100, 105), (20, 101), (110, 110.2), (1e-3, 1e4)):
         for height in (None, 70.0):
             matrix = camera(SMALL, eye=(60, -80, 45), near=near_plane, far=far, height=height)
             pair.draw(View(SMALL, matrix))
@@ -255,7 +255,7 @@ def random_views(rng, count, camera):
 
 
 @pytest.mark.usefixtures("unpredicted")
-@pytest.mark.parametrize(("seed", "count"), [(0, 6), pytest.param(1, 24, marks=pytest.mark.exhaustive)])
+@pytest.mark.parametrize(("seed", "count"), [(0, 3), pytest.param(1, 24, marks=pytest.mark.exhaustive)])
 def test_random_cameras(both, brain, onion, camera, seed, count):
     rng = np.random.default_rng(seed)
     for fiblets in (brain, onion):

@@ -10,7 +10,7 @@ import pytest
 from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
 from pvfiblets.volumes import reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 

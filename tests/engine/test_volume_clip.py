@@ -9,7 +9,7 @@ from pvfiblets import regions
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.volumes import reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 

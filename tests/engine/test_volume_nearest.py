@@ -7,7 +7,7 @@ import numpy as np
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.volumes import reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.volume import RaycastVolume
 
 from .pictures import EMPTY, unpacked_tangent

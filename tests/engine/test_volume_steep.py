@@ -8,7 +8,7 @@ import pytest
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.volumes import reference
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.steepness import OFF, allowed_bend, is_steep, largest_bend, typical_bend
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume

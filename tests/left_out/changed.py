@@ -273,21 +273,21 @@ CHANGED = {
     ),
     "picture: refined": What(
         ran="""
-            effects/picture/copy.frag, effects/picture/coverage.frag, effects/picture/line_tiles.frag,
+            effects/picture/copy.frag, effects/picture/antialias_coverage.frag, effects/picture/line_tiles.frag,
             effects/picture/line_tiles.vert, effects/picture/mean.frag, effects/picture/visible_edges.frag
         """,
         features="EDGES, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
-        modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
+        modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
     ),
     "picture: refined, moving": What(
         ran="""
-            effects/picture/coverage.frag, effects/picture/line_tiles.frag, effects/picture/line_tiles.vert,
+            effects/picture/antialias_coverage.frag, effects/picture/line_tiles.frag, effects/picture/line_tiles.vert,
             effects/picture/visible_edges.frag
         """,
         features="EDGES, PICTURE_SAMPLES",
         buffers="coverage",
-        modules="engine.effects.coverage, mappers.coverage, plotting.picture_component",
+        modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
     ),
     "picture: tone": What(
         ran="effects/picture/copy.frag, effects/picture/tone.frag",

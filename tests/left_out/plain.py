@@ -23,7 +23,7 @@ PLAIN = {
             anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, occlusion, pages,
             rotations
         """,
-        modules="codec.storage, engine.culling.pyramid, engine.fiblets.renderer, plotting.fiblets.actor",
+        modules="codec.fiblets_file, engine.culling.pyramid, engine.fiblets.renderer, plotting.fiblets.actor",
     ),
     "spline tubes": What(
         ran="screen/near.vert, tubes/attributes.frag, tubes/rectangles.vert, tubes/tube.frag",

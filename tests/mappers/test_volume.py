@@ -10,7 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .visible_volumes import (
     HALF,
@@ -263,3 +263,21 @@ def test_surfaces_cut_into_meshes_and_have_the_colour_of_their_value(make_plotte
     assert np.abs(middle(tools.picture(plotter, mapper)) - 64).max() <= 1
     mapper.casting = RaycastOptions("isosurface", (12.0,))
     assert middle(tools.picture(plotter, mapper)).tolist() == [255, 0, 0]
+
+
+@pytest.mark.parametrize(("y", "front"), [(-25.0, True), (25.0, False)])
+def test_translucent_lines_lie_in_order_under_depth_peeling(make_plotter, tools, y, front):
+    """Three wide lines, one behind the other, of which all show: the volume is behind all of them, or in front."""
+    plotter = look(make_plotter())
+    plotter.enable_depth_peeling(number_of_peels=8)
+    mapper, actor = made(fog(), light())
+    plotter.add_actor(actor, reset_camera=False)
+    x = np.linspace(-30.0, 30.0, 61)
+    lines = [np.stack([x, np.full_like(x, y + k), np.zeros_like(x)], axis=1) for k in range(3)]
+    plotter.add_fiblets(lines, color="blue", opacity=0.3, line_width=40, lighting=False, reset_camera=False)
+    seen = middle(tools.picture(look(plotter), mapper))
+    blue, empty, length = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array(2 * HALF)
+    through = 0.7**3
+    lit = (1.0 - through) * blue
+    wanted = 255.0 * lit + through * over(length, empty) if front else over(length, lit)
+    assert np.abs(seen - wanted).max() <= 3.0

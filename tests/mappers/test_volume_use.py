@@ -10,7 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkHardwareSelector
 from pvfiblets.mappers import Colouring, VolumeMapper, windows
 from pvfiblets.mappers.volumes import volume_renderer
 from pvfiblets.volumes import RaycastVolume, Transfer
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .visible_volumes import (
     HALF,

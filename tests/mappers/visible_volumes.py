@@ -8,7 +8,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.mappers import Colouring, VolumeMapper
 from pvfiblets.volumes import RaycastVolume, Transfer
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 HALF = 16.0  # the volumes' boxes reach from -16 to 16 mm
 KAPPA = 0.05

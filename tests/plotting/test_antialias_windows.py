@@ -25,8 +25,8 @@ def scene():
 
 def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
     """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
-    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
-    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.05)
+    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.Pacer.seen", True)
+    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.REST", 0.05)
     interactor, asked = scene.iren.interactor, []
     interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
     renders = Renders(scene)
@@ -53,7 +53,7 @@ def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypa
 
 
 def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
-    monkeypatch.setattr("pvfiblets.plotting.pacing.Pacer.seen", True)
+    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.Pacer.seen", True)
     scene.enable_trackball_style()
     interactor, renders = scene.iren.interactor, Renders(scene)
     interactor.SetEventInformation(60, 60)
@@ -76,7 +76,7 @@ def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(sce
 
 def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
     """As in a notebook: the interactor must not render, pictures are sent when the plotter renders."""
-    monkeypatch.setattr("pvfiblets.plotting.pacing.REST", 0.02)
+    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.REST", 0.02)
     sent = []
     scene.add_on_render_callback(lambda _: sent.append(scene.picture.samples))
     scene.iren.interactor.EnableRenderOff()

@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 
 

@@ -99,6 +99,13 @@ def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys
         main(["report"])
 
 
+def test_the_command_lists_every_study(capsys):
+    with pytest.raises(SystemExit):
+        main(["report", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert ", ".join(studies.MODULES) in said
+
+
 def test_each_default_is_told_at_its_own_figures_only():
     axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm"), Axes("b", "costs/size", "errors/wrong", "bytes", "%")]
     records = [

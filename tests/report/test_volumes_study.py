@@ -10,7 +10,7 @@ import pytest
 
 from pvfiblets.report import volumes, volumes_fields, volumes_integrators, volumes_occlusion, volumes_scene
 from pvfiblets.report.study import Budget, Unavailable
-from pvfiblets.volumes.options import INTEGRATORS, RaycastOptions
+from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from .little import little
 

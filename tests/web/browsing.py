@@ -24,6 +24,7 @@ FLAGS = (
     "--disable-quic", "--no-first-run",
 )  # fmt: skip
 PATIENCE = 120_000  # ms: machines that run tests are busy
+QUIET = 600  # ms without a picture: twice as long as the server waits for the camera to rest
 
 
 def chromium() -> str | None:
@@ -96,7 +97,12 @@ class Visit:
 
     def ready(self):
         picture = self.page.locator("#pv-view img[src^=blob]")
-        self.wait(picture.count, "the first picture")
+
+        def comes():
+            assert "(exit code" not in self.served.log.read_text(), self.served.log.read_text()
+            return picture.count()
+
+        self.wait(comes, "the first picture")
         self.wait(lambda: self.layers() and self.picture().std() > 1.0, "a picture with something in it")
         return self
 
@@ -131,7 +137,7 @@ class Visit:
         while len(self.received) != count:
             count = len(self.received)
             found = re.match(r"\d+", self.state("frame") or "")
-            self.page.wait_for_timeout(max(1000, 3 * int(found.group()) if found else 0))
+            self.page.wait_for_timeout(max(QUIET, 3 * int(found.group()) if found else 0))
         return self.picture()
 
     def changed(self, before, what="another picture", least=0.05):

@@ -10,7 +10,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.volumes import RaycastVolume
-from pvfiblets.volumes.options import INTEGRATORS
+from pvfiblets.volumes.raycast_options import INTEGRATORS
 from pvfiblets.web import layers
 from pvfiblets.web.layers import USUAL
 from pvfiblets.web.script import as_script

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
-from ...volumes.options import PROJECTIONS, RaycastOptions
+from ...volumes.raycast_options import PROJECTIONS, RaycastOptions
 from ...volumes.volume import RaycastVolume
 from ..bindings import VOLUMES
 from ..errors import EngineError

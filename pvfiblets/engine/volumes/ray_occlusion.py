@@ -18,7 +18,7 @@ from .renderer import FEATURES_OF_FILTER, VolumeRenderer
 from .uniform_blocks import CONSTANTS
 
 if TYPE_CHECKING:
-    from ...volumes.options import RaycastOptions
+    from ...volumes.raycast_options import RaycastOptions
     from ...volumes.volume import RaycastVolume
     from ..gbuffer import GBuffer
     from ..view import View

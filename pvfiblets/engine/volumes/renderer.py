@@ -19,7 +19,7 @@ from .transfer_textures import TransferTextures
 from .uniform_blocks import CONSTANTS, RayBlock
 
 if TYPE_CHECKING:
-    from ...volumes.options import RaycastOptions
+    from ...volumes.raycast_options import RaycastOptions
     from ...volumes.volume import RaycastVolume
 
 __all__ = ["VolumeRenderer", "VolumeStyle"]

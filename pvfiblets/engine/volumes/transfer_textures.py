@@ -9,12 +9,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...volumes.options import LARGEST
+from ...volumes.raycast_options import LARGEST
 from ...volumes.steepness import KINKS, PARTS, allowed_bend, is_steep, largest_bend, typical_bend
 from ..bindings import VOLUMES
 
 if TYPE_CHECKING:
-    from ...volumes.options import RaycastOptions
+    from ...volumes.raycast_options import RaycastOptions
     from ...volumes.volume import RaycastVolume
 
 __all__ = ["TransferTextures"]

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...volumes.options import MAX_VALUES, RaycastOptions
+from ...volumes.raycast_options import MAX_VALUES, RaycastOptions
 from ...volumes.steepness import PARTS
 from ...volumes.transfer import ALLOWED, FINEST
 from ...volumes.volume import RaycastVolume

@@ -11,7 +11,7 @@ import pyvista as pv
 
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import Layers
-from pvfiblets.mappers.engines import EngineOptions
+from pvfiblets.mappers.engine_options import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.colours import limits

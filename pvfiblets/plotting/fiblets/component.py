@@ -121,7 +121,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         >>> actor = pl.add_fiblets(brain_streamlines(1000), scalars="length", cmap="plasma")
         >>> actor.line_width = 2
         """
-        from pvfiblets.mappers.engines import EngineOptions
+        from pvfiblets.mappers.engine_options import EngineOptions
         from pvfiblets.plotting.fiblets.actor import FibletActor
         from pvfiblets.plotting.fiblets.sources import as_fiblets
 

@@ -13,7 +13,7 @@ from pvfiblets.plotting.colours import make_colouring, update_table
 from pvfiblets.plotting.volumes.opacity import number, opacities, surface_values, value_limits
 from pvfiblets.plotting.volumes.settings import CASTING, CHOSEN, VolumeSettings
 from pvfiblets.volumes import Transfer
-from pvfiblets.volumes.options import RaycastOptions
+from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import LARGEST_PREINTEGRATED
 
 if TYPE_CHECKING:

@@ -119,7 +119,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         (0.4,)
         """
         from pvfiblets.plotting.volumes.actor import VolumeActor
-        from pvfiblets.volumes.options import MODES
+        from pvfiblets.volumes.raycast_options import MODES
         from pvfiblets.volumes.sources import as_raycast_volume
 
         if settings["mode"] not in MODES:  # before the slow part

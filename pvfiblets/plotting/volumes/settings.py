@@ -8,7 +8,7 @@ from typing import Any
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.setting_places import OWN, Effect, Own, Place
 from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings
-from pvfiblets.volumes.options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
+from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
 from pvfiblets.volumes.volume import FILTERS
 
 _MISSING = "volumes that rays are cast through have no {name}: "

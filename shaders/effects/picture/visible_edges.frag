@@ -1,4 +1,4 @@
-// Which lines a picture shows, and what it shows of everything: what coverage.frag looks at, with a border of one texel around
+// Which lines a picture shows, and what it shows of everything: what antialias_coverage.frag looks at, with a border of one texel around
 // the picture, where nothing is. It runs once for each drawable, the first time for all pixels, then for those that show it.
 //
 //   keys, edges   of the drawable's G-buffer (pvfiblets/engine/gbuffer.py)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec import archive, fiblets_format, layout, storage
+from pvfiblets.codec import archive, fiblets_file, fiblets_format, layout
 from pvfiblets.codec.convert import measure_file_error
 from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
@@ -123,7 +123,7 @@ def test_numpy_alone_reads_a_file(tmp_path: Path) -> None:
         np.testing.assert_array_equal(plain["codes"], fiblets.codes)
         np.testing.assert_array_equal(plain["anchors"], fiblets.anchors)
         header = json.loads(bytes(plain["header.json"]))
-    assert header["version"] == storage.VERSION
+    assert header["version"] == fiblets_file.VERSION
     assert header["n_points"] == fiblets.n_points
 
 
@@ -318,7 +318,7 @@ def saved(tmp_path: Path) -> Path:
 def test_a_newer_version_is_refused(tmp_path: Path) -> None:
     path = saved(tmp_path)
     header, arrays = archive.open_archive(path)
-    header["version"] = storage.VERSION + 1
+    header["version"] = fiblets_file.VERSION + 1
     archive.write_archive(
         tmp_path / "b.fiblets", header, {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine.effects.accumulation import Accumulation
+from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 
 SIZE = (23, 17)

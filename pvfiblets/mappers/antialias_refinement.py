@@ -23,7 +23,7 @@ from collections.abc import Callable, Hashable, Iterator
 from enum import Enum, auto
 from typing import Any
 
-from pvfiblets.engine.effects.accumulation import Accumulation
+from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, shift

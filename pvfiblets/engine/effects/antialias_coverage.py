@@ -2,7 +2,7 @@
 
 The engine keeps one line a pixel, and where its edges run (``GBuffer.edges``). From the lines of a pixel and its eight
 neighbours `Coverage` finds what share of the pixel each of them covers, nearest first, and mixes their colours in the
-finished picture. ``shaders/effects/picture/coverage.frag`` says how.
+finished picture. ``shaders/effects/picture/antialias_coverage.frag`` says how.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class Coverage(PicturePasses):
                 picture.viewport = (x, y, width, height)
                 textures = tiled | {"shown": self._textures["shown"]}
                 squares = {"start": (0, 0), "size": (width, height), "border": 0}
-                self._tile_pass("coverage", picture, textures, {"shift": (1 - x, 1 - y), **squares})
+                self._tile_pass("antialias_coverage", picture, textures, {"shift": (1 - x, 1 - y), **squares})
             finally:
                 picture.release()
 

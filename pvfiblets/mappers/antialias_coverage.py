@@ -1,4 +1,4 @@
-"""Smooth edges of the lines that a renderer shows: `pvfiblets.engine.effects.coverage` in VTK's own picture.
+"""Smooth edges of the lines that a renderer shows: `pvfiblets.engine.effects.antialias_coverage` in VTK's own picture.
 
 Mappers of lines ask `pvfiblets.mappers.scene.smoothers` whether edges are wanted, and note what they have drawn; when
 the picture is complete, it is smoothed.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.engine.effects.coverage import Coverage, SmoothedLines
+from pvfiblets.engine.effects.antialias_coverage import Coverage, SmoothedLines
 from pvfiblets.engine.effects.picture import Attachment
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.scene import smoothers
@@ -27,8 +27,8 @@ class EdgeSmoothing:
     Attributes
     ----------
     sample : bool
-        Whether the picture is one of many whose mean is shown (`pvfiblets.mappers.refinement`). Its edges are not
-        smoothed, and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
+        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Its edges are not smoothed,
+        and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
         for thin lines, which makes slanted ones thinner, does not count.
     widened : bool
         Whether any is drawn otherwise in the picture of one sample: mappers say so.
