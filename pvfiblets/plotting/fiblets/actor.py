@@ -87,7 +87,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     ) -> None:
         theme = pv.global_theme if theme is None else theme
         given = Given(FibletSettings, settings)
-        self._fiblets = fiblets
+        self._fiblets, self._rgb = fiblets, given["rgb"]
         self._init_colours(scalars, given, theme)
         self._init_shading()
         self._tone = TONES[0]
@@ -144,7 +144,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         KeyError, ValueError
             If it lacks what colours now; nothing is changed then.
         """
-        self.fiblets = as_fiblets(source, scalars=self._choice, **options)[0]
+        self.fiblets = as_fiblets(source, scalars=self._choice, rgb=self._rgb, **options)[0]
 
     def copy(self, deep: bool = True) -> FibletActor:
         """Return another actor that draws the same fiblets with the same colours and place.
@@ -219,7 +219,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
         scalars = self._values_of_criterion(scalars)
-        fiblets, scalars = with_point_values(self._fiblets, scalars)
+        fiblets, scalars = with_point_values(self._fiblets, scalars, self._rgb)
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:
             self._draw(fiblets)
@@ -230,6 +230,17 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
 
     def _mean_colour(self, scalars: Scalars) -> Any:
         return mean_direction(self._fiblets) if scalars.kind == "orientation" else super()._mean_colour(scalars)
+
+    def _read_rgb(self) -> bool | None:
+        return self._rgb
+
+    def _write_rgb(self, rgb: bool | None) -> None:
+        before, self._rgb = self._rgb, rgb
+        try:
+            self.scalars = self._choice
+        except Exception:
+            self._rgb = before
+            raise
 
     def _explain_colours(self) -> dict[str, Any] | None:
         if self._scalars is None or not self._scalars.mapped:
@@ -408,4 +419,4 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:
             return None
-        return find_scalars(fiblets, choice)
+        return find_scalars(fiblets, choice, self._rgb)

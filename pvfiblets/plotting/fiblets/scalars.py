@@ -116,7 +116,7 @@ class Scalars:
 
 
 def find_scalars(
-    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None
+    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None, rgb: bool | None = None
 ) -> Scalars:
     """Find what ``scalars`` means for ``fiblets``.
 
@@ -127,6 +127,9 @@ def find_scalars(
     scalars : str, array, VolumeSource, Distance or None
         A name, one value or colour per streamline, a volume to be sampled, or what distances are
         to; ``None`` means orientation.
+    rgb : bool, optional
+        Whether 3 or 4 columns are colours, or vectors to be mapped by their magnitude; by default
+        colours where they are uint8, or floats from 0 to 1.
 
     Returns
     -------
@@ -151,14 +154,14 @@ def find_scalars(
         values = measure(fiblets, scalars)
         return per_streamline(values.name, values.array(), fiblets.n_streamlines)
     if not isinstance(scalars, str):
-        return per_streamline(UNNAMED, scalars, fiblets.n_streamlines)
+        return _of_streamlines(UNNAMED, scalars, fiblets.n_streamlines, rgb)
     if scalars in fiblets.per_point:
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
         return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
     if scalars in fiblets.per_streamline:
-        return per_streamline(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines)
+        return _of_streamlines(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines, rgb)
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == "length":
@@ -182,6 +185,41 @@ def find_scalars(
             "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
         )
     raise KeyError(missing_message(fiblets, scalars))
+
+
+def are_colours(values: np.ndarray, rgb: bool | None) -> bool:
+    """Whether rows are colours; see :func:`find_scalars`."""
+    if values.ndim != 2 or rgb is False or (rgb is None and values.shape[1] not in (3, 4)):
+        return False
+    if rgb or values.dtype.kind != "f":
+        return True
+    return not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0)
+
+
+def magnitudes(values: np.ndarray) -> np.ndarray:
+    """Return the length of each row, ``(n,)`` float64; NaN where a column is."""
+    flat = np.asarray(values, np.float64).reshape(len(values), -1)
+    return np.asarray(np.linalg.norm(flat, axis=1))
+
+
+def _of_streamlines(name: str, values: Any, count: int, rgb: bool | None) -> Scalars:
+    """Make :class:`Scalars` of numbers, colours, vectors or words, one per streamline."""
+    values = np.asarray(values)
+    if values.shape == (count,) and values.dtype.kind in "USO":
+        return _by_word(name, values)
+    wide = values.ndim == 2 and values.shape[0] == count and values.shape[1] > 1 and values.dtype.kind in "buif"
+    if wide and not are_colours(values, rgb):
+        values = magnitudes(values)
+    return per_streamline(name, values, count)
+
+
+def _by_word(name: str, words: np.ndarray) -> Scalars:
+    """Number the words in their order; each is a category. Empty words have none."""
+    texts = np.array([str(word) for word in words])
+    known = np.unique(texts[texts != ""])
+    numbers = np.where(texts == "", np.nan, np.searchsorted(known, texts))
+    found = per_streamline(name, numbers, len(words))
+    return replace(found, range=(-0.5, max(len(known), 1) - 0.5), categories=dict(enumerate(known.tolist())))
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
