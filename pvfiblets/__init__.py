@@ -21,6 +21,7 @@ _HOME = {
     "compress_file": "codec.convert",
     "density": "query.density",
     "iter_chunks": "formats",
+    "end_parcels": "query.parcels",
     "measure_error": "codec.error",
     "plot": "plotting.plot",
     "read": "formats",
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from .plotting.plot import plot as plot
     from .query.density import density as density
     from .query.density_map import DensityMap
+    from .query.parcels import end_parcels as end_parcels
     from .query.table import table as table
     from .streamlines import Streamlines
     from .tubes.spline_tubes import SplineTubes

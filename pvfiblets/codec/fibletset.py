@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -365,6 +365,25 @@ class FibletSet:
         from .. import table
 
         return table(self, ids)
+
+    def end_parcels(self, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
+        """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.
+
+        Parameters
+        ----------
+        atlas : nibabel image, path of one, or (array, affine)
+            Whole numbers, 0 for no parcel.
+        names : mapping of int to str, optional
+            Of the parcels.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` text, which ``scalars`` takes.
+        """
+        from .. import end_parcels
+
+        return end_parcels(self, atlas, names)
 
     def plot(self, **options: Any) -> Any:
         """Show the streamlines in a window of their own; see :func:`pvfiblets.plot`.

@@ -80,7 +80,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             What colours the streamlines: ``"orientation"`` (the default: the absolute value of
             the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
             ``"arc_length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"``,
-            ``"group"``; ``"density"``, streamlines per pixel), the name of per-streamline or
+            ``"group"``; ``"ends"``, the direction from end to end as red, green, blue; ``"id"``,
+            the number of the streamline; ``"random"``, a colour for each; ``"density"``,
+            streamlines per pixel), the name of per-streamline or
             per-point data, or an array with one value per streamline or per point, or one colour
             (3 or 4 columns) per streamline. Vectors are mapped by their magnitude (``rgb``); words,
             one per streamline, are categories.

@@ -14,6 +14,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
+from pvfiblets.query.endpoints import end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
 
 if TYPE_CHECKING:
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
 ORIENTATION = "orientation"
 GROUP = "group"
 DENSITY = "density"
-BUILT_IN = tuple(
-    dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP, DENSITY))
-)
+ENDS, ID, RANDOM = "ends", "id", "random"
+_LINES = ("length", "curvature", "arc_length", *COMPUTED["streamline"])
+BUILT_IN = tuple(dict.fromkeys((ORIENTATION, ENDS, *_LINES, GROUP, DENSITY, ID, RANDOM)))
 UNITS = {
     "length": "length [mm]",
     "radius": "radius [mm]",
@@ -34,6 +35,7 @@ UNITS = {
     "mean_curvature": "mean curvature [1/mm]",
     "end_distance": "distance of ends [mm]",
     "n_points": "points",
+    "id": "streamline",
     "coding_error": "coding error [mm]",
     "distance": "distance [mm]",
 }
@@ -177,6 +179,12 @@ def find_scalars(
         return without_outliers(found) if scalars == "mean_curvature" else found
     if scalars == GROUP:
         return by_group(fiblets)
+    if scalars == ENDS:
+        return per_streamline(ENDS, _end_directions(fiblets), fiblets.n_streamlines)
+    if scalars == ID:
+        return per_streamline(ID, np.arange(fiblets.n_streamlines), fiblets.n_streamlines)
+    if scalars == RANDOM:
+        return per_streamline(RANDOM, distinct_colours(fiblets.n_streamlines), fiblets.n_streamlines)
     if scalars == DENSITY:
         return Scalars(DENSITY, "pixel_count", None, (0.0, 1.0), 1.0)
     if scalars == "coding_error":
@@ -220,6 +228,28 @@ def _by_word(name: str, words: np.ndarray) -> Scalars:
     numbers = np.where(texts == "", np.nan, np.searchsorted(known, texts))
     found = per_streamline(name, numbers, len(words))
     return replace(found, range=(-0.5, max(len(known), 1) - 0.5), categories=dict(enumerate(known.tolist())))
+
+
+def _end_directions(fiblets: FibletSet) -> np.ndarray:
+    """Return the absolute direction from end to end as colours, (n, 3) from 0 to 1; grey where there is none."""
+    ends = end_points(fiblets)
+    apart = np.abs(ends[:, 1] - ends[:, 0])
+    sizes = np.linalg.norm(apart, axis=1, keepdims=True)
+    return np.where(sizes > 0.0, apart / np.where(sizes > 0.0, sizes, 1.0), 0.5)
+
+
+def distinct_colours(count: int) -> np.ndarray:
+    """Return so many bright colours, (n, 3) from 0 to 1, of which neighbours are far apart.
+
+    The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
+    brightness change with a rhythm of their own.
+    """
+    index = np.arange(count)
+    hue = np.modf(index * 0.6180339887498949)[0][:, None]
+    saturation, value = (np.array(some)[index % 3][:, None] for some in ((0.9, 0.6, 0.75), (1.0, 0.9, 0.75)))
+    # Travis, "Effective Color Displays", 1991: the hexagon of hues as three ramps.
+    ramp = np.clip(np.abs(np.mod(hue * 6.0 + [0.0, 4.0, 2.0], 6.0) - 3.0) - 1.0, 0.0, 1.0)
+    return np.asarray(value * (1.0 - saturation * (1.0 - ramp)))
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
