@@ -25,6 +25,7 @@ _HOME = {
     "measure_error": "codec.error",
     "plot": "plotting.plot",
     "read": "formats",
+    "read_volume": "plotting.read_volume",
     "table": "query.table",
     "write": "formats",
 }
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from .errors import FormatError
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot
+    from .plotting.read_volume import read_volume as read_volume
     from .query.density import density as density
     from .query.density_map import DensityMap
     from .query.parcels import end_parcels as end_parcels

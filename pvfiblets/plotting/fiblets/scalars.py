@@ -7,6 +7,7 @@ with three or four columns are colours, all others are numbers for a colour map.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
-from pvfiblets.query.endpoints import end_points
+from pvfiblets.query.endpoints import anchor_points, end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
 
 if TYPE_CHECKING:
@@ -148,6 +149,7 @@ def find_scalars(
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(scalars, VolumeSource):
+        _warn_if_apart(fiblets, scalars)
         low, high = scalars.range
         return Scalars(
             scalars.name, "point_scalar", None, (low, high), positive=scalars.least_positive, volume=scalars
@@ -345,6 +347,37 @@ def _longest(fiblets: FibletSet) -> float:
         return 0.0
     most = np.argpartition(counts, -min(_SAMPLE, counts.size))[-_SAMPLE:]
     return float(fiblets.decompress(most).lengths().max())
+
+
+def _warn_if_apart(fiblets: FibletSet, volume: VolumeSource) -> None:
+    """Warn where no point lies in a volume, of which a picture without its colours would be all there is to see."""
+    sides = np.array(volume.values.shape)
+
+    def meets(points: np.ndarray) -> bool:
+        at = points.astype(np.float64) @ volume.voxels[:3, :3].T + volume.voxels[:3, 3]
+        return bool(((at >= -0.5) & (at <= sides - 0.5)).all(axis=1).any())
+
+    # Anchors are points that need no decoding, and nearly always one of some lies inside.
+    some = np.unique(np.linspace(0, max(fiblets.n_fiblets - 1, 0), _SAMPLE).astype(np.int64))
+    if not fiblets.n_points or meets(anchor_points(fiblets, some)):
+        return
+    if any(meets(chunk.points) for chunk in fiblets.iter_chunks()):
+        return
+    corners = np.stack(np.meshgrid(*[(-0.5, side - 0.5) for side in sides]), axis=-1).reshape(-1, 3)
+    places = corners @ volume.affine[:3, :3].T + volume.affine[:3, 3]
+    theirs = np.stack([places.min(axis=0), places.max(axis=0)], axis=1).ravel()
+    warnings.warn(
+        f"no streamline meets the volume {volume.name!r}, so that all have nan_color: it lies in {_told(theirs)} mm, "
+        f"the streamlines in {_told(fiblets.bounds)} mm. pv.read() loses where a NIfTI file lies: give its path, or "
+        "pvfiblets.read_volume(path)",
+        UserWarning,
+        stacklevel=5,
+    )
+
+
+def _told(bounds: Any) -> str:
+    pairs = zip("xyz", bounds[::2], bounds[1::2], strict=True)
+    return ", ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, low, high in pairs)
 
 
 def mean_direction(fiblets: FibletSet) -> tuple[float, float, float]:
