@@ -202,7 +202,7 @@ def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
     if len(ids) and (ids.min() < 0 or ids.max() >= n_points):
         raise ValueError(f"lines refer to points {ids.min()} to {ids.max()}, but the PolyData has {n_points} points")
     if np.all(np.diff(offsets) == 2):
-        # Cells of two points are how many filters write whole lines: they are smooth where they follow each other.
+        # Cells of two points are how many filters write whole lines: they are smooth where exactly two meet.
         chained = _from_segments(points, ids.reshape(-1, 2))
         return Lines(points, chained.ids, chained.offsets, n, point_data, line_data, chained.order, np.arange(n))
     return Lines(points, ids, offsets, n, point_data, line_data)
@@ -234,8 +234,8 @@ def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
 def _before(segments: Ints, n_points: int) -> Ints:
     """The segment that each one goes on from, itself for none.
 
-    It is the one listed just before, if that ends where this one starts; else the only one that ends there, if this is
-    the only one that starts there.
+    It is the only one that ends where this one starts, if no other starts there: where more than two meet, which of
+    them go on as one is not to be told, and the order in which they are listed must not decide it.
     """
     n = len(segments)
     own = np.arange(n)
@@ -245,8 +245,6 @@ def _before(segments: Ints, n_points: int) -> Ints:
     ending[end] = own
     alone = (np.bincount(start, minlength=n_points) == 1) & (np.bincount(end, minlength=n_points) == 1)
     before[alone[start]] = ending[start[alone[start]]]
-    follows = np.flatnonzero(end[:-1] == start[1:]) + 1
-    before[follows] = follows - 1
     return before
 
 

@@ -55,8 +55,8 @@ def as_halo_lines(
         A PolyData (VTK or PyVista) with lines, of which other cells are left out; a tractogram; one ``(n, 3)`` array in
         mm for one line, or a list of such arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and
         ``(n_segments, 2)`` point indices. Segments, and line cells when all have two points, become one line where one
-        follows the other; where more than two meet, only those that follow each other in the list. HaloLines keep
-        the values that they have.
+        follows the other and no third meets them; in whichever order they are listed. HaloLines keep the values that
+        they have.
     scalars : str or array_like, optional
         What to keep for colours: the name of point or line data of the source; or an array, or one for each line, of
         numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row for each point

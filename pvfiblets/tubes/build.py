@@ -39,8 +39,8 @@ def as_spline_tubes(
     source : PolyData, Streamlines, FibletSet, array_like, tuple or SplineTubes
         A PolyData (VTK or PyVista) with lines; a tractogram; one ``(n, 3)`` array in mm for one tube, or a list of such
         arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and ``(n_segments, 2)`` point indices.
-        Segments, and line cells when all have two points, are smooth where one follows the other; where more than
-        two meet, only those that follow each other in the list. Lines of one point become spheres, lines without
+        Segments, and line cells when all have two points, are smooth where one follows the other and no third meets
+        them; in whichever order they are listed. Lines of one point become spheres, lines without
         points tubes without segments. SplineTubes are returned as they are.
     radius : float, str or array_like, optional
         Radius in mm: one for all, the name of a point or line array of the source, ``(n_points,)`` numbers or

@@ -8,10 +8,14 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
     hit = start;
     while (t <= ray.last) {
         float number, end = t + to_end_of_node(ray, t, best, number);
-        if (number <= best && end - t >= step) {
+        bool skip = number <= best && end - t >= step;
 #if FEATURE_VOLUME_LOCAL
-            if (best >= peak_threshold) break;      // nothing here is as high: the peak is over
+        if (best >= peak_threshold) {               // all here is lower: the peak is over; or some of it may be as high
+            if (skip && number < best - peak_rounding) break;
+            skip = false;
+        }
 #endif
+        if (skip) {
             t += floor((end - t) / step) * step;
             if (t > ray.last) break;
         }
@@ -23,7 +27,7 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
                 hit = t;
             }
 #if FEATURE_VOLUME_LOCAL
-            over = v < best && best >= peak_threshold;
+            over = v < best - peak_rounding && best >= peak_threshold;
 #endif
             t += step;
         } while (!over && t < end && t <= ray.last);

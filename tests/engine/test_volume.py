@@ -130,6 +130,25 @@ def test_peaks(cast, matrix):
     assert np.abs(shown.value - wanted.value)[both].max() < 5e-3
 
 
+@pytest.mark.parametrize("octree", [True, False])
+@pytest.mark.parametrize("dtype", [np.uint8, np.float32])
+@pytest.mark.parametrize("threshold", [50.0, 150.0])
+def test_local_peaks_do_not_end_on_plateaus(cast, camera, dtype, threshold, octree):
+    """Cubes within cubes, level between their faces: what is level has not fallen, whole nodes of it neither."""
+    field = np.zeros((64, 64, 64), dtype)
+    field[8:56, 8:56, 8:56] = 100.1 if dtype is np.float32 else 100
+    field[24:40, 24:40, 24:40] = 250.3 if dtype is np.float32 else 250
+    volume = RaycastVolume(field, np.eye(4))
+    matrix = camera(SIZE, eye=(110, -120, 90), target=(32, 32, 32), near=5, far=400, height=90.0)
+    through = reference.rays(matrix, SIZE, volume)
+    wanted = reference.mip(volume, through, threshold=threshold).value
+    shown, _ = cast(volume, RaycastOptions("local-mip", step=0.25, threshold=threshold, octree=octree), matrix)
+    there = shown.there & ~np.isnan(wanted)
+    assert (wanted[there] > 240).sum() > 50
+    assert (np.abs(shown.value - wanted)[there] > 12.0).mean() < 0.01  # steps miss some of an edge's top
+    assert abs(shown.value[SIZE[1] // 2, SIZE[0] // 2] - float(field.max())) < 0.01
+
+
 def ramp(k=64, most=0.4):
     table = np.linspace(0.0, 1.0, k)[:, None] * np.array([1.0, 0.7, 0.3, most])
     return table.astype(np.float32)

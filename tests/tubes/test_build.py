@@ -114,15 +114,30 @@ def test_a_fork_shares_its_node_when_tangents_are_given():
     points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 1, 0], [2, -1, 0]])
     fork = (points, [[0, 1], [1, 2], [1, 3]])
     given = as_spline_tubes(fork, radius=[3.0, 2, 1, 1], tangents=np.ones((4, 3)))
-    assert (given.n_nodes, given.n_tubes, given.scaled) == (4, 2, False)
+    assert (given.n_nodes, given.n_tubes, given.scaled) == (4, 3, False)
     np.testing.assert_array_equal(given.segments, fork[1])
-    # By parameter: through the middle half of 3 to 1; from the fork's node 1 - 2. The node has the mean of both.
-    np.testing.assert_allclose(given.radius_slopes, [-1, (-1 - 1) / 2, -1, -1])
+    # By parameter; the fork's node has the mean of what its three segments ask for.
+    np.testing.assert_allclose(given.radius_slopes, [-1, -1, -1, -1])
     own = as_spline_tubes(fork, radius=[3.0, 2, 1, 1])
-    assert own.n_nodes == 5
+    assert own.n_nodes == 6
     np.testing.assert_allclose(own.tangents[own.segments[2, 0]], np.array([1, -1, 0]) / np.sqrt(2))
     np.testing.assert_array_equal(own.points[own.segments], points[fork[1]])
     assert as_spline_tubes(fork, radius=1, tangents=np.ones((4, 3)), scaled=True).scaled
+
+
+def test_a_fork_is_the_same_in_whichever_order_its_cells_are_listed():
+    """A straight trunk of two cells, and two branches to its sides: nothing leans towards either."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [3, -1, 0], [4, 2, 0]])
+    cells = np.array([[0, 1], [1, 2], [2, 3], [2, 4], [3, 5]])
+    side = np.array([0.5**0.5, 0.5**0.5, 0.0])
+    for order in itertools.permutations(range(len(cells))):
+        mesh = pv.PolyData(points, lines=np.insert(cells[list(order)], 0, 2, axis=1).ravel())
+        for source in (mesh, (points, cells[list(order)])):
+            tubes = as_spline_tubes(source, radius=0.1)
+            ends = tubes.tangents[tubes.segments][np.argsort(order)]  # of each cell at its start and its end
+            np.testing.assert_allclose(ends[:2], np.tile([1.0, 0, 0], (2, 2, 1)), atol=1e-12)
+            np.testing.assert_allclose(ends[[2, 2, 4, 4], [0, 1, 0, 1]], np.tile(side, (4, 1)), atol=1e-12)
+            np.testing.assert_allclose(ends[3], np.tile(side * [1, -1, 1], (2, 1)), atol=1e-12)
 
 
 def test_a_ring_by_index_is_smooth_and_may_share_its_node():

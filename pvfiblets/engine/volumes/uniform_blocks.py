@@ -53,11 +53,14 @@ RAYCAST_BLOCK = UniformStruct(
     Field("isovalue_count", "int", "of isovalues"),
     Field("refinement_steps", "int", "of a surface's place on a ray"),
     Field("top_level", "int", "of the octree"),
+    Field("peak_rounding", "float", "so little below a peak, the field has not fallen"),
     Field("isovalues", f"float[{MAX_VALUES}]", "of surfaces"),
     Field("octree_shapes", f"ivec3[{MAX_LEVELS}]", "nodes along each axis, by level, leaves first"),
     Field("octree_starts", f"int[{MAX_LEVELS}]", "places of the levels' first nodes in the list"),
 )
 _LARGEST = float(np.finfo(np.float32).max)
+_ROUNDING = 1e-6
+"""Part of the largest value by which an interpolation of float32 may miss: a few units of its last digit."""
 
 Array = npt.NDArray[np.float64]
 
@@ -137,6 +140,7 @@ class RayBlock:
                 isovalue_count=len(casting.values),
                 refinement_steps=casting.iterations,
                 top_level=len(levels) - 1,
+                peak_rounding=_ROUNDING * float(np.abs(volume.value_range).max()),
                 isovalues=np.asarray(casting.values, np.float64),
                 octree_shapes=levels[:, :3],
                 octree_starts=levels[:, 3],
