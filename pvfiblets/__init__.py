@@ -21,8 +21,12 @@ _HOME = {
     "compress_file": "codec.convert",
     "density": "query.density",
     "iter_chunks": "formats",
+    "end_parcels": "query.parcels",
     "measure_error": "codec.error",
+    "plot": "plotting.plot",
     "read": "formats",
+    "read_volume": "plotting.read_volume",
+    "table": "query.table",
     "write": "formats",
 }
 
@@ -35,14 +39,18 @@ __all__ = ["__version__", *_HOME, *_ROOMS]
 
 if TYPE_CHECKING:
     from . import synthetic
-    from .codec.compress import compress
+    from .codec.compress import compress as compress
     from .codec.convert import compress_file
     from .codec.error import CodingError, measure_error
     from .codec.fibletset import FibletSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
+    from .plotting.plot import plot as plot
+    from .plotting.read_volume import read_volume as read_volume
     from .query.density import density as density
     from .query.density_map import DensityMap
+    from .query.parcels import end_parcels as end_parcels
+    from .query.table import table as table
     from .streamlines import Streamlines
     from .tubes.spline_tubes import SplineTubes
 

@@ -146,6 +146,17 @@ def make_parser() -> argparse.ArgumentParser:
 
     _density(commands.add_parser("density", help="write a volume of how many streamlines pass each voxel, or of more"))
 
+    table = commands.add_parser(
+        "table",
+        help="write a row for each streamline: length, ends, groups, values",
+        description="Write comma-separated values, a row for each streamline of IN: points, length, curvature, ends "
+        "(mm), groups, per-streamline values, and means of per-point values.",
+    )
+    table.add_argument("source", metavar="IN", help="a tractogram of any format")
+    table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
+    table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
+    table.set_defaults(run="pvfiblets.cli_files:table")
+
     screenshot = commands.add_parser(
         "screenshot",
         help="draw files into a PNG, without a display",

@@ -106,6 +106,17 @@ def info(path: str, *, json: bool) -> None:
         print(f"{key:<16} {readable(value)}")
 
 
+def table(source: str, target: str, *, group: str | None) -> None:
+    """Write a row for each streamline."""
+    from pvfiblets.codec.fibletset import FibletSet
+
+    path = Path(source).expanduser()
+    data = FibletSet.open(path) if path.suffix.lower() == ".fiblets" else formats.read(path)
+    if group is not None and group not in data.groups:
+        raise ValueError(f"{source} has no group {group!r}; it has: {', '.join(data.groups) or 'none'}")
+    data.table(None if group is None else data.groups[group]).save(target)
+
+
 def verify(path: str, original: str | None, *, max_angle: float | None, quiet: bool, json: bool) -> None:
     """Check a compressed file's checksums and, given the original, every point and direction."""
     from pvfiblets.codec.convert import measure_file_error

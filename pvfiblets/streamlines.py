@@ -33,6 +33,8 @@ from pvfiblets.ragged import (
 if TYPE_CHECKING:
     import pyvista
 
+    from pvfiblets.query.table import Table
+
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
 
 _BLOCK_POINTS = 1 << 18
@@ -121,6 +123,27 @@ class Streamlines:
             if (names := getattr(self, title))
         ]
         return f"<Streamlines: {'; '.join(facts)}>"
+
+    def _repr_html_(self) -> str:
+        from pvfiblets.summary import summary_html
+
+        return summary_html("Streamlines", self)
+
+    def __add__(self, other: object) -> Streamlines:
+        """Both's streamlines, one behind the other, as `concatenate` joins them."""
+        return Streamlines.concatenate([self, other]) if isinstance(other, Streamlines) else NotImplemented
+
+    def table(self, ids: Any = None) -> Table:
+        """Return a row for each streamline, or for those that `ids` names; see :func:`pvfiblets.table`."""
+        from pvfiblets import table
+
+        return table(self, ids)
+
+    def plot(self, **options: Any) -> Any:
+        """Show them in a window of their own; see :func:`pvfiblets.plot`."""
+        from pvfiblets import plot
+
+        return plot(self, **options)
 
     def __iter__(self) -> Iterator[Floats]:
         for first, last in zip(self.offsets[:-1], self.offsets[1:], strict=True):

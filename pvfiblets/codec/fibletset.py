@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -18,6 +18,7 @@ from .quantised import QuantisedPoints
 
 if TYPE_CHECKING:
     from ..query.density_map import DensityMap
+    from ..query.table import Table
 
 __all__ = ["FibletSet"]
 
@@ -103,6 +104,12 @@ class FibletSet:
             f"FibletSet({self.n_streamlines} streamlines, {self.n_points} points, {self.n_fiblets} fiblets, "
             f"{self.nbytes} bytes, promise {self.promise:g} mm)"
         )
+
+    def _repr_html_(self) -> str:
+        from ..summary import summary_html
+
+        more = {"Bytes": f"{self.nbytes:,}", "Greatest error": f"{self.promise:.3g} mm"}
+        return summary_html("FibletSet", self, more)
 
     @property
     def n_points(self) -> int:
@@ -258,7 +265,36 @@ class FibletSet:
         """
         return self.extract(ids)
 
-    __iter__ = None  # indices would make it a sequence; iter_chunks() goes through the streamlines
+    def __iter__(self) -> Iterator[npt.NDArray[np.floating]]:
+        """Go through the points of each streamline, ``(k, 3)`` mm, decoded a chunk at a time."""
+        for chunk in self.iter_chunks():
+            yield from chunk
+
+    def __add__(self, other: object) -> FibletSet:
+        """Both sets' streamlines, one set behind the other; see :func:`pvfiblets.codec.join.concatenate`."""
+        return FibletSet.concatenate([self, other]) if isinstance(other, FibletSet) else NotImplemented
+
+    @classmethod
+    def concatenate(cls, sets: Iterable[FibletSet]) -> FibletSet:
+        """Put sets behind each other; see :func:`pvfiblets.codec.join.concatenate`.
+
+        Parameters
+        ----------
+        sets : iterable of FibletSet
+            Parts of one set keep every bit; others are coded again, within twice the coarsest of their promises.
+
+        Returns
+        -------
+        FibletSet
+
+        Raises
+        ------
+        ValueError
+            If there is none, or one has data that another lacks.
+        """
+        from .join import concatenate
+
+        return concatenate(sets)
 
     def extract(self, ids: npt.ArrayLike | slice) -> FibletSet:
         """Take some streamlines as a set of their own, without coding them again.
@@ -312,6 +348,54 @@ class FibletSet:
         from .. import density  # by the package's own name for it: this room knows nothing of questions
 
         return density(self, voxel_size, **options)
+
+    def table(self, ids: npt.ArrayLike | slice | None = None) -> Table:
+        """Return a row for each streamline; see :func:`pvfiblets.table`.
+
+        Parameters
+        ----------
+        ids : array_like or slice, optional
+            Which; all by default.
+
+        Returns
+        -------
+        Table
+            Columns by name: a dict of arrays, which ``pandas.DataFrame`` and ``pyarrow.table`` take as it is.
+        """
+        from .. import table
+
+        return table(self, ids)
+
+    def end_parcels(self, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
+        """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.
+
+        Parameters
+        ----------
+        atlas : nibabel image, path of one, or (array, affine)
+            Whole numbers, 0 for no parcel.
+        names : mapping of int to str, optional
+            Of the parcels.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` text, which ``scalars`` takes.
+        """
+        from .. import end_parcels
+
+        return end_parcels(self, atlas, names)
+
+    def plot(self, **options: Any) -> Any:
+        """Show the streamlines in a window of their own; see :func:`pvfiblets.plot`.
+
+        Parameters
+        ----------
+        **options
+            Of ``plotter.add_fiblets``, and those of plotters that :func:`pyvista.plot` takes.
+        """
+        from .. import plot
+
+        return plot(self, **options)
 
     # ----------------------------------------------------------------------------------------------------- decoding
 

@@ -24,7 +24,7 @@ from .layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["Restriction", "even_share", "restrict"]
+__all__ = ["Records", "Restriction", "even_share", "parts_of", "restrict"]
 
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
@@ -117,7 +117,7 @@ class Restriction:
             self._keep = _kept_ranks(fiblets, chosen)
             self.n_ranks = int(self._keep.sum())
             self.n_fiblets = self.n_codes = self.n_points = 0
-            for part in _parts(fiblets, self._keep):
+            for part in parts_of(fiblets, self._keep):
                 self.n_fiblets += len(part.rows)
                 self.n_codes += int(part.sizes.sum())
                 self.n_points += int(part.counts.sum())
@@ -138,8 +138,8 @@ class Restriction:
 
     def _make(self) -> FibletSet:
         whole, ranks = self._whole, np.flatnonzero(self._keep)
-        out = _Arrays.empty(whole, self.n_fiblets, self.n_codes, self.n_points)
-        for part in _parts(whole, self._keep):
+        out = Records.empty(whole, self.n_fiblets, self.n_codes, self.n_points)
+        for part in parts_of(whole, self._keep):
             out.take(whole, part)
         if out.at.tolist() != [self.n_ranks, self.n_codes, self.n_points]:
             raise ValueError(f"{out.at[0]} streamlines begin where {self.n_ranks} are wanted")
@@ -206,7 +206,7 @@ class _Part:
     points: Ints
 
 
-def _parts(fiblets: FibletSet, keep: Mask) -> Iterator[_Part]:
+def parts_of(fiblets: FibletSet, keep: Mask) -> Iterator[_Part]:
     """Go through the pages that hold anything to be taken; forget what was read of a mapped file."""
     table, read = fiblets.pages, 0
     for page in range(len(table) - 1):
@@ -246,8 +246,8 @@ def _forget(fiblets: FibletSet, fiblet: int) -> None:
 
 
 @dataclass
-class _Arrays:
-    """The restricted set while it is filled.
+class Records:
+    """Records of a set while it is filled.
 
     Attributes
     ----------
@@ -268,7 +268,7 @@ class _Arrays:
     n: int = 0
 
     @classmethod
-    def empty(cls, fiblets: FibletSet, n: int, n_codes: int, n_points: int) -> _Arrays:
+    def empty(cls, fiblets: FibletSet, n: int, n_codes: int, n_points: int) -> Records:
         """Room for so many fiblets, code bytes and points."""
         return cls(
             anchors=np.empty((n, WORDS["anchors"]), np.uint32),

@@ -83,6 +83,7 @@ class _Bar:
     arguments: dict[str, Any]
     title: str | None = None
     labels: bool = False
+    changing: bool = False
 
 
 class ActorRegistry(Generic[A]):
@@ -260,6 +261,15 @@ class ActorRegistry(Generic[A]):
     def _update_bar(self, actor: A) -> None:
         """Add, replace or remove the actor's scalar bar so that it says what the picture shows."""
         state = self._bars[actor.memory_address]
+        if state.changing:
+            return  # a bar that several actors share gives them all its range, which recolours them
+        state.changing = True
+        try:
+            self._change_bar(actor, state)
+        finally:
+            state.changing = False
+
+    def _change_bar(self, actor: A, state: _Bar) -> None:
         if state.title is not None and not self._has_bar(actor):
             state.show, state.title = False, None  # the user removed it: it stays away
         wanted = actor.scalars_title if state.show else None

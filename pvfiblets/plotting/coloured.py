@@ -44,6 +44,10 @@ class Coloured(Settings, LinkedProperty):
         """What is drawn."""
         raise NotImplementedError
 
+    def _as_polydata(self) -> pv.PolyData:
+        """Return what is drawn as lines."""
+        raise NotImplementedError
+
     def _find(self, drawn: Any, choice: Any) -> Scalars | None:
         """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
         raise NotImplementedError
@@ -66,6 +70,16 @@ class Coloured(Settings, LinkedProperty):
         for name in ("position", "scale", "origin", "orientation", "user_matrix", "visibility", "pickable"):
             setattr(self, name, getattr(other, name))
         self._take_from(other)
+
+    def copy(self, deep: bool = True) -> Any:
+        """Return another actor like this one."""
+        raise NotImplementedError
+
+    def __copy__(self) -> Any:
+        return self.copy(deep=False)
+
+    def __deepcopy__(self, _known: dict[int, Any]) -> Any:
+        return self.copy(deep=True)
 
     # What a component asks ----------------------------------------------------------------------
 
@@ -202,6 +216,15 @@ class Plotted:
 
     def _shown_by(self) -> Coloured:
         return cast("Coloured", cast("Any", self).actor)
+
+
+class PlottedLines(Plotted):
+    """The part of a mapper of lines or points that gives PyVista's scripts its data."""
+
+    @property
+    def dataset(self) -> pv.PolyData:
+        """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
+        return self._shown_by()._as_polydata()  # noqa: SLF001
 
 
 # What the engine counts in each window (pvfiblets.engine.fiblets.census).

@@ -28,14 +28,15 @@ class _AddFiblets(Protocol):
     def __call__(
         self, source: FibletsSource, *, scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
         per_point: Iterable[str] = (), max_error: float | None = None, progress: bool = False,
-        look: str | None = None, color: Any = None, cmap: Any = None, clim: Any = None, n_colors: int = 256,
-        log_scale: bool = False, nan_color: Any = None, below_color: Any = None, above_color: Any = None,
-        annotations: dict[float, str] | None = None, flip_scalars: bool = False, categories: bool = False,
-        opacity: Any = None, transparency: str | int | None = "all", line_width: float | None = None,
-        style: Any = "surface", lighting: bool | None = None, pipeline: str = "auto",
-        culling: str | None = "two-phase", fit: str | None = None, name: str | None = None, label: str | None = None,
-        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
-        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True, **options: Any,
+        look: str | None = None, color: Any = None, rgb: bool | None = None, cmap: Any = None, clim: Any = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
+        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        categories: bool = False, opacity: Any = None, transparency: str | int | None = "all",
+        line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
+        pipeline: str = "auto", culling: str | None = "two-phase", fit: str | None = None, name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        **options: Any,
     ) -> FibletActor: ...
 
 class _FibletsComponent(FibletsComponent):

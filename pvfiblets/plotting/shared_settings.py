@@ -29,7 +29,7 @@ def bounds_size(data: Any) -> float:
 
 def by_numbers(settings: Any) -> bool:
     """Whether numbers colour, as the other settings are."""
-    return settings["scalars"] not in (None, "orientation")
+    return settings["scalars"] not in (None, "orientation", "ends", "random")
 
 
 def _colour_map(name: str, value: Any) -> Any:

@@ -75,16 +75,7 @@ class DensityMap:
             The numbers are its active scalars, named :attr:`name`, without a copy. Its direction matrix carries the
             affine's rotation, flips and shears.
         """
-        import pyvista
-
-        image = pyvista.ImageData(dimensions=self.grid.shape)
-        spacing = np.linalg.norm(self.affine[:3, :3], axis=0)
-        image.origin, image.spacing = self.affine[:3, 3], spacing
-        image.direction_matrix = self.affine[:3, :3] / spacing
-        rows = self.values.reshape(-1, *self.values.shape[3:], order="F")
-        image.point_data[self.name] = rows
-        image.set_active_scalars(self.name)
-        return image
+        return image_of(self.values, self.affine, self.name)
 
     def save(self, path: str | PathLike[str], *, dtype: npt.DTypeLike | None = None) -> None:
         """Write a NIfTI file; it appears under its name when it is whole.
@@ -119,6 +110,19 @@ class DensityMap:
             if fspath(path).lower().endswith(".gz"):
                 file = stack.enter_context(gzip.GzipFile("", "wb", 6, file, mtime=0))
             image.to_stream(file)
+
+
+def image_of(values: npt.NDArray[Any], affine: Array, name: str) -> pyvista.ImageData:
+    """Return numbers ``(i, j, k, ...)`` as an image whose points are the voxels' centres, where an affine puts them."""
+    import pyvista
+
+    image = pyvista.ImageData(dimensions=values.shape[:3])
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    image.origin, image.spacing = affine[:3, 3], spacing
+    image.direction_matrix = affine[:3, :3] / spacing
+    image.point_data[name] = values.reshape(-1, *values.shape[3:], order="F")
+    image.set_active_scalars(name)
+    return image
 
 
 def _is_rigid(affine: Array) -> bool:

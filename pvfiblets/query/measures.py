@@ -260,17 +260,23 @@ def _placed(fiblets: FibletSet, ranked: Floats, without: float) -> Floats:
     return out
 
 
+def mean_curvatures(points: npt.NDArray[np.floating[Any]], offsets: npt.NDArray[np.int64]) -> Floats:
+    """Mean of the curvature (1/mm) of each streamline's points, ``(n,)``, of float64 points."""
+    from . import measure_kernels as kernels
+
+    each = np.empty(len(points), np.float32)
+    kernels.curvatures(points, offsets, each)
+    out = np.empty(len(offsets) - 1)
+    kernels.means(each, offsets, out)
+    return out
+
+
 def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> npt.NDArray[Any]:
     from . import measure_kernels as kernels
 
     def curvatures(chunk: Streamlines) -> npt.NDArray[np.float32]:
         out = np.empty(chunk.n_points, np.float32)
         kernels.curvatures(chunk.points, chunk.offsets, out)
-        return out
-
-    def mean_curvatures(chunk: Streamlines) -> Floats:
-        out = np.empty(len(chunk))
-        kernels.means(curvatures(chunk), chunk.offsets, out)
         return out
 
     def arc_lengths(_: int, chunk: Streamlines) -> npt.NDArray[np.float32]:
@@ -283,7 +289,7 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
     if name == "n_points":
         return np.diff(fiblets.offsets()).astype(np.float64)
     if name == "mean_curvature":
-        return _per_streamline(fiblets, mean_curvatures, np.nan)
+        return _per_streamline(fiblets, lambda chunk: mean_curvatures(chunk.points, chunk.offsets), np.nan)
     if name == "end_distance":
         from .endpoints import end_points
 

@@ -28,7 +28,7 @@ def value_names(fiblets: Any) -> list[str]:
 
 
 def _line_scalars(fiblets: Any) -> Choices:
-    from pvfiblets.plotting.fiblets.scalars import COUNTED, DENSITY, GROUP, ORIENTATION, UNITS
+    from pvfiblets.plotting.fiblets.scalars import COUNTED, DENSITY, ENDS, GROUP, ID, ORIENTATION, RANDOM, UNITS
 
     found: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour")]
     colours = [
@@ -37,7 +37,7 @@ def _line_scalars(fiblets: Any) -> Choices:
         if rows.ndim == 2 and rows.shape[1] in (3, 4) and rows.dtype.kind in "uf"
     ]
     found += [(name, UNITS.get(name, name)) for name in [*value_names(fiblets), *colours]]
-    found += [(DENSITY, COUNTED)]
+    found += [(ENDS, "direction from end to end"), (ID, "number"), (RANDOM, "a colour each"), (DENSITY, COUNTED)]
     return [*found, (GROUP, "group")] if fiblets.groups else found
 
 

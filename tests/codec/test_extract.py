@@ -73,8 +73,6 @@ def test_ways_to_choose() -> None:
         whole[73]
     with pytest.raises(IndexError, match="a mask of shape"):
         whole[mask[:5]]
-    with pytest.raises(TypeError, match="not iterable"):
-        list(whole)
 
 
 @pytest.mark.parametrize("ids", [[], np.zeros(73, bool), slice(0, 0), [0]])

@@ -78,6 +78,7 @@ pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))
 import nibabel, numpy as np
 pvfiblets.compress_file("big.tck", "brain.fiblets")
 image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
+atlas = nibabel.Nifti1Image(np.ones((8, 8, 8), np.int16), image.affine)
 """,
 }  # fmt: skip
 # Pictures that are to have many colours where the lines are: a range of other numbers would leave one.

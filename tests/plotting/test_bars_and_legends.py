@@ -53,6 +53,26 @@ def test_a_removed_bar_stays_removed(plotter, mesh, change):
     assert plotter.add_scalar_bar("again").GetLookupTable() is actor.lookup_table
 
 
+def test_a_bar_that_two_actors_share_has_the_range_of_both(plotter, mesh):
+    other = mesh.copy()
+    other["height"] = mesh["height"] * 3.0 - 1.0
+    ranges = []
+    for add in ("add_mesh", "add_fiblets"):
+        actors = [getattr(plotter, add)(data, scalars="height") for data in (mesh, other)]
+        ranges.append([actor.mapper.scalar_range for actor in actors])
+        assert list(plotter.scalar_bars.keys()) == ["height"]
+        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
+        plotter.clear_actors()
+        plotter.scalar_bars.clear()
+    np.testing.assert_allclose(ranges[1], ranges[0], atol=1e-6)
+    plotter.add_fiblets(other, scalars="height")
+    first = plotter.add_fiblets(mesh, scalars="height")
+    first.color = "red"
+    first.scalars = "height"
+    assert list(plotter.scalar_bars.keys()) == ["height"]
+    assert first.clim == pytest.approx(ranges[0][1])
+
+
 @pytest.mark.parametrize("add", ADDERS)
 def test_a_lookup_table_keeps_its_range_and_colours(plotter, mesh, add):
     table = pv.LookupTable("jet", n_values=7, scalar_range=(0.25, 0.5), below_range_color="blue",

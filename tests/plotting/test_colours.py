@@ -133,8 +133,8 @@ def test_all_values_alike_or_all_nan_still_draw(plotter, three_lines, shown):
     ("arguments", "message"),
     [
         ({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),
-        ({"scalars": np.zeros((3, 2))}, "2 columns"),
-        ({"scalars": np.full((3, 3), 7.0)}, "between 0 and 1"),
+        ({"scalars": np.zeros((3, 2)), "rgb": True}, "2 columns"),
+        ({"scalars": np.full((3, 3), 7.0), "rgb": True}, "between 0 and 1"),
         ({"scalars": "weight", "clim": (2, 1)}, "the low one first"),
         ({"scalars": "weight", "clim": "wide"}, "clim is 'wide'"),
         ({"scalars": "weight", "clim": (0, 1), "log_scale": True}, "above zero"),

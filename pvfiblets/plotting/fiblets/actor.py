@@ -13,7 +13,7 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engine_options import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
@@ -21,7 +21,7 @@ from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
-from pvfiblets.plotting.fiblets.sources import with_point_values
+from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
@@ -42,7 +42,7 @@ def _layers(transparency: Any) -> Layers:
     return Layers(_SOME_LAYERS if transparency == "layers" else transparency)
 
 
-class PlottedMapper(Plotted, FibletMapper):
+class PlottedMapper(PlottedLines, FibletMapper):
     """A fiblet mapper with scalar bars.
 
     Parameters
@@ -87,7 +87,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     ) -> None:
         theme = pv.global_theme if theme is None else theme
         given = Given(FibletSettings, settings)
-        self._fiblets = fiblets
+        self._fiblets, self._rgb = fiblets, given["rgb"]
         self._init_colours(scalars, given, theme)
         self._init_shading()
         self._tone = TONES[0]
@@ -128,6 +128,23 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         self._draw(fiblets)
         self._show(scalars)
         self._rechoose(choices)
+
+    def update(self, source: Any, **options: Any) -> None:
+        """Draw other streamlines from the next render on, as they move or grow; settings stay.
+
+        Parameters
+        ----------
+        source : path, FibletSet, Streamlines, pyvista.PolyData or list of (n, 3) arrays
+            As for ``plotter.add_fiblets``. Per-point arrays that colour now are kept.
+        **options
+            Of :func:`pvfiblets.compress`.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If it lacks what colours now; nothing is changed then.
+        """
+        self.fiblets = as_fiblets(source, scalars=self._choice, rgb=self._rgb, **options)[0]
 
     def copy(self, deep: bool = True) -> FibletActor:
         """Return another actor that draws the same fiblets with the same colours and place.
@@ -202,14 +219,28 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
         scalars = self._values_of_criterion(scalars)
-        fiblets, scalars = with_point_values(self._fiblets, scalars)
+        fiblets, scalars = with_point_values(self._fiblets, scalars, self._rgb)
         found = self._find(fiblets, scalars)
         if fiblets is not self._fiblets:
             self._draw(fiblets)
         self._colour_by(scalars, found)
 
+    def _as_polydata(self) -> pv.PolyData:
+        return self._fiblets.decompress().to_polydata()
+
     def _mean_colour(self, scalars: Scalars) -> Any:
         return mean_direction(self._fiblets) if scalars.kind == "orientation" else super()._mean_colour(scalars)
+
+    def _read_rgb(self) -> bool | None:
+        return self._rgb
+
+    def _write_rgb(self, rgb: bool | None) -> None:
+        before, self._rgb = self._rgb, rgb
+        try:
+            self.scalars = self._choice
+        except Exception:
+            self._rgb = before
+            raise
 
     def _explain_colours(self) -> dict[str, Any] | None:
         if self._scalars is None or not self._scalars.mapped:
@@ -388,4 +419,4 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:
             return None
-        return find_scalars(fiblets, choice)
+        return find_scalars(fiblets, choice, self._rgb)

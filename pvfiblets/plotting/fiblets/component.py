@@ -80,9 +80,12 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             What colours the streamlines: ``"orientation"`` (the default: the absolute value of
             the direction as red, green, blue), a built-in array (``"length"``, ``"curvature"``,
             ``"arc_length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"``,
-            ``"group"``; ``"density"``, streamlines per pixel), the name of per-streamline or
+            ``"group"``; ``"ends"``, the direction from end to end as red, green, blue; ``"id"``,
+            the number of the streamline; ``"random"``, a colour for each; ``"density"``,
+            streamlines per pixel), the name of per-streamline or
             per-point data, or an array with one value per streamline or per point, or one colour
-            (3 or 4 columns) per streamline.
+            (3 or 4 columns) per streamline. Vectors are mapped by their magnitude (``rgb``); words,
+            one per streamline, are categories.
             ``"coding_error"`` shows how far each point is from where it was, if ``source`` is not
             compressed yet; ``regions.Distance(…)`` how far it is from a region or position.
 
@@ -127,8 +130,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
 
         EngineOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         fiblets, scalars = as_fiblets(
-            source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress, **options
-        )
+            source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress,
+            rgb=settings["rgb"], **options,
+        )  # fmt: skip
         return FibletActor(
             fiblets, scalars=scalars, settings=settings, theme=self._plotter.theme, progress=progress
         )

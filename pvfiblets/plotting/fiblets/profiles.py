@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.query.table import Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +104,10 @@ class SelectionMeasures:
     fiblets: FibletSet
     selection: Any
     _scalars: Scalars | None
+
+    def selection_table(self) -> Table:
+        """Return a row for each selected streamline; see :func:`pvfiblets.table`."""
+        return self.fiblets.table(self.selection)
 
     def selection_statistics(self, scalars: Any = None) -> dict[str, Any]:
         """Count and measure the selected streamlines.

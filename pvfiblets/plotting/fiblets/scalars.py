@@ -7,6 +7,7 @@ with three or four columns are colours, all others are numbers for a colour map.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
+from pvfiblets.query.endpoints import anchor_points, end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
 
 if TYPE_CHECKING:
@@ -23,9 +25,9 @@ if TYPE_CHECKING:
 ORIENTATION = "orientation"
 GROUP = "group"
 DENSITY = "density"
-BUILT_IN = tuple(
-    dict.fromkeys((ORIENTATION, "length", "curvature", "arc_length", *COMPUTED["streamline"], GROUP, DENSITY))
-)
+ENDS, ID, RANDOM = "ends", "id", "random"
+_LINES = ("length", "curvature", "arc_length", *COMPUTED["streamline"])
+BUILT_IN = tuple(dict.fromkeys((ORIENTATION, ENDS, *_LINES, GROUP, DENSITY, ID, RANDOM)))
 UNITS = {
     "length": "length [mm]",
     "radius": "radius [mm]",
@@ -34,6 +36,7 @@ UNITS = {
     "mean_curvature": "mean curvature [1/mm]",
     "end_distance": "distance of ends [mm]",
     "n_points": "points",
+    "id": "streamline",
     "coding_error": "coding error [mm]",
     "distance": "distance [mm]",
 }
@@ -116,7 +119,7 @@ class Scalars:
 
 
 def find_scalars(
-    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None
+    fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None, rgb: bool | None = None
 ) -> Scalars:
     """Find what ``scalars`` means for ``fiblets``.
 
@@ -127,6 +130,9 @@ def find_scalars(
     scalars : str, array, VolumeSource, Distance or None
         A name, one value or colour per streamline, a volume to be sampled, or what distances are
         to; ``None`` means orientation.
+    rgb : bool, optional
+        Whether 3 or 4 columns are colours, or vectors to be mapped by their magnitude; by default
+        colours where they are uint8, or floats from 0 to 1.
 
     Returns
     -------
@@ -143,6 +149,7 @@ def find_scalars(
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(scalars, VolumeSource):
+        _warn_if_apart(fiblets, scalars)
         low, high = scalars.range
         return Scalars(
             scalars.name, "point_scalar", None, (low, high), positive=scalars.least_positive, volume=scalars
@@ -151,14 +158,14 @@ def find_scalars(
         values = measure(fiblets, scalars)
         return per_streamline(values.name, values.array(), fiblets.n_streamlines)
     if not isinstance(scalars, str):
-        return per_streamline(UNNAMED, scalars, fiblets.n_streamlines)
+        return _of_streamlines(UNNAMED, scalars, fiblets.n_streamlines, rgb)
     if scalars in fiblets.per_point:
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
         return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
     if scalars in fiblets.per_streamline:
-        return per_streamline(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines)
+        return _of_streamlines(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines, rgb)
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == "length":
@@ -174,6 +181,12 @@ def find_scalars(
         return without_outliers(found) if scalars == "mean_curvature" else found
     if scalars == GROUP:
         return by_group(fiblets)
+    if scalars == ENDS:
+        return per_streamline(ENDS, _end_directions(fiblets), fiblets.n_streamlines)
+    if scalars == ID:
+        return per_streamline(ID, np.arange(fiblets.n_streamlines), fiblets.n_streamlines)
+    if scalars == RANDOM:
+        return per_streamline(RANDOM, distinct_colours(fiblets.n_streamlines), fiblets.n_streamlines)
     if scalars == DENSITY:
         return Scalars(DENSITY, "pixel_count", None, (0.0, 1.0), 1.0)
     if scalars == "coding_error":
@@ -182,6 +195,63 @@ def find_scalars(
             "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
         )
     raise KeyError(missing_message(fiblets, scalars))
+
+
+def are_colours(values: np.ndarray, rgb: bool | None) -> bool:
+    """Whether rows are colours; see :func:`find_scalars`."""
+    if values.ndim != 2 or rgb is False or (rgb is None and values.shape[1] not in (3, 4)):
+        return False
+    if rgb or values.dtype.kind != "f":
+        return True
+    return not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0)
+
+
+def magnitudes(values: np.ndarray) -> np.ndarray:
+    """Return the length of each row, ``(n,)`` float64; NaN where a column is."""
+    flat = np.asarray(values, np.float64).reshape(len(values), -1)
+    return np.asarray(np.linalg.norm(flat, axis=1))
+
+
+def _of_streamlines(name: str, values: Any, count: int, rgb: bool | None) -> Scalars:
+    """Make :class:`Scalars` of numbers, colours, vectors or words, one per streamline."""
+    values = np.asarray(values)
+    if values.shape == (count,) and values.dtype.kind in "USO":
+        return _by_word(name, values)
+    wide = values.ndim == 2 and values.shape[0] == count and values.shape[1] > 1 and values.dtype.kind in "buif"
+    if wide and not are_colours(values, rgb):
+        values = magnitudes(values)
+    return per_streamline(name, values, count)
+
+
+def _by_word(name: str, words: np.ndarray) -> Scalars:
+    """Number the words in their order; each is a category. Empty words have none."""
+    texts = np.array([str(word) for word in words])
+    known = np.unique(texts[texts != ""])
+    numbers = np.where(texts == "", np.nan, np.searchsorted(known, texts))
+    found = per_streamline(name, numbers, len(words))
+    return replace(found, range=(-0.5, max(len(known), 1) - 0.5), categories=dict(enumerate(known.tolist())))
+
+
+def _end_directions(fiblets: FibletSet) -> np.ndarray:
+    """Return the absolute direction from end to end as colours, (n, 3) from 0 to 1; grey where there is none."""
+    ends = end_points(fiblets)
+    apart = np.abs(ends[:, 1] - ends[:, 0])
+    sizes = np.linalg.norm(apart, axis=1, keepdims=True)
+    return np.where(sizes > 0.0, apart / np.where(sizes > 0.0, sizes, 1.0), 0.5)
+
+
+def distinct_colours(count: int) -> np.ndarray:
+    """Return so many bright colours, (n, 3) from 0 to 1, of which neighbours are far apart.
+
+    The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
+    brightness change with a rhythm of their own.
+    """
+    index = np.arange(count)
+    hue = np.modf(index * 0.6180339887498949)[0][:, None]
+    saturation, value = (np.array(some)[index % 3][:, None] for some in ((0.9, 0.6, 0.75), (1.0, 0.9, 0.75)))
+    # Travis, "Effective Color Displays", 1991: the hexagon of hues as three ramps.
+    ramp = np.clip(np.abs(np.mod(hue * 6.0 + [0.0, 4.0, 2.0], 6.0) - 3.0) - 1.0, 0.0, 1.0)
+    return np.asarray(value * (1.0 - saturation * (1.0 - ramp)))
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
@@ -277,6 +347,37 @@ def _longest(fiblets: FibletSet) -> float:
         return 0.0
     most = np.argpartition(counts, -min(_SAMPLE, counts.size))[-_SAMPLE:]
     return float(fiblets.decompress(most).lengths().max())
+
+
+def _warn_if_apart(fiblets: FibletSet, volume: VolumeSource) -> None:
+    """Warn where no point lies in a volume, of which a picture without its colours would be all there is to see."""
+    sides = np.array(volume.values.shape)
+
+    def meets(points: np.ndarray) -> bool:
+        at = points.astype(np.float64) @ volume.voxels[:3, :3].T + volume.voxels[:3, 3]
+        return bool(((at >= -0.5) & (at <= sides - 0.5)).all(axis=1).any())
+
+    # Anchors are points that need no decoding, and nearly always one of some lies inside.
+    some = np.unique(np.linspace(0, max(fiblets.n_fiblets - 1, 0), _SAMPLE).astype(np.int64))
+    if not fiblets.n_points or meets(anchor_points(fiblets, some)):
+        return
+    if any(meets(chunk.points) for chunk in fiblets.iter_chunks()):
+        return
+    corners = np.stack(np.meshgrid(*[(-0.5, side - 0.5) for side in sides]), axis=-1).reshape(-1, 3)
+    places = corners @ volume.affine[:3, :3].T + volume.affine[:3, 3]
+    theirs = np.stack([places.min(axis=0), places.max(axis=0)], axis=1).ravel()
+    warnings.warn(
+        f"no streamline meets the volume {volume.name!r}, so that all have nan_color: it lies in {_told(theirs)} mm, "
+        f"the streamlines in {_told(fiblets.bounds)} mm. pv.read() loses where a NIfTI file lies: give its path, or "
+        "pvfiblets.read_volume(path)",
+        UserWarning,
+        stacklevel=5,
+    )
+
+
+def _told(bounds: Any) -> str:
+    pairs = zip("xyz", bounds[::2], bounds[1::2], strict=True)
+    return ", ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, low, high in pairs)
 
 
 def mean_direction(fiblets: FibletSet) -> tuple[float, float, float]:

@@ -68,6 +68,16 @@ class FibletSettings(Settings):
         check=check_look,
     )
     color = shared.color("One colour for all. ``scalars`` go before it.")
+    rgb: Setting[bool | None] = Setting(
+        None,
+        "Whether scalars of 3 or 4 columns are colours.\n\n"
+        "``True``: they are, uint8 from 0 to 255 or floats from 0 to 1. ``False``: their magnitude is mapped.\n"
+        "``None``: colours where they can be such. Those of other widths are mapped by magnitude.",
+        argument="Whether scalars of 3 or 4 columns are colours (True) or vectors, whose magnitude is mapped (False); "
+        "by default colours where they are uint8, or floats from 0 to 1.",
+        kind="bool | None",
+        where=OWN,
+    )
     cmap = shared.CMAP
     clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_clim_span))
     n_colors = shared.N_COLORS

@@ -16,7 +16,7 @@ from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
-from pvfiblets.plotting.fiblets.scalars import UNNAMED
+from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.query.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
@@ -32,6 +32,7 @@ def as_fiblets(
     per_point: Iterable[str] = (),
     max_error: float | None = None,
     progress: bool = False,
+    rgb: bool | None = None,
     **options: Any,
 ) -> tuple[FibletSet, Colours]:
     """Compress ``source`` unless it is compressed already.
@@ -49,6 +50,9 @@ def as_fiblets(
         Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
     progress : bool, default: False
         Show a progress bar.
+    rgb : bool, optional
+        Whether ``scalars`` of 3 or 4 columns are colours, as for
+        :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
     **options
         Further arguments of :func:`pvfiblets.codec.compress`.
 
@@ -78,7 +82,7 @@ def as_fiblets(
             raise ValueError(
                 f"{given} cannot be applied: the source is compressed already. Give it where the source is compressed"
             )
-        return with_point_values(source, scalars)
+        return with_point_values(source, scalars, rgb)
     streamlines = as_streamlines(source)
     if not len(streamlines):
         warnings.warn("the source holds no streamlines: nothing is drawn", UserWarning, stacklevel=6)
@@ -86,9 +90,16 @@ def as_fiblets(
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
             keep.append(scalars)
+            vectors = np.asarray(streamlines.per_point[scalars])
+            if vectors.ndim > 1:
+                columns = {f"{scalars}[{k}]": vectors[:, k] for k in range(vectors.shape[1]) if scalars in keep[:-1]}
+                lengths = numbers_of_points(scalars, vectors, rgb)
+                streamlines.per_point = {**streamlines.per_point, **columns, scalars: lengths}
+                keep += columns
     elif scalars is not None and volume is None and not isinstance(scalars, Distance):
         values = np.asarray(scalars)
         if len(values) == streamlines.n_points != len(streamlines):
+            values = numbers_of_points(UNNAMED, values, rgb)
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
             keep.append(UNNAMED)
             scalars = UNNAMED
@@ -107,7 +118,7 @@ def as_fiblets(
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
 
 
-def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colours]:
+def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None) -> tuple[FibletSet, Colours]:
     """Store ``scalars`` with the fiblets if they are an array with one number per point.
 
     Parameters
@@ -115,7 +126,9 @@ def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colo
     fiblets : FibletSet
         Stays as it is.
     scalars : str or array or None
-        Anything but an array of ``n_points`` numbers is passed through.
+        Anything but an array of ``n_points`` numbers, or rows of them, is passed through.
+    rgb : bool, optional
+        As for :func:`as_fiblets`.
 
     Returns
     -------
@@ -135,9 +148,28 @@ def with_point_values(fiblets: FibletSet, scalars: Any) -> tuple[FibletSet, Colo
         found = measure(fiblets, scalars)
         return _with_coded(fiblets, found.name, found.array()), found.name
     values = np.asarray(scalars)
-    if values.shape != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
+    if values.shape[:1] != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
         return fiblets, values
+    values = numbers_of_points(UNNAMED, values, rgb)
     return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
+
+
+def numbers_of_points(name: str, values: np.ndarray, rgb: bool | None) -> np.ndarray:
+    """Return one number per point: the values themselves, or the magnitude of vectors.
+
+    Raises
+    ------
+    ValueError
+        If they are colours or words: fiblets store a number per point.
+    """
+    if values.dtype.kind not in "buif":
+        raise ValueError(f"scalars {name!r} are words per point; fiblets take words per streamline, numbers per point")
+    if are_colours(values, rgb):
+        raise ValueError(
+            f"scalars {name!r} are a colour per point, and fiblets have one per streamline; add_spline_tubes and "
+            "add_halo_lines draw one per point, and rgb=False maps the magnitude"
+        )
+    return values if values.ndim == 1 else magnitudes(values)
 
 
 def with_stored(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:

@@ -12,12 +12,13 @@ import pyvista as pv
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
+from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.scalars import Scalars
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 BACKGROUND = "background"
 
 
-class PlottedHalos(Plotted, HaloMapper):
+class PlottedHalos(PlottedLines, HaloMapper):
     """A mapper of lines or points with halos, with scalar bars.
 
     Parameters
@@ -219,6 +220,16 @@ class HaloActor(HaloSettings, Coloured, pv.Actor):
     @property
     def _drawn(self) -> Held:
         return self._held
+
+    def _as_polydata(self) -> pv.PolyData:
+        drawn = self._held.drawn
+        values = {name: np.asarray(rows) for name, rows in drawn.values.items()}
+        if isinstance(drawn, HaloLines):
+            return Streamlines(drawn.points, drawn.offsets, values).to_polydata()
+        points = pv.PolyData(np.asarray(drawn.points))
+        for name, rows in values.items():
+            points[name] = rows
+        return points
 
     def _checked(self, drawn: Any) -> Any:
         if not isinstance(drawn, self._KIND):

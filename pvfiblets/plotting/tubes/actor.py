@@ -11,7 +11,7 @@ import pyvista as pv
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
-from pvfiblets.plotting.coloured import Coloured, Plotted, added_up
+from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import SurfaceShading
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
 
 
-class PlottedSplines(Plotted, TubeMapper):
+class PlottedSplines(PlottedLines, TubeMapper):
     """A mapper of spline tubes with scalar bars.
 
     Parameters
@@ -220,6 +220,14 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
     @property
     def _drawn(self) -> SplineTubes:
         return self._shown
+
+    def _as_polydata(self) -> pv.PolyData:
+        pairs = np.insert(np.asarray(self._tubes.segments, np.int64), 0, 2, axis=1)
+        lines = pv.PolyData(np.asarray(self._tubes.points), lines=pairs.ravel())
+        lines["radius"] = np.asarray(self._tubes.radius)
+        for name, values in self._tubes.values.items():
+            lines[name] = np.asarray(values.values)
+        return lines
 
     def _draw(self, tubes: SplineTubes, shown: SplineTubes) -> None:
         """Give the mapper other tubes, ``shown``; colours for another number of tubes go first."""

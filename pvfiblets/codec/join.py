@@ -1,0 +1,141 @@
+"""Several sets as one, streamlines in the order of the sets.
+
+Parts of one set share its parameters: their records are copied as they are (:mod:`.restrict`), and every point decodes
+to the same bits. Sets of different parameters have different grids; they are decoded and coded again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..streamlines import Streamlines
+from .quantised import QuantisedPoints, quantise_values
+from .restrict import Records, parts_of
+
+if TYPE_CHECKING:
+    from .fibletset import FibletSet
+
+__all__ = ["concatenate"]
+
+
+def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
+    """Put sets behind each other.
+
+    Parameters
+    ----------
+    sets : iterable of FibletSet
+        At least one.
+
+    Returns
+    -------
+    FibletSet
+        In memory. Groups of the same name are joined, the affine and space are the first set's, ``dropped`` is summed.
+        Sets of equal parameters, such as parts of one, keep every bit of their points. Others are coded again, with the
+        coarsest of their promises, and the promise of the result is twice that: what was lost may add up.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or one set has data that another lacks: keeping it would need invented values.
+    """
+    all_sets = list(sets)
+    if not all_sets:
+        raise ValueError("there is no set to concatenate; give one or more")
+    if len(all_sets) == 1:
+        return all_sets[0]
+    full = [one for one in all_sets if one.n_points] or all_sets[:1]
+    if all(one.parameters == full[0].parameters for one in full):
+        return _copied(all_sets, full)
+    return _coded_again(all_sets, max(one.promise for one in full))
+
+
+def _rest(sets: list[FibletSet]) -> Streamlines:
+    """Everything but points, joined as streamlines join it."""
+    return Streamlines.concatenate(
+        Streamlines(
+            np.zeros((0, 3), np.float32), np.zeros(len(one) + 1, np.int64), None, one.per_streamline, one.groups,
+            one.per_group, one.affine, one.space, one.dropped,
+        )
+        for one in sets
+    )  # fmt: skip
+
+
+def _copied(sets: list[FibletSet], full: list[FibletSet]) -> FibletSet:
+    """Join sets of the same parameters, record by record."""
+    first, rest = full[0], _rest(sets)
+    bare = replace(first, per_point={})
+    n_fiblets, n_codes = sum(one.n_fiblets for one in full), sum(int(one.pages[-1, 1]) for one in full)
+    out = Records.empty(bare, n_fiblets, n_codes, 0)
+    for one in full:
+        for part in parts_of(one, np.ones(one.n_ranks, bool)):
+            out.take(replace(one, per_point={}), part)
+    out.pages[-1] = out.at
+    starts = np.cumsum([0, *(len(one) for one in sets)])
+    numbers = [_ids(one) + start for one, start in zip(sets, starts, strict=False)]
+    ids = np.concatenate(numbers)
+    plain = len(ids) == len(rest) and bool((ids == np.arange(len(ids))).all())
+    low, high = (np.array([one.bounds[side::2] for one in full]) for side in (0, 1))
+    b = np.stack([low.min(axis=0), high.max(axis=0)], axis=1).ravel().tolist()
+    return replace(
+        first,
+        anchors=out.anchors,
+        anchors_low=out.anchors_low,
+        decoding=out.decoding,
+        reach=out.reach,
+        codes=out.codes,
+        ends=np.concatenate([one.ends for one in full]),
+        pages=out.pages,
+        rank_to_id=None if plain else ids,
+        n_streamlines=len(rest),
+        bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
+        per_point=_values(full),
+        per_streamline=rest.per_streamline,
+        groups=rest.groups,
+        per_group=rest.per_group,
+        affine=rest.affine,
+        space=rest.space,
+        dropped=rest.dropped,
+    )
+
+
+def _ids(fiblets: FibletSet) -> npt.NDArray[np.int64]:
+    """``(n_ranks,)`` number of each rank's streamline."""
+    return np.arange(fiblets.n_ranks) if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id, np.int64)
+
+
+def _values(sets: list[FibletSet]) -> dict[str, QuantisedPoints]:
+    """Values of all points; their codes are those of before where the ranges are the same."""
+    _refuse_gaps([set(one.per_point) for one in sets])
+    kept = {}
+    for name, first in sets[0].per_point.items():
+        parts = [one.per_point[name] for one in sets]
+        if all((one.lo, one.hi, one.codes.dtype) == (first.lo, first.hi, first.codes.dtype) for one in parts):
+            kept[name] = replace(first, codes=np.concatenate([one.codes for one in parts]))
+        else:
+            low, high = min(one.lo for one in parts), max(one.hi for one in parts)
+            bits = 8 * max(one.codes.dtype.itemsize for one in parts)
+            kept[name] = quantise_values(np.concatenate([one.values() for one in parts]), low, high, bits)
+    return kept
+
+
+def _refuse_gaps(names: list[set[str]]) -> None:
+    lacking = sorted(names[0].union(*names) - names[0].intersection(*names))
+    if lacking:
+        raise ValueError(
+            f"not every set has per_point {', '.join(map(repr, lacking))}; keep the same arrays when compressing"
+        )
+
+
+def _coded_again(sets: list[FibletSet], promise: float) -> FibletSet:
+    from .. import compress  # by the package's own name for it: that module makes sets, of which this one is a part
+
+    decoded: list[Any] = [one.decompress(dtype=np.float64) for one in sets]
+    whole = Streamlines.concatenate(decoded)
+    bits: Any = 8 * max((v.codes.dtype.itemsize for one in sets for v in one.per_point.values()), default=1)
+    made = compress(whole, max_error=promise, per_point=tuple(whole.per_point), per_point_bits=bits)
+    return replace(made, parameters=replace(made.parameters, promise=2.0 * promise))

@@ -1,0 +1,30 @@
+"""What streamlines look like in a notebook: a small table of what they hold."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+
+def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> str:
+    """Return a table in HTML.
+
+    Parameters
+    ----------
+    title : str
+    data : Streamlines or FibletSet
+        Its counts, bounds and the names of what it holds.
+    more : dict of str to str, optional
+        Further rows.
+    """
+    b = data.bounds
+    sides = [f"{low:.4g} to {high:.4g}" for low, high in zip(b[::2], b[1::2], strict=True)]
+    rows = {"Streamlines": f"{len(data):,}", "Points": f"{data.n_points:,}", **(more or {})}
+    if data.n_points:
+        rows |= {f"{axis} [mm]": side for axis, side in zip("XYZ", sides, strict=True)}
+    named = {"Per point": "per_point", "Per streamline": "per_streamline", "Groups": "groups"}
+    rows |= {label: ", ".join(getattr(data, name)) or "none" for label, name in named.items()}
+    if data.dropped:
+        rows["Dropped"] = ", ".join(f"{count:,} {reason}" for reason, count in data.dropped.items())
+    cells = (f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows.items())
+    return f"<table><tr><th colspan='2'>{html.escape(title)}</th></tr>{''.join(cells)}</table>"

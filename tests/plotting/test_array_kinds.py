@@ -1,0 +1,93 @@
+"""Arrays of every kind colour as they do in `add_mesh`: colours, vectors by magnitude, words as categories."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets
+
+VECTORS = np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 1.0], [6.0, 0.0, 8.0]])
+
+
+def mesh_range(vectors):
+    """The range that `add_mesh` maps vectors of points by."""
+    plotter = pv.Plotter(off_screen=True)
+    cloud = pv.PolyData(np.eye(3))
+    cloud["v"] = vectors
+    found = plotter.add_mesh(cloud, scalars="v").mapper.scalar_range
+    plotter.close()
+    return found
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_vectors_of_streamlines_by_their_magnitude(plotter, three_lines, named):
+    three_lines.per_streamline["v"] = VECTORS
+    actor = plotter.add_fiblets(three_lines, scalars="v" if named else VECTORS)
+    np.testing.assert_allclose(actor.active_scalars.values, [5.0, 1.0, 10.0])
+    assert actor.clim == pytest.approx(mesh_range(VECTORS))
+    plotter.show(auto_close=False)
+
+
+def test_columns_are_colours_or_vectors_as_rgb_says(plotter, three_lines, colours_in):
+    colours = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    actor = plotter.add_fiblets(three_lines, scalars=colours, rgb=True, lighting=False)
+    plotter.show(auto_close=False)
+    assert colours_in(plotter.screenshot(None)) == {(255, 0, 0), (0, 255, 0), (0, 0, 255)}
+    actor.rgb = False
+    np.testing.assert_allclose(actor.active_scalars.values, 1.0)
+    actor.scalars = VECTORS
+    with pytest.raises(ValueError, match="floats must lie between 0 and 1"):
+        actor.rgb = True
+    assert actor.rgb is False
+    assert actor.scalars is not None
+    pairs = np.array([[3.0, 4.0], [0.0, 2.0], [1.0, 0.0]])
+    actor.scalars = pairs
+    np.testing.assert_allclose(actor.active_scalars.values, [5.0, 2.0, 1.0])
+    assert actor.copy().rgb is False
+
+
+@pytest.mark.parametrize("how", ["array", "name", "compressed", "later"])
+def test_vectors_of_points_by_their_magnitude(plotter, three_lines, how):
+    rng = np.random.default_rng(2)
+    vectors = rng.normal(size=(123, 3)) * 4.0
+    if how == "name":
+        three_lines.per_point["v"] = vectors
+        actor = plotter.add_fiblets(three_lines, scalars="v", per_point=["v"])
+        assert {"v", "v[0]", "v[1]", "v[2]"} <= set(actor.fiblets.per_point)
+    elif how == "array":
+        actor = plotter.add_fiblets(three_lines, scalars=vectors)
+    elif how == "compressed":
+        actor = plotter.add_fiblets(pvfiblets.compress(three_lines), scalars=vectors)
+    else:
+        actor = plotter.add_fiblets(three_lines)
+        actor.scalars = vectors
+    stored = actor.fiblets.per_point["v" if how == "name" else "Data"]
+    wanted = np.linalg.norm(vectors, axis=1)
+    np.testing.assert_allclose(stored.values(), wanted, atol=(wanted.max() - wanted.min()) / 254)
+    plotter.show(auto_close=False)
+
+
+def test_words_are_categories(plotter, three_lines, colours_in):
+    three_lines.per_streamline["side"] = np.array(["right", "left", "right"])
+    actor = plotter.add_fiblets(three_lines, scalars="side", cmap=["red", "blue"], lighting=False)
+    assert actor.active_scalars.categories == {0: "left", 1: "right"}
+    plotter.remove_scalar_bar()
+    plotter.show(auto_close=False)
+    assert colours_in(plotter.screenshot(None)) == {(255, 0, 0), (0, 0, 255)}
+    table = actor.lookup_table
+    assert [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())] == ["left", "right"]
+    actor.scalars = ["a", "", "b"]
+    assert actor.active_scalars.categories == {0: "a", 1: "b"}
+    np.testing.assert_array_equal(actor.active_scalars.values, [0.0, np.nan, 1.0])
+
+
+def test_what_fiblets_cannot_have_is_said(plotter, three_lines):
+    colours = np.zeros((123, 3), np.uint8)
+    with pytest.raises(ValueError, match="a colour per point, .*add_spline_tubes.*rgb=False"):
+        plotter.add_fiblets(three_lines, scalars=colours)
+    with pytest.raises(ValueError, match="words per point"):
+        plotter.add_fiblets(three_lines, scalars=np.full(123, "a"))
+    actor = plotter.add_fiblets(three_lines, scalars=colours, rgb=False)
+    assert actor.scalars == "Data"

@@ -1,0 +1,83 @@
+"""Colours by ends, number and chance, and by the parcels that streamlines connect."""
+
+from __future__ import annotations
+
+import colorsys
+
+import nibabel
+import numpy as np
+import pytest
+
+import pvfiblets
+from pvfiblets import Streamlines
+from pvfiblets.plotting.fiblets.scalars import distinct_colours
+
+
+def test_ends_colour_by_the_direction_from_end_to_end(plotter, colours_in):
+    bow = [np.array([[0.0, 0, 0], [5, 8, 0], [10, 0, 0]]), np.array([[0.0, 0, 0], [8, 0, 5], [0, 0, -10.0]])]
+    plotter.add_fiblets(bow, scalars="ends", lighting=False)
+    plotter.show(auto_close=False)
+    found = np.array(sorted(colours_in(plotter.screenshot(None))))
+    assert np.abs(found - [[0, 0, 255], [255, 0, 0]]).max() <= 3  # the codec's error
+
+
+def test_lines_without_a_direction_are_grey(plotter):
+    ring = [np.array([[0.0, 0, 0], [5, 8, 0], [0, 0, 0]]), np.array([[1.0, 1, 1]])]
+    lines = Streamlines.from_list([*ring, np.zeros((0, 3)), np.array([[0.0, 0, 0], [0, 1, 0]])])
+    values = plotter.add_fiblets(lines, scalars="ends", max_error=1e-6).active_scalars.values
+    assert values[[1, 2]].tolist() == [[128] * 3] * 2
+    assert values[3].tolist() == [0, 255, 0]
+
+
+def test_numbers_and_chance(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, scalars="id")
+    assert actor.clim == (0.0, 2.0)
+    assert actor.scalars_title == "streamline"
+    actor.scalars = "random"
+    assert len(np.unique(actor.active_scalars.values, axis=0)) == 3
+    assert not actor.active_scalars.mapped
+
+
+def test_distinct_colours_are_those_of_their_hues():
+    colours = distinct_colours(3000)
+    hues = [(i * 0.6180339887498949) % 1.0 for i in range(3000)]
+    levels = [((0.9, 0.6, 0.75)[i % 3], (1.0, 0.9, 0.75)[i % 3]) for i in range(3000)]
+    wanted = [colorsys.hsv_to_rgb(hue, *level) for hue, level in zip(hues, levels, strict=True)]
+    np.testing.assert_allclose(colours, wanted, atol=1e-9)
+    assert np.linalg.norm(np.diff(colours, axis=0), axis=1).min() > 0.3
+
+
+@pytest.fixture
+def atlas():
+    """Parcel 1 in the left half of 40 mm, 2 in the right one, 0 above z = 0; voxels of 2 mm, the first axis flipped."""
+    numbers = np.ones((20, 20, 20), np.int16)
+    numbers[:10] = 2
+    numbers[:, :, 10:] = 0
+    affine = np.diag([-2.0, 2.0, 2.0, 1.0])
+    affine[:3, 3] = (19.0, -19.0, -19.0)
+    return nibabel.Nifti1Image(numbers, affine)
+
+
+def test_parcels_at_both_ends(plotter, atlas, tmp_path):
+    ends = [(-9, 9), (9, -9), (-9, -3), (9, 30)]
+    lines = [np.array([[a, 0.0, -5.0], [b, 3.0, -5.0]]) for a, b in ends] + [np.array([[-9.0, 0, -5], [9, 0, 5]])]
+    lines.append(np.zeros((0, 3)))
+    fiblets = pvfiblets.compress(Streamlines.from_list(lines))
+    wanted = ["1 - 2", "1 - 2", "1 - 1", "", "", ""]
+    assert fiblets.end_parcels(atlas).tolist() == wanted
+    assert fiblets.end_parcels((np.asarray(atlas.dataobj), atlas.affine)).tolist() == wanted
+    nibabel.save(atlas, tmp_path / "atlas.nii.gz")
+    assert fiblets.end_parcels(tmp_path / "atlas.nii.gz").tolist() == wanted
+    named = fiblets.end_parcels(atlas, {1: "left", 2: "right"})
+    assert named[0] == "left - right"
+    actor = plotter.add_fiblets(fiblets, scalars=named)
+    assert actor.active_scalars.categories == {0: "left - left", 1: "left - right"}
+    plotter.show(auto_close=False)
+    with pytest.raises(TypeError, match="atlas is a int"):
+        fiblets.end_parcels(3)
+    with pytest.raises(ValueError, match="fractions"):
+        fiblets.end_parcels((np.full((2, 2, 2), 0.5), np.eye(4)))
+    with pytest.raises(ValueError, match="shape"):
+        fiblets.end_parcels((np.zeros((2, 2)), np.eye(4)))
+    with pytest.raises(ValueError, match="affine"):
+        fiblets.end_parcels((np.zeros((2, 2, 2), int), np.zeros((4, 4))))

@@ -1,0 +1,86 @@
+"""Sets and actors are used as PyVista's meshes and actors are: plotted, copied, updated, asked for their data."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets
+
+
+def shot(plotter):
+    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
+    return plotter.screenshot(None)
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+def test_plot_is_a_plotter_with_the_lines(three_lines, compressed):
+    data = pvfiblets.compress(three_lines) if compressed else three_lines
+    window = {"window_size": (120, 100)}
+    plotter = pv.Plotter(off_screen=True, **window)
+    plotter.set_background("black")
+    plotter.add_fiblets(data, color="red", lighting=False)
+    plotter.add_axes()
+    plotter.camera_position = "yz"
+    wanted = shot(plotter)
+    plotter.close()
+    given = {"off_screen": True, "background": "black", "cpos": "yz", "return_img": True, "show_axes": True, **window}
+    np.testing.assert_array_equal(data.plot(color="red", lighting=False, **given), wanted)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
+        data.plot(colour="red", off_screen=True)
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+def test_deep_copies_draw_the_same_and_go_their_own_way(plotter, three_lines, add):
+    actor = getattr(plotter, add)(three_lines.to_polydata(), scalars="height", cmap="jet", show_scalar_bar=False)
+    wanted = shot(plotter)
+    twin, alike = copy.deepcopy(actor), copy.copy(actor)
+    assert twin.prop is not actor.prop
+    assert alike.prop is actor.prop
+    plotter.remove_actor(actor)
+    plotter.add_actor(twin)
+    np.testing.assert_array_equal(shot(plotter), wanted)
+    twin.cmap = "gray"
+    assert actor.cmap == "jet"
+
+
+def test_updates_draw_the_new_lines_with_the_old_settings(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, scalars="height", cmap="jet", line_width=2, show_scalar_bar=False)
+    shot(plotter)
+    moved = three_lines[:]
+    moved.points = moved.points + np.float32([1.0, 2.0, 3.0])
+    actor.update(moved)
+    got = shot(plotter)
+    plotter.add_fiblets(moved, scalars="height", cmap="jet", line_width=2, show_scalar_bar=False, name=actor.name)
+    np.testing.assert_array_equal(got, shot(plotter))
+
+
+def test_a_refused_update_changes_nothing(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, scalars="height")
+    before = actor.fiblets
+    with pytest.raises(KeyError, match="no array 'height'"):
+        actor.update([[(0, 0, 0), (1, 1, 1)]])
+    assert actor.fiblets is before
+
+
+def test_datasets_are_the_lines_that_are_drawn(plotter, three_lines):
+    for add in ("add_fiblets", "add_halo_lines", "add_spline_tubes"):
+        actor = getattr(plotter, add)(three_lines.to_polydata(), scalars="height")
+        data = actor.mapper.dataset
+        assert isinstance(data, pv.PolyData)
+        np.testing.assert_allclose(data.bounds, three_lines.bounds, atol=0.06)
+        assert data.n_points == 123
+        np.testing.assert_allclose(data["height"], three_lines.per_point["height"], atol=1e-2)
+    assert plotter.add_halo_points(np.eye(3)).mapper.dataset.n_points == 3
+
+
+def test_tables_of_selections(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines)
+    actor.select([2, 0])
+    table = actor.selection_table()
+    assert table["streamline"].tolist() == [0, 2]
+    assert table["weight"].tolist() == [1.0, 100.0]
+    np.testing.assert_allclose(table["length"], 20.0, atol=0.2)
