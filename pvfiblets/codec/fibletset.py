@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,23 +15,13 @@ from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
 from .quantised import QuantisedPoints
-
-if TYPE_CHECKING:
-    from ..query.density_map import DensityMap
-    from ..query.table import Table
+from .set_queries import SetQueries
 
 __all__ = ["FibletSet"]
 
 
-class Condition(Protocol):
-    """A condition on streamlines, such as :mod:`pvfiblets.query.predicates` makes; this room knows none itself."""
-
-    def choose(self, fiblets: FibletSet, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Return the streamlines for which it holds, ``(n_streamlines,)`` bool."""
-
-
 @dataclass(eq=False)
-class FibletSet:
+class FibletSet(SetQueries):
     """Compressed streamlines (paper: Schertzer et al. 2022, section 3.2; record: :mod:`pvfiblets.codec.layout`).
 
     Made by :func:`pvfiblets.compress` or :meth:`open`; its arrays are not meant to be written to.
@@ -308,94 +298,6 @@ class FibletSet:
         from .extract import extract
 
         return extract(self, ids)
-
-    def select(self, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Choose streamlines by where their points lie; see :func:`pvfiblets.query.predicates.select`.
-
-        Parameters
-        ----------
-        predicate : Predicate
-            Such as ``regions.passes(box) & ~regions.ends_in(sphere)`` (:mod:`pvfiblets.regions`).
-        flags : callable, optional
-            What answers for a region instead of the compiled kernels: the GPU.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n_streamlines,)`` bool.
-        """
-        if not hasattr(predicate, "choose"):
-            raise TypeError(
-                f"a {type(predicate).__name__} is no condition on streamlines; "
-                "ask passes(region), ends_in(region) or stays_in(region)"
-            )
-        return predicate.choose(self, flags=flags)
-
-    def density(self, voxel_size: Any = None, **options: Any) -> DensityMap:
-        """Add the streamlines up in the voxels of a grid; see :func:`pvfiblets.density`.
-
-        Parameters
-        ----------
-        voxel_size : float or array_like, optional
-            mm; either this or `like`, an image whose grid it is.
-        **options
-            ``like, weights, contrast, ends_only, progress`` of that function.
-
-        Returns
-        -------
-        DensityMap
-        """
-        from .. import density  # by the package's own name for it: this room knows nothing of questions
-
-        return density(self, voxel_size, **options)
-
-    def table(self, ids: npt.ArrayLike | slice | None = None) -> Table:
-        """Return a row for each streamline; see :func:`pvfiblets.table`.
-
-        Parameters
-        ----------
-        ids : array_like or slice, optional
-            Which; all by default.
-
-        Returns
-        -------
-        Table
-            Columns by name: a dict of arrays, which ``pandas.DataFrame`` and ``pyarrow.table`` take as it is.
-        """
-        from .. import table
-
-        return table(self, ids)
-
-    def end_parcels(self, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
-        """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.
-
-        Parameters
-        ----------
-        atlas : nibabel image, path of one, or (array, affine)
-            Whole numbers, 0 for no parcel.
-        names : mapping of int to str, optional
-            Of the parcels.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n_streamlines,)`` text, which ``scalars`` takes.
-        """
-        from .. import end_parcels
-
-        return end_parcels(self, atlas, names)
-
-    def plot(self, **options: Any) -> Any:
-        """Show the streamlines in a window of their own; see :func:`pvfiblets.plot`.
-
-        Parameters
-        ----------
-        **options
-            Of ``plotter.add_fiblets``, and those of plotters that :func:`pyvista.plot` takes.
-        """
-        from .. import plot
-
-        return plot(self, **options)
 
     # ----------------------------------------------------------------------------------------------------- decoding
 

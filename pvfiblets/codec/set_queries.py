@@ -1,0 +1,116 @@
+"""`SetQueries`: what a set of fiblets is asked that other rooms answer, which are loaded when they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ..query.density_map import DensityMap
+    from ..query.table import Table
+    from .fibletset import FibletSet
+
+__all__ = ["Condition", "SetQueries"]
+
+
+class Condition(Protocol):
+    """A condition on streamlines, such as :mod:`pvfiblets.query.predicates` makes; this room knows none itself."""
+
+    def choose(self, fiblets: FibletSet, *, flags: Any = None) -> npt.NDArray[np.bool_]:
+        """Return the streamlines for which it holds, ``(n_streamlines,)`` bool."""
+
+
+class SetQueries:
+    """The part of a `FibletSet` that chooses, counts and shows its streamlines."""
+
+    def select(self: Any, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
+        """Choose streamlines by where their points lie; see :func:`pvfiblets.query.predicates.select`.
+
+        Parameters
+        ----------
+        predicate : Predicate
+            Such as ``regions.passes(box) & ~regions.ends_in(sphere)`` (:mod:`pvfiblets.regions`).
+        flags : callable, optional
+            What answers for a region instead of the compiled kernels: the GPU.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` bool.
+        """
+        if not hasattr(predicate, "choose"):
+            raise TypeError(
+                f"a {type(predicate).__name__} is no condition on streamlines; "
+                "ask passes(region), ends_in(region) or stays_in(region)"
+            )
+        chosen: npt.NDArray[np.bool_] = predicate.choose(self, flags=flags)
+        return chosen
+
+    def density(self: Any, voxel_size: Any = None, **options: Any) -> DensityMap:
+        """Add the streamlines up in the voxels of a grid; see :func:`pvfiblets.density`.
+
+        Parameters
+        ----------
+        voxel_size : float or array_like, optional
+            mm; either this or `like`, an image whose grid it is.
+        **options
+            ``like, weights, contrast, ends_only, progress`` of that function.
+
+        Returns
+        -------
+        DensityMap
+        """
+        from .. import density  # by the package's own name for it: this room knows nothing of questions
+
+        return density(self, voxel_size, **options)
+
+    def table(self: Any, ids: npt.ArrayLike | slice | None = None) -> Table:
+        """Return a row for each streamline; see :func:`pvfiblets.table`.
+
+        Parameters
+        ----------
+        ids : array_like or slice, optional
+            Which; all by default.
+
+        Returns
+        -------
+        Table
+            Columns by name: a dict of arrays, which ``pandas.DataFrame`` and ``pyarrow.table`` take as it is.
+        """
+        from .. import table
+
+        return table(self, ids)
+
+    def end_parcels(self: Any, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
+        """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.
+
+        Parameters
+        ----------
+        atlas : nibabel image, path of one, or (array, affine)
+            Whole numbers, 0 for no parcel.
+        names : mapping of int to str, optional
+            Of the parcels.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_streamlines,)`` text, which ``scalars`` takes.
+        """
+        from .. import end_parcels
+
+        return end_parcels(self, atlas, names)
+
+    def plot(self: Any, **options: Any) -> Any:
+        """Show the streamlines in a window of their own; see :func:`pvfiblets.plot`.
+
+        Parameters
+        ----------
+        **options
+            Of ``plotter.add_fiblets``, and those of plotters that :func:`pyvista.plot` takes.
+        """
+        from .. import plot
+
+        return plot(self, **options)
