@@ -9,6 +9,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper
+from pvfiblets.mappers.slices import Slices
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
@@ -274,8 +275,12 @@ def test_translucent_lines_lie_in_order_under_depth_peeling(make_plotter, tools,
     plotter.add_actor(actor, reset_camera=False)
     x = np.linspace(-30.0, 30.0, 61)
     lines = [np.stack([x, np.full_like(x, y + k), np.zeros_like(x)], axis=1) for k in range(3)]
-    plotter.add_fiblets(lines, color="blue", opacity=0.3, line_width=40, lighting=False, reset_camera=False)
-    seen = middle(tools.picture(look(plotter), mapper))
+    fibres = tools.fibres("engine", Streamlines.from_list(lines))
+    drawn, among = fibres.actor(lighting=False, line_width=40, colouring=Colouring("solid", color=(0.0, 0.0, 1.0)))
+    among.GetProperty().SetOpacity(0.3)
+    drawn.set_effect("layers", Slices())
+    plotter.add_actor(among, reset_camera=False)
+    seen = middle(tools.picture(look(plotter), mapper, drawn))
     blue, empty, length = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array(2 * HALF)
     through = 0.7**3
     lit = (1.0 - through) * blue
