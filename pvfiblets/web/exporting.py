@@ -87,7 +87,8 @@ class ExportActions(Actions):
         where = "ready for download" if temporary else "saved in the served folder"
         size = f"{done['bytes'] / 1024:,.0f} kB"
         app.page.download = {"url": f"/download/{number}", "file": name, "where": where}
-        app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}){lost}", "success")
+        held = f"points are coded, within {fiblets.promise:.3g} mm of the source's"
+        app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}); {held}{lost}", "success")
 
     def _owner(self, what: str) -> Any:
         """The layer that is exported: the chosen one, or of selections the first that has one."""

@@ -8,7 +8,7 @@ import json
 import os
 import threading
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
+from pvfiblets.web.document import LINES
 from pvfiblets.web.loading import MESHES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
@@ -64,25 +65,34 @@ class FileActions(Actions):
     async def _open_all(self, given: list[tuple[str, str | None]]) -> None:
         for path, kind in given:
             try:
-                await self.open(path, kind)
+                await self._start(self.open(path, kind))
             except Exception as error:  # noqa: BLE001 - the others are opened all the same
                 self._app.complain(str(error))
         if self._app.options.demo:
-            await self._open_demo()
+            await self._start(self._open_demo())
         self._app.stream.warm()
+
+    async def _start(self, opening: Coroutine[Any, Any, bool]) -> None:
+        """Open something that no user asked for: undo has no step for it, unless it came among a user's own."""
+        history = self._app.history
+        untouched = len(history) == 0
+        if await opening and untouched and len(history) == 1:
+            history.clear()
+            self._app.refresh()
 
     def open_demo(self) -> None:
         """Open the made-up tractogram, which is made beside everything else."""
         self._app.later(self._open_demo())
 
-    async def _open_demo(self) -> None:
+    async def _open_demo(self) -> bool:
         scene = self._app.scene
         loaded = await self.beside("demo", lambda *_: scene.load_demo(), "making it", cancellable=False)
         scene.add_loaded_demo(loaded)
         self._app.refresh()
+        return True
 
-    async def open(self, path: str, kind: str | None = None) -> None:
-        """Open a file beside everything else."""
+    async def open(self, path: str, kind: str | None = None) -> bool:
+        """Open a file beside everything else; return whether it was, rather than cancelled."""
         app = self._app
         name = Path(path).name
         try:
@@ -92,12 +102,15 @@ class FileActions(Actions):
             layer = memory.within(lambda: app.scene.add(loaded), reserve=0)
         except Cancelled:
             app.say(f"{name} was not opened: cancelled.")
-            return
+            return False
         except EXPECTED as error:
             said = sentence(error).replace(f"{app.confined.root}{os.sep}", "")  # where it lies is the server's affair
             raise ValueError(f"{name} was not opened: {said}") from error
-        app.page.chosen = layer.id
+        lines = [one.id for one in app.scene.layers if one.kind in LINES]
+        if layer.kind in LINES or app.page.chosen not in lines:  # what is explored stays chosen
+            app.page.chosen = layer.id
         app.refresh()
+        return True
 
     async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
         """Do what takes long in a thread of its own, with progress; the page goes on.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import threading
 from pathlib import Path
 from types import SimpleNamespace
@@ -179,3 +180,19 @@ def test_whenever_writing_is_stopped_no_file_is_left(desk, tmp_path, suffix):
             write(fiblets, ids, home / f"part{suffix}", None, lambda answers=answers: next(answers))
         assert list(home.iterdir()) == []
     assert write(fiblets, ids, home / f"again{suffix}")["bytes"] == size
+
+
+@pytest.mark.parametrize("suffix", [".trk", ".fiblets"])
+def test_an_export_says_how_far_its_points_are_from_those_of_the_source(desk, lines, suffix):
+    path, _ = export(desk, suffix)
+    found = pvfiblets.FibletSet.open(path).decompress() if suffix == ".fiblets" else pvfiblets.read(path)
+    said = re.search(r"points are coded, within ([\d.e-]+) mm of the source's", desk.said[-1][1])
+    assert said is not None
+    farthest = 0.0
+    for mine, true in zip(found, [lines[i] for i in (3, 4, 30)], strict=True):
+        starts, ends = np.asarray(true[:-1], float), np.asarray(true[1:], float)
+        along = ends - starts
+        for point in np.asarray(mine, float):  # to the nearest place on the source's poly-line
+            share = np.clip(((point - starts) * along).sum(1) / (along**2).sum(1), 0, 1)
+            farthest = max(farthest, np.linalg.norm(starts + share[:, None] * along - point, axis=1).min())
+    assert 0 < farthest <= 1.005 * float(said[1])  # which is rounded to three digits

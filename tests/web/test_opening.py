@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -249,3 +250,46 @@ def test_the_demo_is_made_beside_the_page(desk, scene, threads, monkeypatch):
     asyncio.run(test())
     assert threads == [False, False]
     assert [(layer.kind, layer.visible) for layer in scene.layers] == [("tractogram", True), ("volume", False)]
+
+
+def test_the_tractogram_stays_chosen_when_a_volume_or_a_mesh_is_opened(desk, scene):
+    async def test():
+        for name in ("ball.ply", "lines.trk", "head.nii.gz", "ball.ply", "lines.fiblets"):
+            await desk.files.open(name)
+            names.append(scene.layer(desk.page.chosen).name)
+
+    names = []
+    asyncio.run(test())
+    assert names == ["ball.ply", "lines.trk", "lines.trk", "lines.trk", "lines.fiblets"]
+
+
+def test_undo_starts_empty(desk, scene, folder):
+    desk.options = replace(desk.options, files=(str(folder / "lines.trk"),), mesh=(str(folder / "ball.ply"),))
+    desk.stream.warm = lambda: None
+
+    async def test():
+        desk.files.open_given()
+        await desk.done()
+
+    asyncio.run(test())
+    assert [layer.name for layer in scene.layers] == ["lines.trk", "ball.ply"]
+    assert (len(desk.history), desk.history.undo_label) == (0, None)
+    scene.rename(scene.layers[0].id, "tract")
+    desk.history.undo()
+    assert [layer.name for layer in scene.layers] == ["lines.trk", "ball.ply"]
+
+
+def test_what_was_done_while_given_files_were_opened_can_be_undone(desk, scene, folder):
+    desk.options = replace(desk.options, files=(str(folder / "lines.trk"),))
+
+    async def test():
+        desk.files.open_given()
+        await asyncio.sleep(0)
+        scene.open("ball.ply")
+        await desk.done()
+
+    asyncio.run(test())
+    assert [layer.name for layer in scene.layers] == ["ball.ply", "lines.trk"]
+    desk.history.undo()
+    desk.history.undo()
+    assert scene.layers == ()
