@@ -8,6 +8,7 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar, Generic, TypeVar, cast
@@ -261,10 +262,13 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         renderer = self._active.find(actor)
         context = context_of(renderer.GetRenderWindow())
         if any(other is not context and other.shows(self) for other in contexts_with(self)):
-            raise RuntimeError(
-                "VTK can show an actor in one window only; for the second window make another "
-                f"{self._NAME} of the same data, with an actor of its own"
+            error = RuntimeError(
+                "VTK can show an actor in one window only; add a copy to the second one (actor.copy()), or make "
+                f"another {self._NAME} of the same data, with an actor of its own"
             )
+            # Of the second window's plotter nobody may ask for the error.
+            warnings.warn(str(error), RuntimeWarning, stacklevel=2)
+            raise error
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             program.SetUniform2i("fibletSize", (0, 0))

@@ -148,7 +148,8 @@ def test_one_actor_in_two_windows_is_refused(make_plotter, plain, tools):
     first.add_actor(actor)
     second.add_actor(actor)
     tools.picture(first, mapper)
-    second.show(auto_close=False)
+    with pytest.warns(RuntimeWarning, match="in one window only"):
+        second.show(auto_close=False)
     with pytest.raises(RuntimeError, match="another FibletMapper"):
         mapper.raise_pending()
 

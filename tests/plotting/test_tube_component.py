@@ -192,7 +192,8 @@ def test_a_second_window_is_refused_in_words(plotter):
     other = pv.Plotter(off_screen=True)
     other.add_actor(actor)
     shot(plotter)
-    other.show(auto_close=False)
+    with pytest.warns(RuntimeWarning, match="in one window only; add a copy"):
+        other.show(auto_close=False)
     with pytest.raises(RuntimeError, match="in one window only"):
         actor.raise_pending()
     other.close()

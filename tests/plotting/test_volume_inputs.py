@@ -237,7 +237,8 @@ def test_actors_leave_and_come_back_and_go_to_other_windows(plain):
     second.camera_position = first.camera_position
     assert np.abs(second.screenshot(None).astype(int) - plain["mip"]).max() <= 1
     second.add_actor(actor)
-    second.render()
+    with pytest.warns(RuntimeWarning, match="in one window only"):
+        second.render()
     with pytest.raises(RuntimeError, match="in one window only"):
         actor.raise_pending()
     first.remove_actor(actor)
