@@ -245,7 +245,7 @@ def test_where_across_a_wide_line(gl, fabricate, camera, width, pipeline):
         y, x = np.mgrid[: SMALL[1], : SMALL[0]] + 0.5
         run = (b - a) / np.linalg.norm(b - a)
         left = (-(x - a[0]) * run[1] + (y - a[1]) * run[0]) / (width / 2)
-        assert np.abs(across.astype(float) - left)[picture.drawn].max() < 2e-3
+        assert np.abs(across[picture.drawn].astype(float) - left[picture.drawn]).max() < 2e-3
 
 
 def test_a_picture_pays_only_for_what_it_shows(gl, knots, camera):

@@ -203,7 +203,7 @@ def reserve_buffer(ctx: moderngl.Context, size: int, what: str) -> moderngl.Buff
 
 
 def storage_buffer(ctx: moderngl.Context, data: npt.NDArray[Any] | bytes, what: str) -> moderngl.Buffer:
-    """Make a buffer of some data, padded to whole words and one more.
+    """Make a buffer of some data, padded with zeros to whole words and one more.
 
     Raises
     ------
@@ -214,4 +214,5 @@ def storage_buffer(ctx: moderngl.Context, data: npt.NDArray[Any] | bytes, what: 
     buffer = reserve_buffer(ctx, padded(len(raw)), what)
     if len(raw):
         buffer.write(raw)
+    buffer.write(bytes(buffer.size - len(raw)), offset=len(raw))  # drivers leave what was in memory before
     return buffer
