@@ -132,21 +132,25 @@ def test_peaks(cast, matrix):
 
 @pytest.mark.parametrize("octree", [True, False])
 @pytest.mark.parametrize("dtype", [np.uint8, np.float32])
-@pytest.mark.parametrize("threshold", [50.0, 150.0])
-def test_local_peaks_do_not_end_on_plateaus(cast, camera, dtype, threshold, octree):
+@pytest.mark.parametrize(("threshold", "low"), [(50.0, 0.0), (150.0, 0.0), (50.0, 1e6)])
+def test_local_peaks_do_not_end_on_plateaus(cast, camera, dtype, threshold, low, octree):
     """Cubes within cubes, level between their faces: what is level has not fallen, whole nodes of it neither."""
+    if low and dtype is np.uint8:
+        dtype = np.int32
     field = np.zeros((64, 64, 64), dtype)
     field[8:56, 8:56, 8:56] = 100.1 if dtype is np.float32 else 100
     field[24:40, 24:40, 24:40] = 250.3 if dtype is np.float32 else 250
+    field += dtype(low)
+    threshold += low
     volume = RaycastVolume(field, np.eye(4))
     matrix = camera(SIZE, eye=(110, -120, 90), target=(32, 32, 32), near=5, far=400, height=90.0)
     through = reference.rays(matrix, SIZE, volume)
     wanted = reference.mip(volume, through, threshold=threshold).value
     shown, _ = cast(volume, RaycastOptions("local-mip", step=0.25, threshold=threshold, octree=octree), matrix)
     there = shown.there & ~np.isnan(wanted)
-    assert (wanted[there] > 240).sum() > 50
+    assert (wanted[there] > low + 240).sum() > 50
     assert (np.abs(shown.value - wanted)[there] > 12.0).mean() < 0.01  # steps miss some of an edge's top
-    assert abs(shown.value[SIZE[1] // 2, SIZE[0] // 2] - float(field.max())) < 0.01
+    assert abs(shown.value[SIZE[1] // 2, SIZE[0] // 2] - float(field.max())) < (0.2 if low else 0.01)
 
 
 def ramp(k=64, most=0.4):

@@ -61,6 +61,8 @@ RAYCAST_BLOCK = UniformStruct(
 _LARGEST = float(np.finfo(np.float32).max)
 _ROUNDING = 1e-6
 """Part of the largest value by which an interpolation of float32 may miss: a few units of its last digit."""
+_LEAST_FALL = 1e-3
+"""Part of the range of values that is a fall whatever rounds: of a field far from 0, rounding may be as large as it."""
 
 Array = npt.NDArray[np.float64]
 
@@ -140,7 +142,9 @@ class RayBlock:
                 isovalue_count=len(casting.values),
                 refinement_steps=casting.iterations,
                 top_level=len(levels) - 1,
-                peak_rounding=_ROUNDING * float(np.abs(volume.value_range).max()),
+                peak_rounding=min(
+                    _ROUNDING * float(np.abs(volume.value_range).max()), _LEAST_FALL * float(np.ptp(volume.value_range))
+                ),
                 isovalues=np.asarray(casting.values, np.float64),
                 octree_shapes=levels[:, :3],
                 octree_starts=levels[:, 3],
