@@ -21,6 +21,8 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+from tests.debug_log import DebugLog
+
 # Pictures of tests are exact, and drawn once: of one sample a pixel, in processes that they start, too.
 os.environ["PVFIBLETS_ANTIALIAS"] = "off"
 
@@ -118,8 +120,12 @@ def gl(_headless, request):
     context = _headless.context(request.module)
     with context:
         assert context.error == "GL_NO_ERROR", "an earlier test left an OpenGL error"
+        said = DebugLog(context)
+        said.take()
         yield context
         assert context.error == "GL_NO_ERROR", "this test left an OpenGL error"
+        complaints = said.take()
+        assert not complaints, "\n".join(complaints)
 
 
 # What OpenGL 4.1 lacks and Mesa lists as extensions however old it is told to be. Two more it will not take away,
