@@ -15,6 +15,9 @@ __all__ = ["COLOURS", "LATER", "OPTIONS", "OWN", "PROPERTY", "Effect", "Own", "P
 class Place:
     """Where an actor keeps a setting: how it is read, and what changes when it is written."""
 
+    checks: ClassVar[bool] = False
+    """Whether choices are looked at there, not before."""
+
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         """Return the present value."""
         raise NotImplementedError
@@ -33,6 +36,8 @@ class Place:
 
 class _Options(Place):
     """A field of the mapper's options, which check it."""
+
+    checks = True
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         return getattr(actor.mapper.options, setting.field)

@@ -240,7 +240,8 @@ class Setting(Argument, Generic[T]):
         """Return a value as it is kept; errors as of `Argument.check`."""
         if self._check is None and not (self.low is None and self.high is None):
             return number(self.name, value, self.low, self.high, self.unit)
-        if self._check is None and self.choices and not any(_is(value, choice) for choice in self.choices):
+        chosen = self._check is not None or not self.choices or self.where.checks
+        if not chosen and not any(_is(value, choice) for choice in self.choices):
             raise ValueError(f"{self.name} is {value!r}; choose one of {self.choices}")
         return super().check(value)
 

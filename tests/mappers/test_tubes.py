@@ -306,7 +306,8 @@ def test_a_second_window_is_refused_in_words(make_plotter, tools):
     first.add_actor(actor)
     second.add_actor(actor)
     tools.picture(first, mapper)
-    second.show(auto_close=False)
+    with pytest.warns(RuntimeWarning, match="in one window only"):
+        second.show(auto_close=False)
     with pytest.raises(RuntimeError, match="another TubeMapper"):
         mapper.raise_pending()
 

@@ -33,6 +33,7 @@ def add(here, file, kind, before):
     here.page.click(f"[data-entry='{file}']")
     here.wait(lambda: here.layers() == count + 1, f"the layer of {file}")
     assert here.state("layers")[-1]["kind"] == kind
+    here.page.locator("[data-layer]").last.click()
     here.wait(lambda: here.state("chosen_name") == file, "its properties")
     return here.changed(before)
 
