@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 from ..formats.mapped import forget
+from ..whole_files import replacing
 
 __all__ = ["HEADER", "Member", "array_member", "check_members", "forget", "open_archive", "write_archive"]
 
@@ -71,18 +72,12 @@ def write_archive(path: str | os.PathLike[str], header: Mapping[str, Any], membe
     Raises
     ------
     OSError
-        If the folder cannot be written to.
+        If it cannot be written; it names the path, and says what to do.
     """
-    target = Path(path)
-    partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
-    try:
-        with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
-            _write(archive, HEADER, [json.dumps(header, indent=1, allow_nan=False).encode()])
-            for name, member in members.items():
-                _write(archive, name, _with_npy_header(member))
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        _write(archive, HEADER, [json.dumps(header, indent=1, allow_nan=False).encode()])
+        for name, member in members.items():
+            _write(archive, name, _with_npy_header(member))
 
 
 def _with_npy_header(member: Member) -> Iterator[bytes | memoryview]:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from .. import formats
 from ..streamlines import Streamlines
+from ..whole_files import naming_target
 from .archive import Member, write_archive
 from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
 from .decompress import iter_chunks
@@ -94,6 +95,7 @@ def compress_file(
     encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
     folder = Path(target).resolve().parent
     with (
+        naming_target(target),
         tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
         closing(_Spool(Path(scratch))) as spool,  # before its folder goes, whatever happens
     ):

@@ -31,9 +31,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.mapped import MappedFile, forget, replacing
+from pvfiblets.formats.mapped import MappedFile, forget
 from pvfiblets.formats.rows import NONFINITE, finite_rows
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
+from pvfiblets.whole_files import replacing
 
 Array = NDArray[Any]
 Ints = NDArray[np.int64]

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvfiblets.formats.mapped import forget, replacing
+from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.whole_files import replacing
 
 Array = NDArray[Any]
 

@@ -31,10 +31,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.mapped import forget, replacing
+from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import finite, without_rows
 from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
+from pvfiblets.whole_files import replacing
 
 Array = NDArray[Any]
 

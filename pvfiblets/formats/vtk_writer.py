@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.formats.mapped import replacing
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.whole_files import replacing
 
 
 def write_with(writer: Any, path: str | PathLike[str], streamlines: Streamlines) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..formats.mapped import replacing
+from ..whole_files import replacing
 from .voxel_grid import VoxelGrid
 
 if TYPE_CHECKING:

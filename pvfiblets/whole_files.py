@@ -1,0 +1,82 @@
+"""Files that appear only when they are complete, and what is said where one cannot be written."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from os import PathLike
+from pathlib import Path
+from typing import BinaryIO
+
+__all__ = ["naming_target", "replacing"]
+
+_FULL = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
+_CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
+
+
+@contextmanager
+def replacing(path: str | PathLike[str]) -> Iterator[BinaryIO]:
+    """Open a temporary file beside `path` for writing; it takes the name when all went well.
+
+    A reader therefore never meets half a file, and a failed write leaves an old file as it was.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written, as :func:`naming_target` says it.
+    """
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    with naming_target(target):
+        try:
+            with temporary.open("wb") as file:
+                yield file
+            temporary.replace(target)
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink()
+            raise
+
+
+@contextmanager
+def naming_target(path: str | PathLike[str]) -> Iterator[None]:
+    """Let errors of writing, in whichever temporary file, name the file that was asked for and say what to do.
+
+    Raises
+    ------
+    OSError
+        Of the same number, in place of one that names no file or one in the target's folder but the target's name.
+        Those that name a file elsewhere, such as the source that was read, stay as they are.
+    """
+    target = Path(path)
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or not _of_target(error, target):
+            raise
+        raise OSError(error.errno, _told(error, target), os.fspath(path)) from error
+
+
+def _of_target(error: OSError, target: Path) -> bool:
+    """Whether an error is of the target: of a full disk, or of a hidden file in its folder."""
+    if not isinstance(error.filename, (str, bytes, os.PathLike)):
+        return error.errno in (*_FULL, errno.EFBIG)
+    named, folder = Path(os.fsdecode(error.filename)).absolute(), target.absolute().parent
+    return named.is_relative_to(folder) and str(named.relative_to(folder)).startswith(".") and named != folder
+
+
+def _told(error: OSError, target: Path) -> str:
+    folder = target.absolute().parent
+    if error.errno in _FULL:
+        free = "none"
+        with suppress(OSError):
+            free = f"{shutil.disk_usage(folder).free / 1e6:,.1f} MB"
+        return f"no space is left for it (free in {folder}: {free}); make room there, or write to another disk"
+    if not folder.is_dir():
+        return f"there is no folder {folder}; make it first"
+    if error.errno in (*_CLOSED, errno.ENOENT):
+        return f"the folder {folder} cannot be written to; choose another one, or change its permissions"
+    return error.strerror or "it cannot be written"
