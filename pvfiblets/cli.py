@@ -106,8 +106,9 @@ def make_parser() -> argparse.ArgumentParser:
         "--per-point",
         action="append",
         default=[],
-        metavar="NAME",
-        help="keep this per-point array; may be given several times (default: keep none)",
+        metavar="all|none|NAME",
+        help="per-point arrays to keep; a name may be given several times (default: in the order of IN, each that "
+        "still fits into 16 bytes a point); those that stay behind are printed, and listed by info",
     )
     convert.add_argument(
         "--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)"

@@ -7,13 +7,16 @@ import math
 import sys
 import time
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pvfiblets import formats
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError, FormatError
 from pvfiblets.formats.spool import gathered
 from pvfiblets.web.values import plain
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.compress import PerPoint
 
 COMPRESSED = ".fiblets"
 REWRITTEN_POINTS = 1 << 20  # larger pieces are no faster
@@ -50,7 +53,7 @@ def convert(
             max_error=max_error,
             max_angle=max_angle,
             effort=effort,
-            per_point=tuple(per_point),
+            per_point=which_per_point(per_point),
             per_point_bits=per_point_bits,
             progress=show_progress(quiet, json),
         )
@@ -64,6 +67,16 @@ def convert(
         print_json(result)
     else:
         print(summary(source, target, result))
+
+
+def which_per_point(given: list[str]) -> PerPoint:
+    """Return what ``--per-point``, given so often, asks to keep."""
+    words = [word for word in given if word in ("all", "none")]
+    if words and len(given) > 1:
+        raise ValueError(f"--per-point is given as {', '.join(given)}; give all, or none, or names")
+    if words == ["all"]:
+        return "all"
+    return "none" if words else given or "fit"
 
 
 def rewrite(source: str, target: str, max_points: int = REWRITTEN_POINTS) -> dict[str, Any]:
@@ -175,6 +188,8 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
             lines.append(f"         directions: {angles}")
     speed = result["points_per_second"] / 1e6
     lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
+    if result.get("per_point"):
+        lines.append(f"values   {', '.join(result['per_point'])}")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]
     return "\n".join(lines)
 

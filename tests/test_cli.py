@@ -17,6 +17,7 @@ from pvfiblets import formats
 from pvfiblets.cli import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.report.errors_and_times import direction_angles
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
 CONVERT_KEYS = {
@@ -77,6 +78,59 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["error_degrees"]["mean"] == pytest.approx(angles.mean(), rel=0.02)
     assert result["error_degrees"]["p99"] == pytest.approx(np.quantile(angles, 0.99), rel=0.05)
     np.testing.assert_allclose(back.per_point["fa"].ravel(), brain.per_point["fa"], atol=0.003)
+
+
+@pytest.mark.parametrize(
+    ("words", "kept"),
+    [
+        ([], ["height", "tensor"]),
+        (["--per-point-bits", "16"], ["height"]),
+        (["--per-point", "all"], ["height", "tensor", "wide"]),
+        (["--per-point", "none"], []),
+        (["--per-point", "wide", "--per-point", "height"], ["wide", "height"]),
+    ],
+)
+def test_convert_keeps_values_of_points_and_names_those_that_stay_behind(tmp_path, capsys, words, kept):
+    """By default those are kept that fit into 16 bytes a point: 1 + 9 of 1 + 9 + 9; at 16 bits 2 of 2 + 18 + 18."""
+    rng = np.random.default_rng(0)
+    values = {"height": rng.random(60), "tensor": rng.random((60, 9)), "wide": rng.random((60, 9)) * 100.0}
+    lines = Streamlines(np.cumsum(rng.random((60, 3)), axis=0), [0, 20, 60], per_point=values)
+    source, target = tmp_path / "a.trx", tmp_path / "a.fiblets"
+    formats.write(source, lines)
+    assert main(["convert", str(source), str(target), *words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    flat = {
+        f"{name}[{k}]" if values[name].ndim > 1 else name: values[name].reshape(60, -1)[:, k]
+        for name in kept
+        for k in range(values[name].size // 60)
+    }
+    assert result["per_point"] == list(flat)
+    back = formats.read(target)
+    assert list(back.per_point) == list(flat)
+    for name, column in flat.items():
+        np.testing.assert_allclose(back.per_point[name].ravel(), column, atol=0.003 * np.ptp(column))
+    behind = [name for name in values if name not in kept]
+    for command in (["convert", str(source), str(target), *words], ["info", str(target)]):
+        assert main(command) == 0
+        out = capsys.readouterr().out
+        assert all(name in out for name in [*flat, *behind])
+        assert ("not kept" in out) == bool(behind)
+
+
+def test_an_array_named_beside_all_or_none_is_refused(tractogram, tmp_path, capsys):
+    words = ["--per-point", "none", "--per-point", "fa"]
+    assert "give all, or none, or names" in fails(capsys, "convert", tractogram[0], tmp_path / "a.fiblets", *words)
+
+
+def test_convert_keeps_the_colours_of_a_real_file(shared_data, tmp_path, capsys):
+    source, target = shared_data / "trxpy_small.trx", tmp_path / "a.fiblets"
+    assert main(["convert", str(source), str(target), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["dropped"] == {}
+    original, back = formats.read(source), formats.read(target)
+    assert set(back.per_point) == set(original.per_point) == {"fa", "color_x", "color_y", "color_z"}
+    for name, values in original.per_point.items():
+        values = values.astype(float).ravel()
+        np.testing.assert_allclose(back.per_point[name].ravel(), values, atol=0.002 * np.ptp(values))
 
 
 def test_convert_keeps_the_promise_that_was_asked_for(tractogram, tmp_path, capsys):

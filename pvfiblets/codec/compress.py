@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -16,9 +17,14 @@ from .parameters import DEFAULT_ANGLE, Parameters, Survey, survey
 from .quantised import QuantisedPoints, quantise_values
 from .resample import resample
 
-__all__ = ["CHUNK_POINTS", "check_per_point", "compress", "split_chunks"]
+__all__ = ["CHUNK_POINTS", "LARGEST_FIT", "PerPoint", "choose_per_point", "compress", "not_kept", "split_chunks"]
 
 CHUNK_POINTS = 2_000_000
+LARGEST_FIT = 16
+"""Most bytes a point of per-point values where per_point is 'fit': a tensor at one byte a number, and some more."""
+
+PerPoint: TypeAlias = Sequence[str] | Literal["all", "fit", "none"]
+"""Which per-point arrays to keep: their names, all, as many as fit into LARGEST_FIT bytes a point, or none."""
 
 
 def compress(
@@ -29,7 +35,7 @@ def compress(
     max_angle: float | None = DEFAULT_ANGLE,
     effort: Effort = "fast",
     order: Order = "input",
-    per_point: Sequence[str] = (),
+    per_point: PerPoint = (),
     per_point_bits: int = 8,
     progress: bool = False,
 ) -> FibletSet:
@@ -62,9 +68,9 @@ def compress(
         'hilbert' codes streamlines along a space-filling curve (:mod:`pvfiblets.codec.ordering`): pages become compact
         in space, which culling of very large sets gains from. Whatever is decoded comes in the order of the input; 8
         bytes a streamline remember it.
-    per_point : sequence of str
-        Names of per-point arrays to keep, quantised over their range. None by default: what is not asked for costs
-        nothing.
+    per_point : sequence of str, or {'all', 'fit', 'none'}
+        Names of per-point arrays to keep, quantised over their range; 'fit' keeps them in their order, each that still
+        fits into 16 bytes a point. None by default: what is not asked for costs nothing. ``dropped`` names the others.
     per_point_bits : {8, 16}
         Bits for each of those values.
     progress : bool
@@ -92,7 +98,7 @@ def compress(
             f"compress takes pvfiblets.Streamlines, got {type(streamlines).__name__}; "
             "pvfiblets.read(path) or Streamlines.from_list(arrays) makes one"
         )
-    check_per_point(streamlines, per_point, per_point_bits)
+    per_point = choose_per_point(streamlines, per_point, per_point_bits)
     check_order(order)
     if step != "auto":
         streamlines = resample(streamlines, step)
@@ -123,7 +129,7 @@ def compress(
         per_group={k: dict(v) for k, v in streamlines.per_group.items()},
         affine=np.asarray(streamlines.affine, np.float64),
         space=dict(streamlines.space or {}),
-        dropped=dict(streamlines.dropped or {}),
+        dropped={**streamlines.dropped, **not_kept(streamlines, per_point)},
         **join(chunks),
     )
 
@@ -157,16 +163,41 @@ def split_chunks(streamlines: Streamlines, max_points: int = CHUNK_POINTS) -> It
         a = b
 
 
-def check_per_point(streamlines: Streamlines, per_point: Iterable[str], bits: int) -> None:
-    """Refuse per-point names that the streamlines do not have."""
+def choose_per_point(streamlines: Streamlines, per_point: PerPoint, bits: int) -> tuple[str, ...]:
+    """Return the names of the per-point arrays to keep.
+
+    Raises
+    ------
+    ValueError
+        For a name that the streamlines do not have, another word than 'all', 'fit' and 'none', or other bits than 8 or
+        16.
+    """
+    if bits not in (8, 16):
+        raise ValueError(f"per_point_bits is {bits}; 8 or 16 is needed")
     if isinstance(per_point, str):
-        raise ValueError(f"per_point is the text {per_point!r}; a list of names is needed: [{per_point!r}]")
+        if per_point not in ("all", "fit", "none"):
+            raise ValueError(
+                f"per_point is the text {per_point!r}; a list of names is needed: [{per_point!r}], or 'all', 'fit' or "
+                "'none'"
+            )
+        kept, room = [], {"all": math.inf, "fit": LARGEST_FIT, "none": -1}[per_point]
+        for name, values in streamlines.per_point.items():
+            size = int(np.prod(values.shape[1:])) * bits // 8
+            if size <= room:
+                kept.append(name)
+                room -= size
+        return tuple(kept)
     for name in per_point:
         if name not in streamlines.per_point:
             have = ", ".join(sorted(streamlines.per_point)) or "none"
             raise ValueError(f"there is no per-point array {name!r}; the streamlines have: {have}")
-    if bits not in (8, 16):
-        raise ValueError(f"per_point_bits is {bits}; 8 or 16 is needed")
+    return tuple(dict.fromkeys(per_point))
+
+
+def not_kept(streamlines: Streamlines, per_point: Sequence[str]) -> dict[str, int]:
+    """Return per-point arrays that stay behind as ``dropped`` lists them: a reason that names them, their number."""
+    names = [name for name in streamlines.per_point if name not in per_point]
+    return {f"per-point arrays not kept ({', '.join(names)})": len(names)} if names else {}
 
 
 def quantise_chosen(

@@ -17,7 +17,7 @@ from .. import formats
 from ..streamlines import Streamlines
 from ..whole_files import naming_target
 from .archive import Member, write_archive
-from .compress import CHUNK_POINTS, bounds_of, check_per_point, quantise_chosen
+from .compress import CHUNK_POINTS, PerPoint, bounds_of, choose_per_point, not_kept, quantise_chosen
 from .decompress import iter_chunks
 from .encode import Effort, Encoder
 from .error import CodingError, ErrorTally
@@ -25,7 +25,7 @@ from .fiblets_file import make_header
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import DEFAULT_ANGLE, Parameters, survey
+from .parameters import DEFAULT_ANGLE, Parameters, Survey
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 from .resample import resample
@@ -42,7 +42,7 @@ def compress_file(
     max_angle: float | None = DEFAULT_ANGLE,
     effort: Effort = "fast",
     order: Order = "input",
-    per_point: Sequence[str] = (),
+    per_point: PerPoint = "fit",
     per_point_bits: int = 8,
     progress: Progress = False,
 ) -> dict[str, Any]:
@@ -56,8 +56,11 @@ def compress_file(
         Any format that :func:`pvfiblets.iter_chunks` reads.
     target : str or PathLike
         A name ending in ``.fiblets``; it appears when it is whole.
-    step, max_error, max_angle, effort, per_point, per_point_bits
+    step, max_error, max_angle, effort, per_point_bits
         As in :func:`pvfiblets.compress`.
+    per_point : sequence of str, or {'all', 'fit', 'none'}
+        As in :func:`pvfiblets.compress`, but for the default: per-point arrays are kept in their order, each that still
+        fits into 16 bytes a point. ``dropped`` names the others, in the result and in the file.
     order : {'input'}
         Another order needs all streamlines at once, and is refused here.
     progress : bool or callable
@@ -69,7 +72,7 @@ def compress_file(
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
         error_steps{...}, error_degrees{max, mean, p99}, promise_mm, seconds`` (to read and code), ``points_per_second,
-        seconds_to_measure, dropped``.
+        seconds_to_measure, dropped, per_point`` (names of the arrays kept).
 
     Raises
     ------
@@ -88,10 +91,16 @@ def compress_file(
 
     def chunks() -> Iterator[Streamlines]:
         for chunk in formats.iter_chunks(source, CHUNK_POINTS):
-            check_per_point(chunk, per_point, per_point_bits)
             yield chunk if step == "auto" else resample(chunk, step)
 
-    found = survey(shown(chunks(), None, "surveying", progress), per_point)
+    found = Survey()
+    names: tuple[str, ...] = ()
+    behind: dict[str, int] = {}
+    for n, chunk in enumerate(shown(chunks(), None, "surveying", progress)):
+        if n == 0:  # all chunks of a file have the same arrays
+            names = choose_per_point(chunk, per_point, per_point_bits)
+            behind = not_kept(chunk, names)
+        found.add(chunk, names)
     encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
     folder = Path(target).resolve().parent
     with (
@@ -99,19 +108,19 @@ def compress_file(
         tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
         closing(_Spool(Path(scratch))) as spool,  # before its folder goes, whatever happens
     ):
-        whole = _Whole()
+        whole = _Whole(behind)
         for chunk in shown(chunks(), found.n_points, "compressing", progress):
             records = encoder.add(chunk)
             for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
                 if getattr(records, name) is not None:
                     spool.add(f"{name}.npy", getattr(records, name))
-            for name, values in quantise_chosen(chunk, found, per_point, per_point_bits).items():
+            for name, values in quantise_chosen(chunk, found, names, per_point_bits).items():
                 spool.add(name, values.codes)
                 whole.add_values(name, values)
             whole.add(chunk)
         spool.close()
         if not encoder.n_fiblets:
-            spool.add_empty(per_point, per_point_bits, whole)
+            spool.add_empty(names, per_point_bits, whole)
         pages, ids = encoder.page_table(), encoder.rank_to_id()
         spool.add("pages.npy", pages)
         if ids is not None:
@@ -153,6 +162,7 @@ def compress_file(
         "points_per_second": encoder.n_points / seconds,
         "seconds_to_measure": time.perf_counter() - started - seconds,
         "dropped": whole.dropped,
+        "per_point": list(whole.per_point),
     }
 
 
@@ -217,7 +227,7 @@ def _plain(s: Streamlines, a: int, b: int) -> Streamlines:
 class _Whole:
     """What is kept whole: per-streamline data, groups and the header, gathered over chunks."""
 
-    def __init__(self) -> None:
+    def __init__(self, dropped: dict[str, int]) -> None:
         self.n = 0
         self.per_point: dict[str, QuantisedPoints] = {}
         self.per_streamline: dict[str, list[npt.NDArray[Any]]] = {}
@@ -225,7 +235,7 @@ class _Whole:
         self.per_group: dict[str, dict[str, Any]] = {}
         self.affine: npt.NDArray[np.float64] = np.eye(4)
         self.space: dict[str, Any] = {}
-        self.dropped: dict[str, int] = {}
+        self.dropped = dict(dropped)
 
     def add(self, chunk: Streamlines) -> None:
         for name, values in chunk.per_streamline.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -44,10 +45,18 @@ def write_dataset(dataset: pv.DataSet, path: str, **_options: Any) -> None:
     ------
     TypeError
         If the dataset is not PolyData.
+
+    Warns
+    -----
+    UserWarning
+        If the format cannot hold some of the data, which it names.
     """
     if not isinstance(dataset, pv.PolyData):
         raise TypeError(
             f"a {type(dataset).__name__} cannot be written as {Path(path).suffix}; expected "
             "PolyData with lines"
         )
-    formats.write(path, Streamlines.from_polydata(dataset))
+    lines = Streamlines.from_polydata(dataset)
+    if lost := formats.write(path, lines):
+        names = ", ".join(f"{part} ({', '.join(getattr(lines, part))})" for part in lost)
+        warnings.warn(f"{path}: a {Path(path).suffix} file cannot hold {names}", UserWarning, stacklevel=6)
