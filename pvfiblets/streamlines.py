@@ -42,6 +42,7 @@ _BLOCK_POINTS = 1 << 18
 
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"
+_SPACE = "space/"
 
 
 class Streamlines:
@@ -64,8 +65,8 @@ class Streamlines:
     affine : (4, 4) array, optional
         Voxel index to RAS+ mm of the image that the file refers to; identity if unknown.
     space : mapping, optional
-        What a writer needs besides: ``dimensions`` (3 int), ``voxel_sizes`` (3 float, mm),
-        ``voxel_order`` (such as ``"RAS"``).
+        What a writer needs besides: ``dimensions`` (3 int), ``voxel_sizes`` (3 float, mm), both along the axes of
+        ``voxel_order`` (such as ``"RAS"``; the affine's own if it is not given), and what else a header says.
     dropped : mapping of str to int, optional
         What reading left out or noticed: reason to count.
 
@@ -398,8 +399,9 @@ class Streamlines:
         """PolyData with one polyline per streamline, in order, and all data.
 
         Per-point data becomes point data, per-streamline data cell data. Groups
-        (``groups/NAME``), their data (``per_group/NAME/KEY``) and an affine that is not the
-        identity (``affine``) are kept as field data.
+        (``groups/NAME``), their data (``per_group/NAME/KEY``), an affine that is not the
+        identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
+        VTK loses arrays of text in some of its formats) are kept as field data.
         """
         import pyvista
 
@@ -419,13 +421,18 @@ class Streamlines:
         return mesh
 
     def field_data(self) -> dict[str, Array]:
-        """Return groups, group data and affine as flat named arrays (see :meth:`to_polydata`)."""
+        """Return groups, group data, affine and space as flat named arrays (see :meth:`to_polydata`)."""
         field: dict[str, Array] = {_GROUP + k: v for k, v in self.groups.items()}
         for group, values in self.per_group.items():
             for name, value in values.items():
                 field[f"{_PER_GROUP}{group}/{name}"] = np.atleast_1d(_vtk_values(value))
         if not np.array_equal(self.affine, np.eye(4)):
             field["affine"] = self.affine
+        for name, value in self.space.items():
+            text = np.frombuffer(value.encode(), np.uint8) if isinstance(value, str) else None
+            array = np.atleast_1d(np.asarray(value)) if text is None else text
+            if array.size and array.dtype.kind in "fiub":
+                field[_SPACE + name] = array.astype(np.int64) if array.dtype == bool else array
         return field
 
 
@@ -469,6 +476,7 @@ def from_cells(
     groups: dict[str, Array] = {}
     per_group: dict[str, dict[str, Array]] = {}
     affine = None
+    space: dict[str, Any] = {}
     for name, array in (field or {}).items():
         if name.startswith(_GROUP):
             groups[name[len(_GROUP) :]] = array
@@ -477,7 +485,17 @@ def from_cells(
             per_group.setdefault(group, {})[key] = array
         elif name == "affine" and array.size == 16:
             affine = array.reshape(4, 4)
-    return Streamlines(points, offsets, point_data, cell_data, groups, per_group, affine, None, dropped)
+        elif name.startswith(_SPACE) and array.size:
+            space[name[len(_SPACE) :]] = _space_value(array)
+    return Streamlines(points, offsets, point_data, cell_data, groups, per_group, affine, space, dropped)
+
+
+def _space_value(array: Array) -> Any:
+    """Return the value that :meth:`Streamlines.field_data` made an array of."""
+    if array.dtype == np.uint8:
+        return array.tobytes().decode("utf-8", "replace")
+    values = tuple(array.ravel().tolist())
+    return values[0] if len(values) == 1 else values
 
 
 def _vtk_values(values: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from .streamline_ranges import StreamlineRanges, ranges_of
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["decode_fiblets", "decompress", "iter_chunks", "select_streamlines"]
+__all__ = ["decode_fiblets", "decompress", "held_in_bounds", "iter_chunks", "select_streamlines"]
 
 
 def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
@@ -185,6 +185,32 @@ def iter_chunks(
     except (IndexError, ValueError):
         fiblets.verify()
         raise
+
+
+def held_in_bounds(fiblets: FibletSet, chunks: Iterable[Streamlines]) -> Iterator[Streamlines]:
+    """Bring decoded points that lie outside of the original points' bounds back to them, in place.
+
+    That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave its
+    image, and originals do lie on its very edge.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        Whose points they are.
+    chunks : iterable of Streamlines
+
+    Yields
+    ------
+    Streamlines
+        The same objects.
+    """
+    edges, promise = np.reshape(fiblets.bounds, (3, 2)), fiblets.promise
+    for chunk in chunks:
+        for column, (low, high) in zip(chunk.points.T, edges.astype(chunk.points.dtype), strict=True):
+            # No farther than coding can have moved them: bounds of a damaged file must not flatten its lines.
+            column[(column < low) & (column >= low - promise)] = low
+            column[(column > high) & (column <= high + promise)] = high
+        yield chunk
 
 
 def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:

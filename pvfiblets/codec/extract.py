@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .decompress import iter_chunks, select_streamlines
+from .decompress import held_in_bounds, iter_chunks, select_streamlines
 from .restrict import restrict
 
 if TYPE_CHECKING:
@@ -44,8 +44,8 @@ def extract(fiblets: FibletSet, ids: Any) -> FibletSet:
     FibletSet
         In memory. Streamlines without points stay, without points; groups hold those of their members that were chosen,
         and may be empty; parameters, affine, space and what the source dropped are those of the whole. None at all is a
-        set too, and can be saved. Its bounds are those of the decoded points, and so hold every point that is drawn;
-        an original may lie outside of them by the promise.
+        set too, and can be saved. Its bounds are those of the decoded points that lie in the whole's; an original may
+        lie outside of them by the promise.
 
     Raises
     ------
@@ -97,11 +97,12 @@ def exact_bounds(fiblets: FibletSet) -> Bounds:
     Returns
     -------
     tuple of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm, of the float64 points; zeros where there is no point.
+        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm, of the float64 points, brought into the bounds of the originals;
+        zeros where there is no point.
     """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     bare = replace(fiblets, per_point={}, per_streamline={}, groups={}, per_group={})
-    for chunk in iter_chunks(bare, dtype=np.float64):
+    for chunk in held_in_bounds(bare, iter_chunks(bare, dtype=np.float64)):
         if chunk.n_points:
             low, high = np.minimum(low, chunk.points.min(axis=0)), np.maximum(high, chunk.points.max(axis=0))
     if not (low <= high).all():
@@ -128,5 +129,5 @@ def save_as(fiblets: FibletSet, path: str | PathLike[str]) -> list[str]:
 
     registry.module_for(path, "write")  # before the decoding, not after
     chunks = fiblets.iter_chunks() if len(fiblets) else iter([fiblets.decompress()])
-    with gathered(chunks, Path(path).resolve().parent) as streamlines:
+    with gathered(held_in_bounds(fiblets, chunks), Path(path).resolve().parent) as streamlines:
         return write(path, streamlines)

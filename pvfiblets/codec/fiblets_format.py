@@ -10,6 +10,7 @@ from ..errors import FormatError
 from ..streamlines import Streamlines
 from .archive import check_members
 from .compress import compress
+from .decompress import held_in_bounds
 from .fibletset import FibletSet
 
 __all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
@@ -18,12 +19,14 @@ __all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     """Decode a whole file; see :func:`pvfiblets.read`."""
     del progress  # decoding outruns the bar
-    return FibletSet.open(path).decompress()
+    fiblets = FibletSet.open(path)
+    return next(held_in_bounds(fiblets, [fiblets.decompress()]))
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
-    yield from FibletSet.open(path).iter_chunks(max_points)
+    fiblets = FibletSet.open(path)
+    yield from held_in_bounds(fiblets, fiblets.iter_chunks(max_points))
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:

@@ -117,6 +117,11 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
         "voxel_order": voxel_order,
         "affine_recorded": bool(recorded),
     }
+    orientation = fields["image_orientation_patient"].astype(np.float64)
+    if np.isfinite(orientation).all() and orientation.any():
+        space["image_orientation_patient"] = tuple(orientation.tolist())
+    if original := fields["pad2"].decode("latin-1").strip("\0 "):
+        space["original_voxel_order"] = original
     return affine, to_ras, space
 
 
@@ -148,6 +153,29 @@ def trackvis_to_ras(
     move = orient.ornt_transform(orient.axcodes2ornt(voxel_order), orient.axcodes2ornt(orient.aff2axcodes(affine)))
     matrix: NDArray[np.float64] = affine @ orient.inv_ornt_aff(move, dimensions) @ to_voxel
     return matrix
+
+
+def along_affine(dimensions: Any, voxel_order: str, affine: NDArray[np.float64]) -> tuple[int, ...]:
+    """Voxels along each axis of the affine's matrix, of those along the axes of a header's voxel order.
+
+    Parameters
+    ----------
+    dimensions : (3,) int
+    voxel_order : str
+        Such as ``"LPS"``.
+    affine : (4, 4) array
+        Voxel to RAS+ mm.
+    """
+    from nibabel import orientations as orient
+
+    axes = orient.aff2axcodes(affine)
+    if None in axes:
+        return tuple(int(n) for n in dimensions)
+    move = orient.ornt_transform(orient.axcodes2ornt(tuple(voxel_order)), orient.axcodes2ornt(axes))
+    moved = [1, 1, 1]
+    for n, to in zip(dimensions, move[:, 0], strict=True):
+        moved[int(to)] = int(n)
+    return tuple(moved)
 
 
 def _names(path: str, position: int, table: Any, total: int, rest: str) -> dict[str, slice]:

@@ -24,7 +24,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     """Write a trk file, version 2, little-endian (see :func:`pvfiblets.formats.write`).
 
     The format holds float32 only. ``affine`` and ``space`` give the geometry; what `space` lacks
-    follows from the affine.
+    follows from the affine. An affine that was not recorded where the streamlines come from is not
+    recorded here either: such a file means the identity.
 
     Raises
     ------
@@ -66,15 +67,20 @@ def _header(streamlines: Streamlines) -> tuple[Any, Array]:
     header = np.zeros((), header_2_dtype.newbyteorder("<"))
     for name, value in TrkFile.create_empty_header(endianness="little").items():
         header[name] = value
-    sizes = space.get("voxel_sizes", np.sqrt((affine[:3, :3] ** 2).sum(axis=0)))
+    sizes = np.asarray(space.get("voxel_sizes", np.sqrt((affine[:3, :3] ** 2).sum(axis=0))))
+    if sizes.shape != (3,) or not (np.isfinite(sizes).all() and (sizes > 0).all()):
+        raise ValueError(f"space['voxel_sizes'] is {sizes.tolist()}; three positive numbers (mm) are needed")
     header["voxel_sizes"] = sizes
     dimensions = np.asarray(space.get("dimensions", (1, 1, 1)))
-    if (dimensions > 32767).any() or (dimensions < 0).any():
-        raise ValueError(f"dimensions {dimensions.tolist()} exceed the format's 0 to 32767")
+    if dimensions.shape != (3,) or (dimensions > 32767).any() or (dimensions < 0).any():
+        raise ValueError(f"dimensions {dimensions.tolist()} exceed the format's three numbers of 0 to 32767")
     header["dimensions"] = dimensions
     voxel_order = space.get("voxel_order", "".join(axes))
     header["voxel_order"] = voxel_order.encode("ascii")
-    header["voxel_to_rasmm"] = affine
+    header["image_orientation_patient"] = space.get("image_orientation_patient", 0.0)
+    header["pad2"] = space.get("original_voxel_order", "").encode("latin-1")
+    recorded = space.get("affine_recorded", True) or not np.array_equal(affine, np.eye(4))
+    header["voxel_to_rasmm"] = affine if recorded else 0.0
     # From the header's own rounded numbers: a reader has nothing else to go by.
     to_ras = trackvis_to_ras(header["voxel_sizes"].astype(np.float64), dimensions, voxel_order, affine)
     return header, np.linalg.inv(to_ras)

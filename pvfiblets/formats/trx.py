@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import finite, without_rows
+from pvfiblets.formats.trk_header import along_affine
 from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
 from pvfiblets.whole_files import replacing
@@ -297,6 +298,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
             row = values.reshape(1, -1)
             arrays[_entry(f"dpg/{_checked(group)}/{name}", row, name)] = row
     dimensions = streamlines.space.get("dimensions", (1, 1, 1))
+    if order := streamlines.space.get("voxel_order"):
+        dimensions = along_affine(dimensions, order, streamlines.affine)
     header = {
         "DIMENSIONS": [int(d) for d in dimensions],
         "VOXEL_TO_RASMM": streamlines.affine.tolist(),

@@ -11,6 +11,7 @@ from pvfiblets.plotting.fiblets.sources import as_fiblets
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.query.density_map import DensityMap
 
@@ -48,7 +49,7 @@ class FibletsAccessor:
     def compress(
         self,
         *,
-        per_point: Iterable[str] = (),
+        per_point: PerPoint | Iterable[str] = (),
         max_error: float | None = None,
         progress: bool = False,
         **options: Any,
@@ -57,8 +58,8 @@ class FibletsAccessor:
 
         Parameters
         ----------
-        per_point : iterable of str
-            Point data arrays to keep.
+        per_point : iterable of str, or {'all', 'fit', 'none'}
+            Point data arrays to keep; 'fit': in their order, each that still fits into 16 bytes a point.
         max_error : float, optional
             Greatest distance (mm) between a given and a decompressed point.
         progress : bool, default: False

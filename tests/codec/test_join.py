@@ -21,11 +21,11 @@ def test_parts_of_one_set_keep_every_bit(order: str, tmp_path: Path) -> None:
     both = whole[first] + whole[second]
     wanted = whole.decompress(np.concatenate([first, second]), dtype=np.float64)
     wanted.dropped = {"lost": 4}
-    assert_equal(both, wanted)
+    assert_equal(both, wanted, both)
     assert both.parameters == whole.parameters
     assert both.dropped == {"lost": 4}
     both.save(tmp_path / "a.fiblets")
-    assert_equal(pf.FibletSet.open(tmp_path / "a.fiblets"), wanted)
+    assert_equal(pf.FibletSet.open(tmp_path / "a.fiblets"), wanted, both)
 
 
 def test_more_than_a_page_of_fiblets() -> None:
@@ -51,7 +51,7 @@ def test_other_sets_are_coded_again_within_the_promise() -> None:
 def test_nothing_and_gaps() -> None:
     whole = pf.compress(with_groups(), per_point=["height"])
     assert pf.FibletSet.concatenate([whole]) is whole
-    assert_equal(whole[:0] + whole[:3], whole.decompress([0, 1, 2], dtype=np.float64))
+    assert_equal(whole[:0] + whole[:3], whole.decompress([0, 1, 2], dtype=np.float64), whole)
     assert len(whole[:0] + whole[:0]) == 0
     with pytest.raises(ValueError, match="no set to concatenate"):
         pf.FibletSet.concatenate([])

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.query.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
 
+if TYPE_CHECKING:
+    from pvfiblets.codec.compress import PerPoint
+
 CODING_ERROR = "coding_error"
 Colours: TypeAlias = str | np.ndarray | VolumeSource | Distance | None
 
@@ -29,7 +32,7 @@ def as_fiblets(
     source: Any,
     *,
     scalars: Any = None,
-    per_point: Iterable[str] = (),
+    per_point: PerPoint | Iterable[str] = (),
     max_error: float | None = None,
     progress: bool = False,
     rgb: bool | None = None,
@@ -44,8 +47,9 @@ def as_fiblets(
     scalars : str, array or volume, optional
         If this names, or is, per-point data of ``source``, that is kept; for volumes see
         :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
-    per_point : iterable of str
-        Further per-point arrays to keep, for a later change of the actor's ``scalars``.
+    per_point : iterable of str, or {'all', 'fit', 'none'}
+        Further per-point arrays to keep, for a later change of the actor's ``scalars``, as in
+        :func:`pvfiblets.compress`.
     max_error : float, optional
         Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
     progress : bool, default: False
@@ -86,7 +90,10 @@ def as_fiblets(
     streamlines = as_streamlines(source)
     if not len(streamlines):
         warnings.warn("the source holds no streamlines: nothing is drawn", UserWarning, stacklevel=6)
-    keep = list(per_point)
+    from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
+
+    names = per_point if isinstance(per_point, str) else tuple(per_point)
+    keep = list(choose_per_point(streamlines, names, options.get("per_point_bits", 8)))
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
             keep.append(scalars)
@@ -103,8 +110,6 @@ def as_fiblets(
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
             keep.append(UNNAMED)
             scalars = UNNAMED
-    from pvfiblets.codec.compress import compress  # what is compressed already needs no compiler
-
     fiblets = compress(
         streamlines,
         max_error=max_error,
