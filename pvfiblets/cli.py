@@ -265,7 +265,7 @@ def _serve(parser: argparse.ArgumentParser) -> None:
         "only this machine can connect, and must show a token that is printed to the terminal."
     )
     add = parser.add_argument
-    add("paths", metavar="FILE", nargs="*", help="tractograms of any format")
+    add("paths", metavar="FILE", nargs="*", help="tractograms of any format; a .tsf file colours the one before it")
     add("--volume", action="append", default=[], metavar="F", help="a volume beside them; may be given several times")
     add("--mesh", action="append", default=[], metavar="F", help="a mesh beside them; may be given several times")
     add("--demo", action="store_true", help="open a made-up tractogram")
@@ -326,7 +326,8 @@ def _scene(parser: argparse.ArgumentParser) -> None:
         "--view", choices=VIEWS, default="oblique", help="from where (default: oblique; coronal is seen from the front)"
     )
     parser.add_argument(
-        "--scalars", metavar="NAME", help="orientation, length, curvature, arc_length or an array of the file"
+        "--scalars", metavar="NAME", help="orientation, length, curvature, arc_length, an array of the file, or a file "
+        "of values beside it: .tsf, .npy, .txt, .csv",
     )
     parser.add_argument("--color", help="one colour for all, such as white or #ff8800")
     parser.add_argument("--cmap", help="colour map, such as viridis")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -16,7 +17,7 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Lines", "flat", "gather", "joined"]
+__all__ = ["Lines", "flat", "gather", "joined", "with_values"]
 
 Ints = npt.NDArray[np.int64]
 
@@ -264,6 +265,37 @@ def _chains(before: Ints) -> tuple[Ints, Ints]:
             break
         before = np.where(ring & (least == own), own, before)
     return root, place
+
+
+def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, str]:
+    """Return the lines of a source with the values of a file, and what these are called.
+
+    Parameters
+    ----------
+    source : Any
+        As :func:`gather` takes it; it stays as it is.
+    path : str or PathLike
+        ``.tsf``, ``.npy``, ``.txt`` or ``.csv``; see :mod:`pvfiblets.formats.attachments`.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, or its counts fit neither points nor lines.
+    """
+    from pvfiblets.formats import attachments
+
+    if isinstance(source, Streamlines):
+        lines = source[:]
+    elif hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
+        lines = source.decompress()
+    else:
+        found = gather(source, keep_single=True)
+        if found.order is not None:
+            raise TypeError(f"{path}: values of a file are for whole lines, and this source lists segments; read them")
+        points, columns = found.points[found.ids], {k: v[found.ids] for k, v in found.point_data.items()}
+        lines = Streamlines(points, found.offsets, columns, found.line_data)
+    attachments.attach(lines, path)
+    return lines, attachments.name_of(path)
 
 
 def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:

@@ -40,13 +40,50 @@ SUFFIXES = (".tsf", ".npy", ".txt", ".csv")
 
 def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None = None) -> str:
     """Add a file's values to `streamlines` (see :func:`pvfiblets.formats.attach`)."""
-    text = fspath(path)
+    where, values = values_for(path, streamlines.counts)
+    getattr(streamlines, where)[name_of(path) if name is None else name] = values
+    return where
+
+
+def is_values_file(what: Any, held: Any = None) -> bool:
+    """Whether something is the path of a file of values, by its suffix, and no name of an array that `held` has."""
+    if not isinstance(what, (str, PathLike)) or Path(what).suffix.lower() not in SUFFIXES:
+        return False
+    return not any(what in getattr(held, part, ()) for part in ("per_point", "per_streamline"))
+
+
+def name_of(path: str | PathLike[str]) -> str:
+    """Return what values of a file are called: its name without the suffix."""
+    return Path(path).stem
+
+
+def values_for(path: str | PathLike[str], counts: NDArray[np.int64]) -> tuple[str, Array]:
+    """Read the values of a file for streamlines of so many points.
+
+    Parameters
+    ----------
+    path : str or PathLike
+    counts : (n_streamlines,) int64
+        Points of each streamline.
+
+    Returns
+    -------
+    where : str
+        ``"per_point"`` or ``"per_streamline"``.
+    values : (n_points[, k]) or (n_streamlines[, k]) array
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, or its counts fit neither points nor streamlines.
+    UnknownFormatError
+        If it has another suffix.
+    """
+    text = fspath(Path(path).expanduser())
     suffix = Path(text).suffix.lower()
-    key = name if name is not None else Path(text).name[: -len(suffix)]
     if suffix == ".tsf":
-        streamlines.per_point[key] = _scalars_of(streamlines, text)
-        return "per_point"
-    return _place(streamlines, text, key, _read_rows(text, suffix))
+        return "per_point", _scalars_of(counts, text)
+    return _place(counts, text, _read_rows(text, suffix))
 
 
 def read_values(path: str | PathLike[str]) -> Array:
@@ -82,24 +119,21 @@ def _read_rows(path: str, suffix: str) -> Array:
     raise UnknownFormatError(f"{path}: values can be attached from {', '.join(SUFFIXES)}, not {suffix!r}")
 
 
-def _place(streamlines: Streamlines, path: str, key: str, values: Array) -> str:
-    if values.ndim == 2 and 1 in values.shape:
-        fits = (len(streamlines), streamlines.n_points)
-        # A row becomes a column, unless it is the one row of a single streamline or point.
-        if values.shape[1] == 1 or (len(values) not in fits and values.shape[1] in fits):
-            values = values.reshape(-1)
+def _place(counts: NDArray[np.int64], path: str, values: Array) -> tuple[str, Array]:
+    fits = len(counts), int(counts.sum())
+    # A row becomes a column, unless it is the one row of a single streamline or point.
+    wide = values.ndim == 2 and len(values) == 1 and 1 not in fits and values.shape[1] in fits
+    if wide or values.shape[1:] == (1,):
+        values = values.reshape(-1)
     n = len(values) if values.ndim else 0
-    if n == len(streamlines) and values.ndim:
-        streamlines.per_streamline[key] = values
-        return "per_streamline"
-    if n == streamlines.n_points and values.ndim:
-        streamlines.per_point[key] = values
-        return "per_point"
+    for where, rows in zip(("per_streamline", "per_point"), fits, strict=True):
+        if n == rows and values.ndim:
+            return where, values
     raise FormatError(
         path,
         None,
         f"values of shape {values.shape}",
-        f"{len(streamlines)} rows (one per streamline) or {streamlines.n_points} (one per point)",
+        f"{fits[0]} rows (one per streamline) or {fits[1]} (one per point)",
     )
 
 
@@ -142,20 +176,20 @@ def write_scalars(path: str | PathLike[str], streamlines: Streamlines, name: str
     write_rows(path, MAGIC_SCALARS, streamlines, values[:, None], kind)
 
 
-def _scalars_of(streamlines: Streamlines, path: str) -> Array:
+def _scalars_of(wanted: NDArray[np.int64], path: str) -> Array:
     values, counts = read_scalars(path)
-    if np.array_equal(counts, streamlines.counts):
+    if np.array_equal(counts, wanted):
         return values
-    if len(counts) != len(streamlines):
-        found, expected = f"{len(counts)} streamlines", f"{len(streamlines)} as the tractogram has"
+    if len(counts) != len(wanted):
+        found, expected = f"{len(counts)} streamlines", f"{len(wanted)} as the tractogram has"
     else:
-        i = int(np.flatnonzero(counts != streamlines.counts)[0])
+        i = int(np.flatnonzero(counts != wanted)[0])
         found = f"{counts[i]} values in streamline {i}"
-        expected = f"{streamlines.counts[i]}, one for each of its points"
+        expected = f"{wanted[i]}, one for each of its points"
     at = offsets_from_counts(counts + 1)
     size = values.dtype.itemsize
     header = Data(path, MAGIC_SCALARS, 1).header
-    first = int(np.argmax(counts != streamlines.counts)) if len(counts) == len(streamlines) else 0
+    first = int(np.argmax(counts != wanted)) if len(counts) == len(wanted) else 0
     raise FormatError(path, header.data_position + int(at[first]) * size, found, expected)
 
 

@@ -97,12 +97,20 @@ class Source:
         Of a demo: streamlines, or voxels along a side.
     ids : Ids or None
         Only these streamlines of it.
+    values : tuple of str
+        Files with a number for each of its points or streamlines; these have the files' names.
     """
 
     path: str | None = None
     demo: str | None = None
     size: int = 0
     ids: Ids | None = None
+    values: tuple[str, ...] = ()
+
+    @property
+    def bare(self) -> Source:
+        """The same, whole and with no values but its own."""
+        return Source(self.path, self.demo, self.size)
 
 
 def as_volume_choice(source: Source) -> dict[str, Any]:

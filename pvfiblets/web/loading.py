@@ -9,7 +9,7 @@ import contextlib
 import itertools
 import tempfile
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +21,13 @@ from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
 
-__all__ = ["MESHES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
+__all__ = ["MESHES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf")
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
+
+VALUES = (".tsf",)
+"""Suffixes of files with values for the lines of another file."""
 
 _EITHER = (".vtk", ".vtp")
 _RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
@@ -149,7 +152,7 @@ class Files:
         if self.root is not None and not new:
             from pvfiblets.web.references import check_references
 
-            if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, ".json")):
+            if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, *VALUES, ".json")):
                 # Some formats name files that nobody here could find before their reader opens them.
                 raise UnknownFormatError(f"{found.name}: such files are not opened here; convert it to .vtp or .nii")
             check_references(found, [self.root, *self.allowed])
@@ -212,6 +215,21 @@ class Files:
         mesh = _mesh(place)
         watch("reading", 1.0)
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
+
+    def with_values(self, loaded: Loaded, paths: tuple[str, ...]) -> Loaded:
+        """Return a tractogram with the values of files more, under the files' names.
+
+        Raises
+        ------
+        FormatError, ValueError, OSError
+            If a file is damaged, has values for other streamlines, is outside of the root or not there.
+        """
+        from pvfiblets.plotting.fiblets.sources import with_values_of
+
+        data = loaded.data
+        for path in paths:
+            data = with_values_of(data, self.resolve(path))
+        return replace(loaded, source=replace(loaded.source, values=paths), data=data)
 
     def _lines(self, place: Path, source: Source, name: str, watch: Watch) -> Loaded:
         from pvfiblets.codec.convert import compress_file

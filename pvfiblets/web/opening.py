@@ -19,7 +19,7 @@ from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.document import LINES
-from pvfiblets.web.loading import MESHES, Cancelled
+from pvfiblets.web.loading import MESHES, VALUES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 PIECE = MEBIBYTE  # bytes of an upload at a time
 SESSION = ".json"
 PURPOSES = {
-    "": (*suffixes(), *VOLUMES, *MESHES, SESSION),
+    "": (*suffixes(), *VOLUMES, *MESHES, *VALUES, SESSION),
     "clip": MESHES,
     "region": (*MESHES, *LABELS),
 }
@@ -92,9 +92,14 @@ class FileActions(Actions):
         return True
 
     async def open(self, path: str, kind: str | None = None) -> bool:
-        """Open a file beside everything else; return whether it was, rather than cancelled."""
+        """Open a file beside everything else; return whether it was, rather than cancelled.
+
+        A file of values colours the chosen tractogram.
+        """
         app = self._app
         name = Path(path).name
+        if path.lower().endswith(VALUES):
+            return await self._attach(path)
         try:
             loaded = await self.beside(
                 name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel), "opening"
@@ -109,6 +114,26 @@ class FileActions(Actions):
         lines = [one.id for one in app.scene.layers if one.kind in LINES]
         if layer.kind in LINES or app.page.chosen not in lines:  # what is explored stays chosen
             app.page.chosen = layer.id
+        app.refresh()
+        return True
+
+    async def _attach(self, path: str) -> bool:
+        """Colour the chosen tractogram by a file of values, which is read beside everything else."""
+        app = self._app
+        name = Path(path).name
+        lines = [layer.id for layer in app.scene.layers if layer.kind in LINES]
+        if not lines:
+            raise ValueError(f"{name} holds values for the points of a tractogram; open that first")
+        target = app.page.chosen if app.page.chosen in lines else lines[-1]
+        try:
+            loaded = await self.beside(
+                name, lambda *_: app.scene.load_values(target, path), "reading", cancellable=False
+            )
+            layer = app.scene.attach(target, loaded)
+        except EXPECTED as error:
+            said = sentence(error).replace(f"{app.confined.root}{os.sep}", "")
+            raise ValueError(f"{name} was not opened: {said}") from error
+        app.say(f"{layer.name} is coloured by {name}.", "success")
         app.refresh()
         return True
 
@@ -245,7 +270,7 @@ class FileActions(Actions):
         from aiohttp import web
 
         app = self._app
-        known = (*suffixes(), *VOLUMES, *MESHES)
+        known = (*suffixes(), *VOLUMES, *MESHES, *VALUES)
         name = request.query.get("name", "")
         limit, size = app.options.upload, 0
         try:

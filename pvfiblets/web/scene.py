@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from pvfiblets.formats.attachments import name_of
 from pvfiblets.web import layers
 from pvfiblets.web.actors import add_actor, cut, filter_as, look_as, put_in_order, remove_actor, select_as, split_cuts
 from pvfiblets.web.cameras import Cameras
@@ -260,6 +261,25 @@ class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
     ) -> Layer:
         """Read a file and add a layer of it; see :meth:`load`."""
         return self.add(self.load(path, kind, progress, cancel))
+
+    def load_values(self, layer_id: str, path: str | Path) -> Loaded:
+        """Read a file of values for the streamlines of a layer, for :meth:`attach`; may run in a thread of its own."""
+        source = self._lines(layer_id).source
+        name = self.files.name(self.files.resolve(path))
+        values = tuple(dict.fromkeys([*source.values, name]))
+        twin = self.store.fork()
+        return twin.data(replace(self.layer(layer_id), source=replace(source, values=values), settings={}))
+
+    def attach(self, layer_id: str, loaded: Loaded) -> Layer:
+        """Give a layer the values that :meth:`load_values` read, and colour it by the last of them."""
+        layer = self._lines(layer_id)
+        name = name_of(loaded.source.values[-1])
+        with self.store.with_new(loaded):
+            checked = layers.check(layer.kind, "scalars", name, loaded.data)
+            settings = layers.changed(layer.kind, layer.settings, "scalars", checked, loaded.data)
+            changed = replace(layer, source=loaded.source, settings=settings)
+            self._change(changed, f"values {name} of {layer.name}")
+        return changed
 
     def load_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Loaded]:
         """Make tracts up, and a head around them, for :meth:`add_loaded_demo`; may run in a thread of its own."""

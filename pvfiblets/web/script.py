@@ -6,6 +6,7 @@ import keyword
 import re
 import textwrap
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
@@ -141,6 +142,8 @@ class _Writer:
         """Return Python of what a layer draws."""
         source = layer.source
         loaded = self._scene.data(layer)
+        if source.values and source.ids is None:
+            return self._whole(source, loaded.kept)
         if source.demo == "head":
             self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
             return f"brain_like({source.size})"
@@ -174,7 +177,7 @@ class _Writer:
 
     def _whole(self, source: Source, kept: tuple[str, ...]) -> str:
         """Return the name of the fiblets that a selection is a part of; they are made where they are not yet."""
-        whole = Source(source.path, source.demo, source.size)
+        whole = replace(source, ids=None)
         for layer in self._scene.state.layers:
             before = layer.kind == "tractogram" and layer.source == whole
             if before and any(line.startswith(f"{self._names[layer.id]} = ") for line in self._lines):
@@ -191,6 +194,9 @@ class _Writer:
             else:
                 made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}){keep})"
             self._lines += [f"{name} = {made}"]
+            if source.values:
+                self._imports.add("from pvfiblets.plotting.fiblets.sources import with_values_of")
+            self._lines += [f"{name} = with_values_of({name}, {self._file(path)})" for path in source.values]
         return self._wholes[whole]
 
     def _filters(self, name: str, layer: Layer) -> None:

@@ -48,6 +48,7 @@ VERSION = 1
 LARGEST = 64_000_000  # bytes of a file
 _MOST_LAYERS = 64
 _MOST_RUNS = 4_000_000
+_MOST_VALUES = 64
 _ID = re.compile(r"[a-z]+[0-9]{1,9}")
 
 
@@ -209,7 +210,8 @@ def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
 
 
 def _place_of(source: Source, path_of: Any) -> dict[str, Any]:
-    return {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
+    place = {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
+    return {**place, "values": [path_of(path) for path in source.values]} if source.values else place
 
 
 def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
@@ -300,8 +302,8 @@ class _Reading:
             return []
         mapping(setting, "scalars", ("volume",))
         source = _source_from_dict(setting["volume"], self.paths)
-        if source.ids is not None:
-            raise ValueError("a volume that colours lines has ids; volumes have no streamlines")
+        if source.ids is not None or source.values:
+            raise ValueError("a volume that colours lines has ids or values; volumes have no streamlines")
         self.store.colours(source, self.progress, self.cancel)
         return [(as_volume_choice(source), "volume")]
 
@@ -313,6 +315,8 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     if kind not in KINDS:
         raise ValueError(f"the kind of a layer is {shown(kind)}; choose one of {', '.join(KINDS)}")
     source = _source_from_dict(value["source"], paths)
+    if source.values and kind not in LINES:
+        raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms alone have")
     if (kind == "selection") != (source.ids is not None):
         raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
     visible = truth(value.get("visible", True), "visible")
@@ -343,16 +347,20 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
 
 
 def _source_from_dict(value: Any, paths: _Paths) -> Source:
-    mapping(value, "source", (), ("path", "demo", "size", "ids"))
+    mapping(value, "source", (), ("path", "demo", "size", "ids", "values"))
     ids = None if value.get("ids") is None else _ids(value["ids"], "ids")
+    values = value.get("values", [])
+    if not isinstance(values, list) or len(values) > _MOST_VALUES:
+        raise ValueError(f"values of a source is {shown(values)}; give a list of {_MOST_VALUES} paths at most")
+    held = tuple(paths(path) for path in values)
     if (value.get("path") is None) == (value.get("demo") is None):
         raise ValueError("a source has either a path or a demo")
     if value.get("path") is not None:
-        return Source(paths(value["path"]), ids=ids)
+        return Source(paths(value["path"]), ids=ids, values=held)
     if value["demo"] not in ("tracts", "head"):
         raise ValueError(f"demo is {shown(value['demo'])}; choose one of tracts, head")
     most = 100_000 if value["demo"] == "tracts" else 256
-    return Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most), ids=ids)
+    return Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most), ids=ids, values=held)
 
 
 def _clip_from_dict(value: Any, paths: _Paths) -> Clip:

@@ -65,7 +65,9 @@ class Store:
         kind = _family(layer.kind)
         key = kind, layer.source
         if key not in self.loaded:
-            loaded = self._read(kind, replace(layer.source, ids=None), progress, cancel)
+            loaded = self._read(kind, layer.source.bare, progress, cancel)
+            if layer.source.values:
+                loaded = self.files.with_values(loaded, layer.source.values)
             if layer.source.ids is not None:
                 ids, total = layer.source.ids, loaded.data.n_streamlines
                 if ids.highest >= total:
@@ -95,7 +97,7 @@ class Store:
         needed = set()
         for state in states:
             for kind, source in state.sources():
-                needed |= {(_family(kind), source), (_family(kind), replace(source, ids=None))}
+                needed |= {(_family(kind), source), (_family(kind), source.bare)}
         self.loaded = {key: loaded for key, loaded in self.loaded.items() if key in needed}
 
     def clear(self) -> None:

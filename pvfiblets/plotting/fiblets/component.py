@@ -86,6 +86,8 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             per-point data, or an array with one value per streamline or per point, or one colour
             (3 or 4 columns) per streamline. Vectors are mapped by their magnitude (``rgb``); words,
             one per streamline, are categories.
+            The path of a file with a number per point or per streamline is another choice: ``.tsf``
+            (MRtrix), ``.npy``, ``.txt``, ``.csv``; it is called by its name without the suffix.
             ``"coding_error"`` shows how far each point is from where it was, if ``source`` is not
             compressed yet; ``regions.Distance(…)`` how far it is from a region or position.
 

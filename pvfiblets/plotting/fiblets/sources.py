@@ -15,6 +15,7 @@ from pvfiblets import formats
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
@@ -44,8 +45,9 @@ def as_fiblets(
     ----------
     source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
         What to draw; also what :func:`pvfiblets.other_libraries.streamlines_of` takes.
-    scalars : str, array or volume, optional
-        If this names, or is, per-point data of ``source``, that is kept; for volumes see
+    scalars : str, path, array or volume, optional
+        If this names, or is, per-point data of ``source``, that is kept; so is what a file of values has for it
+        (:mod:`pvfiblets.formats.attachments`). For volumes see
         :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
     per_point : iterable of str, or {'all', 'fit', 'none'}
         Further per-point arrays to keep, for a later change of the actor's ``scalars``, as in
@@ -92,6 +94,9 @@ def as_fiblets(
         warnings.warn("the source holds no streamlines: nothing is drawn", UserWarning, stacklevel=6)
     from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
 
+    if is_values_file(scalars, streamlines):
+        formats.attach(streamlines, scalars)
+        scalars = name_of(scalars)
     names = per_point if isinstance(per_point, str) else tuple(per_point)
     keep = list(choose_per_point(streamlines, names, options.get("per_point_bits", 8)))
     if isinstance(scalars, str):
@@ -124,14 +129,15 @@ def as_fiblets(
 
 
 def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None) -> tuple[FibletSet, Colours]:
-    """Store ``scalars`` with the fiblets if they are an array with one number per point.
+    """Store ``scalars`` with the fiblets if they are an array with one number per point, or a file of values.
 
     Parameters
     ----------
     fiblets : FibletSet
         Stays as it is.
-    scalars : str or array or None
-        Anything but an array of ``n_points`` numbers, or rows of them, is passed through.
+    scalars : str or path or array or None
+        Anything but an array of ``n_points`` numbers, or rows of them, and the path of a file of values is passed
+        through.
     rgb : bool, optional
         As for :func:`as_fiblets`.
 
@@ -145,6 +151,8 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
     volume = as_volume(scalars)
     if volume is not None:
         return fiblets, volume
+    if is_values_file(scalars, fiblets):
+        return with_values_of(fiblets, scalars, rgb), name_of(scalars)
     if scalars is None or isinstance(scalars, str):
         return fiblets, scalars
     if isinstance(scalars, Distance):
@@ -157,6 +165,29 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
         return fiblets, values
     values = numbers_of_points(UNNAMED, values, rgb)
     return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
+
+
+def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool | None = None) -> FibletSet:
+    """Return a set that shares the arrays of another one and has the values of a file more, under the file's name.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+    path : str or PathLike
+        ``.tsf``, ``.npy``, ``.txt`` or ``.csv``; see :mod:`pvfiblets.formats.attachments`.
+    rgb : bool, optional
+        As for :func:`as_fiblets`.
+
+    Raises
+    ------
+    FormatError
+        If the file is damaged, or its counts fit neither points nor streamlines.
+    """
+    where, values = values_for(path, np.diff(fiblets.offsets()))
+    name = name_of(path)
+    if where == "per_streamline":
+        return replace(fiblets, per_streamline={**fiblets.per_streamline, name: values})
+    return with_stored(fiblets, name, numbers_of_points(name, values, rgb))
 
 
 def numbers_of_points(name: str, values: np.ndarray, rgb: bool | None) -> np.ndarray:

@@ -75,8 +75,9 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         scalars : str or array, optional
             What colours the lines, not their halos: the name of data of ``source``;
             ``"orientation"`` (the absolute value of the direction as red, green, blue),
-            ``"arc_length"``, ``"length"``; or an array with one number or one colour (3 or 4 columns;
-            floats with ``rgb``) per point or per line.
+            ``"arc_length"``, ``"length"``; an array with one number or one colour (3 or 4 columns;
+            floats with ``rgb``) per point or per line; or a file of numbers: ``.tsf``, ``.npy``,
+            ``.txt``, ``.csv``.
         filter_by : str or array, optional
             What ``threshold`` filters by: the name of numbers per point or line, ``"arc_length"``,
             ``"length"``, or an array. Where there is no number (NaN), nothing shows.

@@ -9,8 +9,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
+from pvfiblets.lines import with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
@@ -49,8 +51,9 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: 
     ----------
     source : Any
         A path, HaloLines, or what :func:`pvfiblets.halos.build.as_halo_lines` takes.
-    scalars, filter_by : str or array, optional
-        A name that is built in (`BUILT_IN`), data of the source, or an array for it.
+    scalars, filter_by : str, path or array, optional
+        A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
+        (:mod:`pvfiblets.formats.attachments`).
     rgb : bool, default: False
         Whether floats of three or four columns are colours.
 
@@ -61,6 +64,10 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: 
     if isinstance(source, HaloLines):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
     source = _read_lines(source)
+    if is_values_file(scalars, source):
+        source, scalars = with_values(source, scalars)
+    if is_values_file(filter_by, source):
+        source, filter_by = with_values(source, filter_by)
     stored, filters = (None if _computed(source, what) else what for what in (scalars, filter_by))
     try:
         lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)

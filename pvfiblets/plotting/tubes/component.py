@@ -82,8 +82,8 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         scalars : str or array, optional
             What colours the tubes: the name of data of ``source``; ``"radius"``, ``"arc_length"``,
             ``"length"``, or ``"orientation"`` (the absolute value of the direction as red, green,
-            blue); or an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
-            per point or per line.
+            blue); an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
+            per point or per line; or a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``.
         tangents : str or array, optional
             ``(n_points, 3)`` derivatives of the positions, or the name of such point data. By
             default they are found from the points.

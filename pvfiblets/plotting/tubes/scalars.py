@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.formats.attachments import is_values_file
+from pvfiblets.lines import with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
@@ -28,8 +30,9 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     ----------
     source : Any
         A path, or what :func:`pvfiblets.tubes.build.as_spline_tubes` takes.
-    scalars : str or array, optional
-        A name that is built in (`BUILT_IN`), data of the source, or an array for it.
+    scalars : str, path or array, optional
+        A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
+        (:mod:`pvfiblets.formats.attachments`).
     rgb : bool, default: False
         Whether floats of three or four columns are colours.
     **shape
@@ -45,6 +48,8 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     if isinstance(source, SplineTubes):
         return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
     source = _read(source)
+    if is_values_file(scalars, source):
+        source, scalars = with_values(source, scalars)
     if isinstance(scalars, str) and not _has(source, scalars):
         if scalars not in BUILT_IN:
             raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), _names(source), strict=True))))
