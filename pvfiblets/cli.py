@@ -181,8 +181,20 @@ def make_parser() -> argparse.ArgumentParser:
 
     gl = commands.add_parser(
         "gl",
-        help="say what this machine's OpenGL is, and which pipelines can draw with it",
-        description="List the driver, its limits, and every pipeline: available, or why not.",
+        help="say what this machine's OpenGL is, which pipelines can draw with it, and whether they draw right",
+        description="List the driver, its limits, and every pipeline: available, or why not. With --check, draw with "
+        "all of them, compare with the CPU, measure, and write one file to attach to a report of a bug; it ends with 1 "
+        "if anything differs or fails.",
+    )
+    gl.add_argument("--check", action="store_true", help="draw with everything that there is, and compare")
+    gl.add_argument(
+        "-o", "--output", default="pvfiblets-check.zip", metavar="FILE", help="of --check (default: %(default)s)"
+    )
+    gl.add_argument(
+        "--segments", type=positive, nargs="*", metavar="N", help="sizes to measure speed at (default: 1e6 1e7 1e8)"
+    )
+    gl.add_argument(
+        "--only", action="append", default=[], metavar="PART", help="parts of the check whose names begin like that"
     )
     _json(gl)
     gl.set_defaults(run="pvfiblets.cli_gl:gl")

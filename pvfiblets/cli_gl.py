@@ -1,7 +1,10 @@
-"""What ``pvfiblets gl`` does: say what this machine's OpenGL can draw with."""
+"""What ``pvfiblets gl`` does: say what this machine's OpenGL can draw with, and check that it draws right."""
 
 from __future__ import annotations
 
+import sys
+import tempfile
+from pathlib import Path
 from typing import Any
 
 from pvfiblets.cli_files import print_json
@@ -9,8 +12,10 @@ from pvfiblets.engine.capabilities import Capabilities, PipelineTable, pipelines
 from pvfiblets.engine.standalone import bare_context
 
 
-def gl(*, json: bool) -> None:
-    """Print the driver, its limits and every pipeline."""
+def gl(*, check: bool, output: str, segments: list[float] | None, only: list[str], json: bool) -> int:
+    """Print the driver, its limits and every pipeline, or check that all of them draw right."""
+    if check:
+        return _check(output=output, segments=segments, only=only, json=json)
     ctx = bare_context()
     try:
         with ctx:
@@ -21,6 +26,27 @@ def gl(*, json: bool) -> None:
         print_json(as_json(found, table))
     else:
         print(as_text(found, table))
+    return 0
+
+
+def _check(*, output: str, segments: list[float] | None, only: list[str], json: bool) -> int:
+    """Try everything, print a table, write one file, and return 1 if anything differs or fails."""
+    from pvfiblets.report import card_file
+    from pvfiblets.report.card_check import run_check
+    from pvfiblets.report.card_speed import SEGMENTS
+
+    def log(what: str) -> None:
+        print(f"{what} ...", file=sys.stderr, flush=True)
+
+    with tempfile.TemporaryDirectory(prefix="pvfiblets-check-", ignore_cleanup_errors=True) as folder:
+        found = run_check(Path(folder), SEGMENTS if segments is None else segments, log, only)
+        card_file.write(found, output)
+    if json:
+        print_json({"good": found.good, "opengl": found.opengl, "findings": [one.as_dict() for one in found.findings]})
+    else:
+        print(card_file.summary(found))
+        print(f"Wrote {output}; attach it to a report of a bug.")
+    return 0 if found.good else 1
 
 
 def as_json(found: Capabilities, table: PipelineTable) -> dict[str, Any]:

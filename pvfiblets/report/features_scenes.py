@@ -94,6 +94,11 @@ class Drawn:
     feature : Feature
     path : sequence of Camera
         The first is where the camera is before it flies.
+
+    Attributes
+    ----------
+    last : GBuffer
+        What the last picture was drawn into.
     """
 
     def __init__(self, ctx: Any, subject: Subject, feature: Feature, path: Sequence[Camera]) -> None:
@@ -101,6 +106,7 @@ class Drawn:
         self.style = replace(subject.style, **feature.style)
         self.renderer = subject.make(ctx, **feature.options)
         self.passes: Any = None
+        self.last: Any = None
         try:
             if feature.prepare is not None:
                 feature.prepare(self.renderer)
@@ -114,7 +120,7 @@ class Drawn:
 
     def _render(self, camera: Camera) -> None:
         view = View(camera.size, camera.model_view_projection, **self._feature.view)
-        buffer = self.renderer.render(view, self.style)
+        self.last = buffer = self.renderer.render(view, self.style)
         if self._feature.effect is not None:
             self._feature.effect(self, buffer, camera, view)
         self._ctx.finish()

@@ -1,0 +1,89 @@
+"""What a check of a graphics card finds: one line for each thing that was tried, in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+__all__ = ["BAD", "DIFFERS", "EMPTY", "FAILS", "MISSING", "SLOW", "WORKS", "Finding", "table", "verdict_of"]
+
+EMPTY = "empty"
+"""The figure that is 1 where a picture shows nothing at all."""
+WORKS, DIFFERS, SLOW, MISSING, FAILS = "works", "differs", "too slow", "missing", "fails"
+BAD = (DIFFERS, FAILS)
+"""Verdicts with which a check ends with 1."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was tried.
+
+    Attributes
+    ----------
+    part, feature : str
+        What it belongs to, and what it is.
+    verdict : str
+        One of ``'works'``, ``'differs'``, ``'too slow'``, ``'missing'`` and ``'fails'``.
+    note : str
+        Why, in a few words.
+    figures : dict
+        What was measured; errors are shares of 1 unless their name says otherwise.
+    limits : dict
+        What the figures may be at most.
+    ms : float or None
+        Of one picture, once all is compiled.
+    first_ms : float or None
+        Of the first picture, with compiling.
+    """
+
+    part: str
+    feature: str
+    verdict: str
+    note: str = ""
+    figures: dict[str, float] = field(default_factory=dict)
+    limits: dict[str, float] = field(default_factory=dict)
+    ms: float | None = None
+    first_ms: float | None = None
+
+    @property
+    def bad(self) -> bool:
+        """Whether it makes the check fail."""
+        return self.verdict in BAD
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values."""
+        return asdict(self)
+
+    @property
+    def words(self) -> str:
+        """The note, and figures that are above their limits, or else the worst beside its limit."""
+        names = [name for name in self.limits if name != EMPTY or self.figures[name]]
+        worst = sorted(names, key=lambda name: -self.figures[name] / max(self.limits[name], 1e-300))
+        above = [name for name in worst if not self.figures[name] <= self.limits[name]]
+        told = [f"{name} {_number(self.figures[name])} (at most {_number(self.limits[name])})"
+                for name in above or worst[:1]]  # fmt: skip
+        return "; ".join([self.note] * bool(self.note) + told)
+
+
+def verdict_of(figures: Mapping[str, float], limits: Mapping[str, float]) -> str:
+    """Say whether all figures are within their limits; NaN is not."""
+    return WORKS if all(figures[name] <= limit for name, limit in limits.items()) else DIFFERS
+
+
+def table(findings: Iterable[Finding]) -> str:
+    """Return all as a person reads them, one a line."""
+    rows = [("part", "what", "verdict", "ms", "")]
+    rows += [
+        (one.part, one.feature, one.verdict, "" if one.ms is None else f"{one.ms:,.1f}", one.words) for one in findings
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    lines = []
+    for row in rows:
+        cells = [row[column].ljust(widths[column]) for column in range(3)]
+        lines.append("  ".join([*cells, row[3].rjust(widths[3]), row[4]]).rstrip())
+    return "\n".join(lines)
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}"

@@ -1,0 +1,232 @@
+"""``pvfiblets gl --check``: what it finds on this driver, and that it finds faults, crashes and silence."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from pvfiblets.cli import main
+from pvfiblets.report import card_check, card_fiblets, card_file
+from pvfiblets.report.card_counts import counted
+from pvfiblets.report.card_findings import DIFFERS, FAILS, MISSING, WORKS, Finding, table
+from pvfiblets.report.card_lines import LineSamples, Shown
+from pvfiblets.report.card_scenes import tried
+from pvfiblets.report.culling_pictures import views
+from tests.engine.cells import clear_of, line_samples
+
+SIZE = (96, 72)
+
+
+@pytest.fixture(scope="module")
+def polylines():
+    """Smooth lines in a box of 60 mm."""
+    rng = np.random.default_rng(3)
+    t = np.linspace(-25.0, 25.0, 60)[:, None]
+    a, b, c = rng.normal(size=(3, 25, 3))
+    return [t * x / np.linalg.norm(x) + 0.004 * t**2 * y + 3 * z for x, y, z in zip(a, b, c, strict=True)]
+
+
+def camera(lines):
+    box = np.stack([np.concatenate(lines).min(0), np.concatenate(lines).max(0)], 1)
+    return views(box.ravel(), "far", 3.0, 1, SIZE)[0].model_view_projection
+
+
+def right_picture(samples):
+    """The nearest sample of each pixel."""
+    order = np.lexsort((samples.depth, samples.cell))
+    cell, first = np.unique(samples.cell[order], return_index=True)
+    of = order[first]
+    shape = SIZE[::-1]
+    fields = [np.zeros(shape, bool), np.ones(shape), np.zeros(shape, np.int64), np.zeros((*shape, 3)), np.zeros(shape)]
+    at = np.unravel_index(cell, shape)
+    for field, values in zip(
+        fields, (True, samples.depth[of], samples.streamline[of], samples.direction[of], samples.value[of]), strict=True
+    ):
+        field[at] = values
+    return Shown(*fields)
+
+
+@pytest.fixture(scope="module")
+def sampled(polylines):
+    values = [np.arange(len(line), dtype=float) for line in polylines]
+    return LineSamples.of(polylines, values, camera(polylines), SIZE)
+
+
+def test_a_right_picture_of_lines_has_no_wrong_pixel(sampled):
+    wrong = sampled.wrong(right_picture(sampled), values=True)
+    assert {name: int(mask.sum()) for name, mask in wrong.items()} == dict.fromkeys(wrong, 0)
+
+
+def test_each_fault_of_a_picture_of_lines_is_found(sampled):
+    picture = right_picture(sampled)
+    drawn = picture.there.sum()
+    half = np.indices(picture.there.shape).sum(0) % 16 < 8
+    faults = {
+        "lost": picture._replace(there=picture.there & half),
+        "line": picture._replace(streamline=np.where(half, picture.streamline, (picture.streamline + 7) % 25)),
+        "direction": picture._replace(direction=np.where(half[..., None], picture.direction, [[[0.0, 0.0, 1.0]]])),
+        "value": picture._replace(value=np.where(half, picture.value, picture.value + 12.0)),
+    }
+    for name, faulty in faults.items():
+        wrong = sampled.wrong(faulty, values=True)
+        assert wrong[name].sum() > 0.05 * drawn, name
+    nearer = picture._replace(depth=picture.depth - 0.05)
+    assert sampled.wrong(nearer)["line"].sum() > 0.8 * drawn
+
+
+def test_samples_lie_where_float64_projects_them(polylines, sampled):
+    """Of both ends and the middle of every segment, by the projection alone."""
+    matrix = camera(polylines)
+    cells = set(sampled.cell.tolist())
+    for line in polylines:
+        for points in (line, (line[1:] + line[:-1]) / 2.0):
+            clip = np.c_[points, np.ones(len(points))] @ matrix.T
+            x, y = ((clip[:, axis] / clip[:, 3] + 1.0) / 2.0 * SIZE[axis] for axis in (0, 1))
+            away = np.minimum.reduce([x % 1.0, 1.0 - x % 1.0, y % 1.0, 1.0 - y % 1.0])
+            for column, row in np.stack([x, y], 1)[away > 0.3].astype(int):
+                assert int(row * SIZE[0] + column) in cells
+
+
+def test_lines_are_counted_by_the_rule(polylines):
+    matrix = camera(polylines)
+    samples, doubtful = line_samples(polylines, matrix, SIZE)
+    rows = np.concatenate(samples)
+    expected = np.zeros(SIZE[::-1])
+    np.add.at(expected, (rows[:, 1].astype(int), rows[:, 0].astype(int)), 1)
+    clear = clear_of(doubtful, SIZE)
+    assert clear.mean() > 0.5
+    assert (counted(polylines, matrix, SIZE) == expected)[clear].all()
+    with pytest.raises(ValueError, match="a point lies outside the view volume"):
+        counted([polylines[0] * 100.0], matrix, SIZE)
+
+
+def test_lines_that_are_not_where_they_should_be_differ(gl, monkeypatch):
+    """The whole way, with a reference that is a millimetre aside."""
+    about = card_fiblets.brain()
+    moved = about._replace(lines=[line + [1.0, 0.0, 0.0] for line in about.lines])
+    monkeypatch.setattr(card_fiblets, "brain", lambda: moved)
+    scenes = dict(card_fiblets.fiblets_part(gl, "geometry"))
+    finding, pictures = tried(gl, "fiblets geometry", "thin lines", scenes["thin lines, culling none"])
+    assert finding.verdict == DIFFERS
+    assert set(pictures) == {"drawn", "wrong"}
+    assert "line " in finding.words
+    monkeypatch.setattr(card_fiblets, "brain", lambda: about)
+    finding, pictures = tried(gl, "fiblets geometry", "thin lines", scenes["thin lines, culling none"])
+    assert (finding.verdict, dict(pictures)) == (WORKS, {})
+
+
+CHILD = """
+import json, os, signal, sys, time
+part, folder, after = sys.argv[1], sys.argv[2], (sys.argv[3:] or [""])[0]
+features = ["a", "dies", "b", "hangs", "c", "raises"]
+for name in features[features.index(after) + 1 if after else 0:]:
+    print("a driver's own words")
+    print(json.dumps({"begin": name}), flush=True)
+    if name == "dies":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if name == "hangs":
+        time.sleep(600)
+    if name == "raises":
+        print("cannot go on", file=sys.stderr)
+        sys.exit(7)
+    told = {"part": part, "feature": name, "verdict": "works"}
+    print(json.dumps({"finding": told, "pictures": []}), flush=True)
+"""
+
+
+def test_a_driver_that_dies_or_hangs_takes_one_feature_along(tmp_path):
+    found = card_check.run_check(
+        tmp_path, (), lambda _: None, ["halos"], 10.0, command=[sys.executable, "-c", CHILD.replace("600", "60")]
+    )
+    told = [(one.feature, one.verdict, one.note) for one in found.findings if one.part == "halos"]
+    assert told == [
+        ("a", WORKS, ""),
+        ("dies", FAILS, "ended by SIGSEGV"),
+        ("b", WORKS, ""),
+        ("hangs", FAILS, "no answer within 10 s"),
+        ("c", WORKS, ""),
+        ("raises", FAILS, "ended with 7: cannot go on"),
+    ]
+    assert not found.good
+
+
+def test_no_opengl_is_one_finding(tmp_path, monkeypatch):
+    monkeypatch.setenv("GLCONTEXT_LINUX_LIBEGL", "libnothing.so")
+    monkeypatch.setenv("GLCONTEXT_LINUX_LIBGL", "libnothing.so")
+    found = card_check.run_check(tmp_path, (), lambda _: None)
+    (one,) = found.findings
+    assert (one.part, one.verdict) == ("OpenGL", FAILS)
+    assert one.note.startswith("no OpenGL 3.2 or later could be started")
+    assert "1 of 1 things differ or fail: OpenGL" in card_file.summary(found)
+
+
+def test_the_file_holds_table_facts_and_pictures(tmp_path):
+    picture = np.random.default_rng(0).integers(0, 256, (5, 7, 3)).astype(np.uint8)
+    np.save(tmp_path / "one.npy", picture)
+    np.save(tmp_path / "two.npy", picture[..., 0] > 99)
+    one = Finding("halos", "lines", DIFFERS, figures={"x": 2.0}, limits={"x": 1.0}, ms=3.21)
+    other = replace(one, feature="points", verdict=MISSING, note="no points", limits={})
+    check = card_check.CardCheck({"renderer": "A card", "driver": "1.0"}, [one, other])
+    check.pictures["halos: lines"] = [tmp_path / "one.npy", tmp_path / "two.npy"]
+    card_file.write(check, tmp_path / "check.zip")
+    with zipfile.ZipFile(tmp_path / "check.zip") as archive:
+        assert archive.testzip() is None
+        shown = np.asarray(Image.open(io.BytesIO(archive.read("one.png"))))
+        mask = np.asarray(Image.open(io.BytesIO(archive.read("two.png"))))
+        told = json.loads(archive.read("check.json"))
+        text = archive.read("check.txt").decode()
+    np.testing.assert_array_equal(shown[::-1], picture)
+    np.testing.assert_array_equal(mask[::-1, :, 1], np.where(picture[..., 0] > 99, 255, 0))
+    assert [Finding(**row) for row in told["findings"]] == [one, other]
+    assert "x 2 (at most 1)" in text
+    assert "1 of 2 things differ or fail: halos: lines." in text
+    assert table([one, other]) in text
+
+
+def test_the_command_checks_this_driver(gl, tmp_path, capfd):
+    target = tmp_path / "check.zip"
+    assert main(["gl", "--check", "--only", "halos", "--segments", "-o", str(target)]) == 0
+    text = capfd.readouterr().out
+    assert gl.info["GL_RENDERER"] in text
+    for name in ("lines", "tapered ends", "bent halos", "points"):
+        assert any(line.startswith("halos") and f" {name} " in line and WORKS in line for line in text.splitlines())
+    assert "work, but for what is missing or too slow" in text
+    assert zipfile.is_zipfile(target)
+
+
+@pytest.mark.parametrize(
+    "part",
+    ["spline tubes", *(pytest.param(p, marks=pytest.mark.exhaustive) for p in ("fiblets compute", "volumes", "features"))],
+)
+def test_a_part_works_and_needs_no_vtk(gl, tmp_path, part):
+    assert gl.info
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(('vtk', 'vtkmodules', 'pyvista', 'matplotlib', 'nibabel')));"
+        "from pathlib import Path; from pvfiblets.report.card_part import main; main(sys.argv[1], Path(sys.argv[2]))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, part, str(tmp_path)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    rows = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{"finding"')]
+    assert len(rows) >= 7
+    assert {row["finding"]["verdict"] for row in rows} == {WORKS}, [row for row in rows if row["pictures"]]
+
+
+def test_speed_is_measured_on_brains_of_a_size(gl, tmp_path):
+    from pvfiblets.report.card_speed import make_brains, named, speed_part
+
+    make_brains((2e4, 5e4), tmp_path)
+    found = [tried(gl, "speed compute", name, make)[0] for name, make in speed_part(gl, "compute", tmp_path)]
+    assert [one.feature for one in found] == [named(2e4), named(5e4)]
+    assert all(one.verdict == WORKS and one.ms > 0.0 for one in found)
+    rate = found[1].figures["M segments a second"]
+    assert rate * found[1].ms == pytest.approx(50.0, rel=0.3)
