@@ -113,12 +113,13 @@ class Drawn:
             if feature.passes is not None:
                 self.passes = feature.passes(ctx)
             for camera in self._path:  # what is compiled or measured once is so then
-                self._render(camera)
+                self.render(camera)
         except BaseException:
             self.release()
             raise
 
-    def _render(self, camera: Camera) -> None:
+    def render(self, camera: Camera) -> None:
+        """Draw one picture, and wait for it."""
         view = View(camera.size, camera.model_view_projection, **self._feature.view)
         self.last = buffer = self.renderer.render(view, self.style)
         if self._feature.effect is not None:
@@ -129,7 +130,7 @@ class Drawn:
         """Fly back, or forth again."""
         self._path.reverse()
         for camera in self._path[1:]:
-            self._render(camera)
+            self.render(camera)
 
     @property
     def nbytes(self) -> int:
