@@ -77,6 +77,8 @@ pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))
 import nibabel, numpy as np
 pvfiblets.compress_file("big.tck", "brain.fiblets")
+from pvfiblets.formats.attachments import write_scalars
+write_scalars("brain_fa.tsf", brain_streamlines(400, seed=1, fa=True), "fa")
 image = nibabel.Nifti1Image(np.random.default_rng(0).random((8, 8, 8)), np.diag([20.0, 20.0, 20.0, 1.0]))
 atlas = nibabel.Nifti1Image(np.ones((8, 8, 8), np.int16), image.affine)
 """,

@@ -204,7 +204,10 @@ def test_the_command_checks_this_driver(gl, tmp_path, capfd):
 
 @pytest.mark.parametrize(
     "part",
-    ["spline tubes", *(pytest.param(p, marks=pytest.mark.exhaustive) for p in ("fiblets compute", "volumes", "features"))],
+    [
+        "spline tubes",
+        *(pytest.param(part, marks=pytest.mark.exhaustive) for part in ("fiblets compute", "volumes", "features")),
+    ],
 )
 def test_a_part_works_and_needs_no_vtk(gl, tmp_path, part):
     assert gl.info
