@@ -11,19 +11,20 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Generic, TypeVar, cast
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
-from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
-from pvfiblets.mappers import resolve
 from pvfiblets.mappers.active_renderer import ActiveRenderer
+from pvfiblets.mappers.attached import Attached
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.depth_peeling import layers_of, with_layers
+from pvfiblets.mappers.connected import Connected
+from pvfiblets.mappers.depth_peeling import layers_of
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
@@ -35,7 +36,7 @@ from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
 
-VTK_SURFACE = 2
+_ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
 SMOOTHED_BESIDE = 3.0
 """Pixels beside lines that may take a share of them."""
@@ -43,19 +44,19 @@ SMOOTHED_BESIDE = 3.0
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
+class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
 
-    Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
-    alone is not enough. One mapper serves one actor, in any number of renderers of one window; another
-    window needs another mapper and actor, as with all of VTK's.
+    ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
+    renderers of one window; another window needs another mapper and actor, as with all of VTK's.
 
     Parameters
     ----------
     drawn : Any
-        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``.
-    colouring : Colouring
-        Where the colours come from.
+        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``. None for what is connected by
+        ``SetInputConnection`` or ``SetInputData``, which goes before what was given whenever it is called.
+    colouring : Colouring, optional
+        Where the colours come from; None leaves them to ``vtkMapper``'s own settings and to the actor's property.
     options : Options
         What can be chosen about drawing.
     renderer_factory : callable
@@ -82,7 +83,7 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self,
         drawn: Any,
         *,
-        colouring: Colouring,
+        colouring: Colouring | None,
         options: AnyOptions,
         renderer_factory: Callable[..., Any],
         **made_with: Any,
@@ -90,17 +91,17 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._factory = renderer_factory
         self._options = options
         self._made_with = made_with
-        self._actor = weak(None)
-        self._property = weak(None)
-        self._observer = 0
+        self._init_actor()
         self._active = ActiveRenderer()
-        self._installed: tuple[resolve.Replacement, ...] = ()
         self._effects: dict[str, MapperEffect] = {}
         self._error: BaseException | None = None
-        self._colouring = colouring
-        self.SetScalarVisibility(False)
+        self._follows = colouring is None
+        self._colouring = Colouring("solid") if colouring is None else colouring
+        self._init_input()
+        self.SetScalarVisibility(self._follows)
         self._put(drawn)
-        self.AddObserver("UpdateShaderEvent", _update_shader)
+        for event, observer in _OBSERVERS.items():
+            self.AddObserver(event, observer)
 
     @property
     def _has_edges(self) -> bool:
@@ -109,10 +110,16 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     # What is drawn, and how
 
-    def _put(self, drawn: Any) -> None:
+    def _put(self, drawn: Any, colouring: Colouring | None = None) -> None:
         """Draw something else from the next frame on; refused while the colouring is for another number."""
-        self._colouring.check_count(drawn.n_streamlines)
-        self._drawn = drawn
+        wanted = self._colouring if colouring is None else colouring
+        if drawn is not None:
+            wanted.check_count(drawn.n_streamlines)
+            if self._input is not None and not self._input.executing:
+                self._input = None
+        self._drawn, self._colouring = drawn, wanted
+        if colouring is not None:
+            self._install()
         self._set_proxy()
 
     @property
@@ -120,12 +127,22 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         """Whether there is nothing to draw, and so no bounds."""
         return not (self._drawn.n_streamlines and self._drawn.n_points)
 
+    @property
+    def _extent(self) -> Any:
+        """Bounds of what is drawn, mm."""
+        return thickened(self._drawn.bounds, self._thickness)
+
     def _set_proxy(self) -> None:
         """Give VTK its geometry; setting it makes VTK build the shaders anew."""
         self._layers = layers_of(self._effects.values())
         self._thickness = thickness_of(self._effects.values())
-        bounds = None if self._empty else thickened(self._drawn.bounds, self._thickness)
-        self.SetInputData(proxy_polydata(bounds, self._layers))
+        bounds = None if self._drawn is None or self._empty else self._extent
+        self._proxy = proxy_polydata(bounds, self._layers)
+        if self._input is None:
+            if self._drawn is not None:
+                self._connect(self._proxy)
+        elif not self._input.executing:
+            self._input.Modified()
 
     @property
     def options(self) -> AnyOptions:
@@ -144,8 +161,9 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @colouring.setter
     def colouring(self, colouring: Colouring) -> None:
-        colouring.check_count(self._drawn.n_streamlines)
-        self._colouring = colouring
+        if self._drawn is not None:
+            colouring.check_count(self._drawn.n_streamlines)
+        self._colouring, self._follows = colouring, False
         self._install()
         self._actor_modified()
 
@@ -166,72 +184,6 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._install()
         self._actor_modified()
 
-    # The actor
-
-    @property
-    def actor(self) -> vtkActor | None:
-        """The actor that this mapper was attached to, if it still exists."""
-        return cast("vtkActor | None", self._actor.Get())
-
-    def attach(self, actor: vtkActor) -> None:
-        """Make this the mapper of an actor and add the shader pieces to it.
-
-        Parameters
-        ----------
-        actor : vtkActor
-            Shader replacements of others stay. Its representation stays at surface whatever a key or a
-            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
-        """
-        self.detach()
-        self._actor = weak(actor)
-        actor.SetMapper(self)
-        _keep_surface(actor.GetProperty(), "")
-        self._property = weak(actor.GetProperty())
-        self._observer = actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
-        self._install()
-
-    def detach(self) -> None:
-        """Take the shader pieces out of the actor; it then needs another mapper."""
-        actor = self.actor
-        if actor is not None:
-            resolve.uninstall(actor.GetShaderProperty(), self._installed)
-        if self._property.Get() is not None:
-            self._property.Get().RemoveObserver(self._observer)
-        self._property = weak(None)
-        self._installed = ()
-        self._actor = weak(None)
-
-    def _actor_modified(self) -> None:
-        """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
-        if self.actor is not None:
-            self.actor.Modified()
-
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve shader in use."""
-        effects = frozenset().union(*(effect.features for effect in self._effects.values()))
-        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | effects))
-
-    def _install(self) -> None:
-        """Bring the actor's shader pieces and its translucency up to date."""
-        actor = self.actor
-        if actor is None:
-            return
-        wanted = resolve.assemble(self.features)
-        if wanted != self._installed:
-            resolve.uninstall(actor.GetShaderProperty(), self._installed)
-            resolve.install(actor.GetShaderProperty(), wanted)
-            self._installed = wanted
-        translucent = self._translucent
-        if translucent != actor.GetForceTranslucent():
-            actor.SetForceTranslucent(translucent)
-
-    @property
-    def _translucent(self) -> bool:
-        """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
-        effects = self._effects.values()
-        return self._colouring.translucent() or any(getattr(effect, "translucent", False) for effect in effects)
-
     # Drawing
 
     def raise_pending(self) -> None:
@@ -247,8 +199,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             self._draw(program)
         except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
             program.SetUniform2i("fibletSize", (0, 0))
-            self._error = error
-        if unraised is not None:
+            if self._found:
+                self._tell(error)
+            else:
+                self._error = error
+        if unraised is not None and not self._found:
             # Nobody asked for the last one: VTK prints what an observer raises.
             raise unraised
 
@@ -256,10 +211,11 @@ class EngineMapper(Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         actor = self.actor
         if actor is None or not program.IsUniformUsed("fibletDepthMap"):
             raise RuntimeError(
-                "the actor lacks the mapper's shader pieces; use mapper.attach(actor), "
-                "not actor.SetMapper(mapper), and do not replace its shader property"
+                f"the actor lacks the {self._NAME}'s shader pieces: {_ONE_ACTOR}, by mapper.attach(actor) where that "
+                "is not found out from SetMapper"
             )
         renderer = self._active.find(actor)
+        self._check_alone(renderer)
         context = context_of(renderer.GetRenderWindow())
         if any(other is not context and other.shows(self) for other in contexts_with(self)):
             error = RuntimeError(
@@ -397,16 +353,20 @@ class CutMapper(EngineMapper[AnyOptions]):
         return np.concatenate([planes, more]), region
 
 
+# Functions, since bound methods would keep the mapper alive for ever.
+
+
 @calldata_type(VTK_OBJECT)
 def _update_shader(mapper: EngineMapper[Any], _event: str, program: Any) -> None:
-    mapper._update(program)  # noqa: SLF001  a bound method would keep the mapper alive for ever
+    mapper._update(program)  # noqa: SLF001
 
 
-def _keep_surface(actor_property: Any, _event: str) -> None:
-    """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
-    if actor_property.GetRepresentation() != VTK_SURFACE:
-        actor_property.SetRepresentationToSurface()
-    if actor_property.GetEdgeVisibility():
-        actor_property.SetEdgeVisibility(False)
-    if actor_property.GetFrontfaceCulling():
-        actor_property.SetFrontfaceCulling(False)
+def _begin(mapper: EngineMapper[Any], _event: str) -> None:
+    mapper._begin()  # noqa: SLF001
+
+
+def _connections_changed(mapper: EngineMapper[Any], _event: str) -> None:
+    mapper._connections_changed()  # noqa: SLF001
+
+
+_OBSERVERS = {"UpdateShaderEvent": _update_shader, "StartEvent": _begin, "ModifiedEvent": _connections_changed}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -18,21 +18,24 @@ from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
 class FibletMapper(CutMapper[EngineOptions]):
-    """Mapper that draws a `FibletSet` through VTK's own lights, passes and selection.
+    """Mapper that draws a `FibletSet`, or lines that it compresses, through VTK's own lights, passes and selection.
 
-    Give it to an actor with `attach`, which also adds the shader pieces to the actor: ``SetMapper``
-    alone is not enough. One mapper serves one actor, in any number of renderers of one window; another
-    window needs another mapper and actor, as with all of VTK's.
+    ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
+    renderers of one window; another window needs another mapper and actor, as with all of VTK's.
 
     Parameters
     ----------
-    fiblets : FibletSet
-        What to draw.
+    fiblets : FibletSet, optional
+        What to draw. Without it, each line cell of the PolyData that ``SetInputConnection`` or ``SetInputData``
+        connects is a streamline.
     colouring : Colouring, optional
-        By orientation when left out.
-    line_width : float, default 1.0
-        Pixels of the window, above 0. Lines thinner than a pixel are drawn a pixel wide, and fainter where edges are
-        smoothed (`pvfiblets.mappers.antialias_coverage`).
+        When left out, fiblets are coloured by orientation, and what is connected as by any ``vtkMapper``: by its
+        active scalars, or in the colour of the actor's property.
+    line_width : float, optional
+        Pixels of the window, above 0; that of the actor's property when left out. Lines thinner than a pixel are drawn
+        a pixel wide, and fainter where edges are smoothed (`pvfiblets.mappers.antialias_coverage`).
+    compression : mapping, optional
+        Arguments of `pvfiblets.compress` for what is connected.
     options : EngineOptions, optional
         Pipeline and culling; the defaults suit every machine.
     renderer_factory : callable, optional
@@ -49,29 +52,36 @@ class FibletMapper(CutMapper[EngineOptions]):
     _NAME = "FibletMapper"
     _HAS_EDGES = True
 
+    COPIED = (*CutMapper.COPIED, "_line_width", "_filtering", "_compression", "_compressed")
+
     def __init__(
         self,
-        fiblets: Any,
+        fiblets: Any = None,
         *,
         colouring: Colouring | None = None,
-        line_width: float = 1.0,
+        line_width: float | None = None,
+        compression: Mapping[str, Any] | None = None,
         options: EngineOptions | None = None,
         renderer_factory: Callable[..., Any] = engine_renderer,
         progress: bool = False,
     ) -> None:
         self._filtering: Any = None
+        self._compression = dict(compression or {})
+        self._compressed: tuple[Any, Any] = (None, None)
         super().__init__(
             fiblets,
-            colouring=Colouring() if colouring is None else colouring,
+            colouring=Colouring() if colouring is None and fiblets is not None else colouring,
             options=EngineOptions() if options is None else options,
             renderer_factory=renderer_factory,
             **({"progress": True} if progress else {}),
         )
-        self.line_width = line_width
+        self._line_width: float | None = None
+        if line_width is not None:
+            self.line_width = line_width
 
     @property
     def fiblets(self) -> Any:
-        """The `FibletSet` that is drawn."""
+        """The `FibletSet` that is drawn; None where nothing is connected, or has not been asked for yet."""
         return self._drawn
 
     def set_fiblets(self, fiblets: Any) -> None:
@@ -87,7 +97,9 @@ class FibletMapper(CutMapper[EngineOptions]):
     @property
     def line_width(self) -> float:
         """Width of the lines in pixels of the window."""
-        return self._line_width
+        if self._line_width is not None:
+            return self._line_width
+        return 1.0 if self.actor is None else float(self.actor.GetProperty().GetLineWidth())
 
     @line_width.setter
     def line_width(self, pixels: float) -> None:
@@ -97,10 +109,10 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._actor_modified()
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
-        return FibletStyle(line_width=self._line_width * pixel_scale, min_width=max(1.0, pixel_scale))
+        return FibletStyle(line_width=self.line_width * pixel_scale, min_width=max(1.0, pixel_scale))
 
     def _narrower(self, pixel_scale: float) -> float:
-        return 0.0 if self._thickness > 0.0 else max(1.0 - self._line_width * pixel_scale, 0.0)
+        return 0.0 if self._thickness > 0.0 else max(1.0 - self.line_width * pixel_scale, 0.0)
 
     def _widened(self, style: FibletStyle, frame: Frame) -> bool:
         if style.radius is None:
@@ -116,6 +128,16 @@ class FibletMapper(CutMapper[EngineOptions]):
     def filtering(self, wanted: Any) -> None:
         self._filtering = wanted
         self._actor_modified()
+
+    def _made_of(self, data: Any) -> tuple[Any, Colouring]:
+        from pvfiblets.mappers.vtk_lines import fiblets_of, geometry_of, painted_fiblets
+
+        shape = geometry_of(data)
+        if self._compressed[0] != shape:
+            self._compressed = shape, fiblets_of(data, self._compression)
+        if not self._follows:
+            return self._compressed[1], self._colouring
+        return painted_fiblets(self._compressed[1], data, self)
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         before = slot.renderer

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -19,7 +19,6 @@ from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.scene import Frame
 from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 from pvfiblets.mappers.shading import background
@@ -115,14 +114,18 @@ class HaloMapper(EngineMapper[HaloOptions]):
 
     Parameters
     ----------
-    drawn : HaloLines or HaloPoints
-        What to draw.
-    look : HaloStyle
-        Widths and depths, and what else shows.
+    drawn : HaloLines or HaloPoints, optional
+        What to draw. Without it, the lines of the PolyData that ``SetInputConnection`` or ``SetInputData`` connects, or
+        its points, if it has no lines.
+    look : HaloStyle, optional
+        Widths and depths, and what else shows. When left out, widths of what is connected follow the distance between
+        its lines.
     colouring : Colouring, optional
-        Of lines and points; black when left out.
+        Of lines and points. When left out, they are black, and what is connected is coloured as by any ``vtkMapper``:
+        by its active scalars, or in the colour of the actor's property.
     halo_color : tuple of 3 floats, optional
-        RGB between 0 and 1, white when left out; None for the renderer's background.
+        RGB between 0 and 1; None for the renderer's background. When left out, halos are white, and around what is
+        connected of the background's colour.
     options : HaloOptions, optional
         What does not show.
     renderer_factory : callable, optional
@@ -139,24 +142,30 @@ class HaloMapper(EngineMapper[HaloOptions]):
     _NAME = "HaloMapper"
     _HAS_EDGES = True
 
+    COPIED = (*EngineMapper.COPIED, "_look", "_measured")
+
     def __init__(
         self,
-        drawn: Drawn,
-        look: HaloStyle,
+        drawn: Drawn | None = None,
+        look: HaloStyle | None = None,
         *,
         colouring: Colouring | None = None,
-        halo_color: Colour | None = WHITE,
+        halo_color: Colour | Literal["usual"] | None = "usual",
         options: HaloOptions | None = None,
         renderer_factory: Callable[..., Any] = halo_renderer,
     ) -> None:
-        self._look = look
+        if drawn is not None and look is None:
+            raise TypeError("HaloMapper has lines or points but no look; give a HaloStyle, their widths in mm")
+        self._look: Any = look
+        self._measured = look is None
         super().__init__(
             drawn,
-            colouring=Colouring("solid", color=BLACK) if colouring is None else colouring,
+            colouring=Colouring("solid", color=BLACK) if colouring is None and drawn is not None else colouring,
             options=HaloOptions() if options is None else options,
             renderer_factory=renderer_factory,
         )
-        self.halo_color = halo_color
+        usual = None if drawn is None else WHITE
+        self.halo_color = usual if halo_color == "usual" else halo_color
 
     @property
     def drawn(self) -> Drawn:
@@ -184,12 +193,13 @@ class HaloMapper(EngineMapper[HaloOptions]):
     @property
     def look(self) -> HaloStyle:
         """Widths and depths, and what else shows; set another `HaloStyle` to change them from the next frame on."""
-        return self._look
+        look: HaloStyle = self._look
+        return look
 
     @look.setter
     def look(self, look: HaloStyle) -> None:
-        wider = look.strip_width != self._look.strip_width
-        self._look = look
+        wider = self._look is None or look.strip_width != self._look.strip_width
+        self._look, self._measured = look, False
         if wider:
             self._set_proxy()
         self._actor_modified()
@@ -235,11 +245,18 @@ class HaloMapper(EngineMapper[HaloOptions]):
     def _empty(self) -> bool:
         return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
 
-    def _set_proxy(self) -> None:
-        """Give VTK bounds that hold the strips too."""
-        super()._set_proxy()
-        if not self._empty:
-            self.SetInputData(proxy_polydata(thickened(self._drawn.bounds, self._look.strip_width / 2.0)))
+    @property
+    def _extent(self) -> Any:
+        """Bounds that hold the strips too."""
+        return thickened(self._drawn.bounds, self._look.strip_width / 2.0)
+
+    def _made_of(self, data: Any) -> tuple[Any, Colouring]:
+        from pvfiblets.mappers.vtk_lines import measured_look, painted_halos
+
+        drawn, colouring = painted_halos(data, self)
+        if self._measured:
+            self._look = measured_look(drawn)
+        return drawn, colouring
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> HaloDrawStyle:  # noqa: ARG002
         from pvfiblets.engine.halos import HaloDrawStyle

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
-from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkProp, vtkPropAssembly, vtkRenderer
 
 Matrix = npt.NDArray[np.float64]
 
@@ -192,6 +192,20 @@ def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
             yield consumer
         elif isinstance(consumer, vtkProp):
             yield from renderers_of(consumer)
+
+
+def items_of(collection: Any) -> list[Any]:
+    """Return what is in a ``vtkCollection``."""
+    return [collection.GetItemAsObject(index) for index in range(collection.GetNumberOfItems())]
+
+
+def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
+    """Yield a prop that is an actor, and the actors of an assembly."""
+    if isinstance(prop, vtkActor):
+        yield prop
+    elif isinstance(prop, (vtkAssembly, vtkPropAssembly)):
+        for part in items_of(prop.GetParts()):
+            yield from actors_in(part)
 
 
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:

@@ -7,7 +7,7 @@ layers.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -81,10 +81,15 @@ class TubeMapper(EngineMapper[TubeOptions]):
 
     Parameters
     ----------
-    tubes : SplineTubes
-        What to draw.
+    tubes : SplineTubes, optional
+        What to draw. Without it, tubes around the lines of the PolyData that ``SetInputConnection`` or
+        ``SetInputData`` connects.
     colouring : Colouring, optional
-        White when left out.
+        When left out, tubes are white, and what is connected is coloured as by any ``vtkMapper``: by its active
+        scalars, or in the colour of the actor's property.
+    shape : mapping, optional
+        Arguments of `pvfiblets.tubes.build.as_spline_tubes` for what is connected, such as ``radius``: a number (mm),
+        or the name of an array.
     options : TubeOptions, optional
         How rays are cast.
     renderer_factory : callable, optional
@@ -101,17 +106,21 @@ class TubeMapper(EngineMapper[TubeOptions]):
     _NAME = "TubeMapper"
     _HAS_EDGES = True
 
+    COPIED = (*EngineMapper.COPIED, "_shape")
+
     def __init__(
         self,
-        tubes: SplineTubes,
+        tubes: SplineTubes | None = None,
         *,
         colouring: Colouring | None = None,
+        shape: Mapping[str, Any] | None = None,
         options: TubeOptions | None = None,
         renderer_factory: Callable[..., Any] = tube_renderer,
     ) -> None:
+        self._shape = dict(shape or {})
         super().__init__(
             tubes,
-            colouring=Colouring("solid") if colouring is None else colouring,
+            colouring=Colouring("solid") if colouring is None and tubes is not None else colouring,
             options=TubeOptions() if options is None else options,
             renderer_factory=renderer_factory,
         )
@@ -159,6 +168,11 @@ class TubeMapper(EngineMapper[TubeOptions]):
     @property
     def _empty(self) -> bool:
         return not self._drawn.n_segments
+
+    def _made_of(self, data: Any) -> tuple[Any, Colouring]:
+        from pvfiblets.mappers.vtk_lines import painted_tubes
+
+        return painted_tubes(data, self._shape, self)
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> TubeStyle:  # noqa: ARG002
         return TubeStyle(min_width=self.options.min_width * pixel_scale)

@@ -73,13 +73,14 @@ class VolumeMapper(CutMapper[Options]):
 
     Parameters
     ----------
-    volume : RaycastVolume
-        What to draw.
-    casting : RaycastOptions
-        How.
+    volume : RaycastVolume, optional
+        What to draw. Without it, the image that ``SetInputConnection`` or ``SetInputData`` connects.
+    casting : RaycastOptions, optional
+        How; the greatest value on each ray (``'mip'``) of what is connected when left out.
     colouring : Colouring, optional
         Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, whose values are those of the volume.
-        By default white. Light has the colours of its transfer function.
+        When left out, white, and peaks in what is connected by look-up table and scalar range of ``vtkMapper``,
+        surfaces in the colour of the actor's property. Light has the colours of its transfer function.
     renderer_factory : callable, optional
         Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`.
 
@@ -101,18 +102,53 @@ class VolumeMapper(CutMapper[Options]):
 
     _NAME = "VolumeMapper"
 
+    COPIED = (*CutMapper.COPIED, "_casting", "_taken", "coarser")
+
     def __init__(
         self,
-        volume: RaycastVolume,
-        casting: RaycastOptions,
+        volume: RaycastVolume | None = None,
+        casting: RaycastOptions | None = None,
         *,
         colouring: Colouring | None = None,
         renderer_factory: Callable[..., Any] = volume_renderer,
     ) -> None:
+        if casting is None:
+            if volume is not None:
+                raise TypeError("VolumeMapper has a volume but no casting; give RaycastOptions, such as mode 'mip'")
+            from pvfiblets.volumes.raycast_options import RaycastOptions
+
+            casting = RaycastOptions("mip")
         self._casting = casting
+        self._taken: tuple[Any, ...] = (0, None)
         self.coarser: InteractiveQuality | None = None
-        super().__init__(volume, colouring=_plain(casting), options=Options(), renderer_factory=renderer_factory)
+        usual = _plain(casting) if volume is not None else None
+        super().__init__(volume, colouring=usual, options=Options(), renderer_factory=renderer_factory)
+        follows = self._follows and colouring is None
         self.show(casting, colouring)
+        self._follows = follows
+
+    def SetInputData(self, image: Any) -> None:  # noqa: N802 - VTK's name
+        """Have a ``vtkImageData`` drawn, which ``vtkPolyDataMapper`` would refuse."""
+        self.SetInputDataObject(0, image)
+
+    def _input_state(self, data: Any) -> tuple[Any, ...]:
+        return self._casting, *super()._input_state(data)
+
+    def _made_of(self, data: Any) -> tuple[Any, Colouring]:
+        from pvfiblets.mappers.vtk_scalars import paint_of
+        from pvfiblets.volumes import as_raycast_volume
+
+        if self._taken[0] != data.GetMTime():
+            self._taken = data.GetMTime(), as_raycast_volume(data)
+        volume = self._taken[1]
+        if not self._follows:
+            return volume, self._colouring
+        peaks = self._casting.mode in ("mip", "local-mip")
+        paint = paint_of(self, data) if peaks else None
+        if paint is not None and paint.numbers is not None:
+            return volume, paint.mapped(volume.name)
+        solid = Colouring("solid", color=self._property_color())
+        return volume, _plain(self._casting) if self._casting.mode == "composite" else solid
 
     @property
     def volume(self) -> RaycastVolume:
@@ -132,8 +168,11 @@ class VolumeMapper(CutMapper[Options]):
 
     @casting.setter
     def casting(self, casting: RaycastOptions) -> None:
-        same = (casting.mode == "composite") == (self._casting.mode == "composite")
+        same, follows = (casting.mode == "composite") == (self._casting.mode == "composite"), self._follows
         self.show(casting, self._colouring if same else None)
+        self._follows = follows
+        if follows and self._input is not None:
+            self._input.Modified()
 
     def show(self, casting: RaycastOptions, colouring: Colouring | None = None) -> None:
         """Change both from the next frame on.

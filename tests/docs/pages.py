@@ -69,6 +69,7 @@ np.savetxt("sift2.txt", np.linspace(0, 2, 400))
     "docs/seeing-inside.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
+    "docs/from-vtk.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",
     "docs/volumes.md": "",

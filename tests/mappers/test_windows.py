@@ -386,12 +386,13 @@ def test_a_failing_draw_is_raised_by_the_caller(make_plotter, plain, tools):
     assert tools.picture(plotter, mapper).any()
 
 
-def test_an_actor_without_the_shader_pieces_says_so(make_plotter, plain):
-    mapper = plain.mapper()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
+def test_a_mapper_of_two_actors_says_so(make_plotter, plain):
+    mapper, actor = plain.actor()
+    twin = vtkActor()
+    twin.ShallowCopy(actor)
     plotter = make_plotter()
     plotter.add_actor(actor)
+    plotter.add_actor(twin)
     plotter.show(auto_close=False)
-    with pytest.raises(RuntimeError, match="attach"):
+    with pytest.raises(RuntimeError, match="2 actors have this mapper.*ShallowCopy"):
         mapper.raise_pending()

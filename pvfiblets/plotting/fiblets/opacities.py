@@ -62,7 +62,7 @@ def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacitie
     ValueError
         If opacities do not lie between 0 and 1.
     """
-    from pvfiblets.plotting.fiblets.sources import with_stored
+    from pvfiblets.codec.point_arrays import with_point_values
 
     if isinstance(choice, str):
         return fiblets, _named(fiblets, choice)
@@ -77,7 +77,7 @@ def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacitie
     if len(values) == fiblets.n_streamlines:
         return fiblets, Opacities(streamlines=values)
     if len(values) == fiblets.n_points:
-        return with_stored(fiblets, POINTS, values), Opacities(points=POINTS)
+        return with_point_values(fiblets, POINTS, values), Opacities(points=POINTS)
     return fiblets, Opacities(transfer=values)
 
 

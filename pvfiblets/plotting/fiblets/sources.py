@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -13,7 +12,8 @@ import numpy as np
 
 from pvfiblets import formats
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.codec.point_arrays import with_coded_values
+from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
@@ -124,7 +124,7 @@ def as_fiblets(
     )
     if isinstance(scalars, str) and scalars == CODING_ERROR and CODING_ERROR not in fiblets.per_point:
         error = measure(fiblets, CODING_ERROR, original=streamlines)
-        fiblets = _with_coded(fiblets, CODING_ERROR, error.array())
+        fiblets = with_coded_values(fiblets, CODING_ERROR, error.array())
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
 
 
@@ -159,12 +159,12 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
         if scalars.per == "streamline":
             return fiblets, scalars
         found = measure(fiblets, scalars)
-        return _with_coded(fiblets, found.name, found.array()), found.name
+        return with_coded_values(fiblets, found.name, found.array()), found.name
     values = np.asarray(scalars)
     if values.shape[:1] != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
         return fiblets, values
     values = numbers_of_points(UNNAMED, values, rgb)
-    return _with_coded(fiblets, UNNAMED, fiblets.in_coded_order(values)), UNNAMED
+    return add_values(fiblets, UNNAMED, values), UNNAMED
 
 
 def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool | None = None) -> FibletSet:
@@ -206,20 +206,6 @@ def numbers_of_points(name: str, values: np.ndarray, rgb: bool | None) -> np.nda
             "add_halo_lines draw one per point, and rgb=False maps the magnitude"
         )
     return values if values.ndim == 1 else magnitudes(values)
-
-
-def with_stored(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
-    """Return a set that shares the arrays of another one and has one with a number per point, (n_points,), more."""
-    return _with_coded(fiblets, name, fiblets.in_coded_order(values))
-
-
-def _with_coded(fiblets: FibletSet, name: str, values: np.ndarray) -> FibletSet:
-    """Return a set with one more number per point, in the order in which points are coded."""
-    numbers = values.astype(np.float64)
-    finite = numbers[np.isfinite(numbers)]
-    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    stored = {**fiblets.per_point, name: quantise_values(numbers, low, high)}
-    return replace(fiblets, per_point=stored)
 
 
 def as_streamlines(source: Any) -> Streamlines:

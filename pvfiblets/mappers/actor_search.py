@@ -1,0 +1,68 @@
+"""Which actor has a mapper, where it was given to it by ``vtkActor.SetMapper``, of which VTK tells nobody.
+
+Mappers do not know their actors, and windows are in no list. But whoever renders does so from Python, by an object of
+his: a window, its interactor, a renderer, or a filter that takes pictures of a window. From these, among all objects
+that Python's garbage collector knows, windows lead to renderers and these to actors. That takes a hundredth of a second
+or so, once for each mapper.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from typing import Any
+
+from vtkmodules.vtkCommonCore import vtkObjectBase
+from vtkmodules.vtkRenderingCore import vtkActor, vtkProp, vtkRenderer, vtkRenderWindow
+
+from pvfiblets.mappers.scene import actors_in, items_of, renderers_of
+
+__all__ = ["actor_of"]
+
+# Of what has a window or shows a renderer: vtkRenderWindowInteractor, vtkWindowToImageFilter and the like.
+_LEADS = ("GetRenderWindow", "GetInput", "GetRenderer")
+
+
+def actor_of(mapper: Any) -> vtkActor | None:
+    """Return an actor whose mapper this is, one in the window that is being drawn before all others; None for none."""
+    found: vtkActor | None = None
+    for actor in _actors():
+        if actor.GetMapper() is not mapper:
+            continue
+        if any(_is_drawn(renderer) for renderer in renderers_of(actor)):
+            return actor
+        found = actor if found is None else found
+    return found
+
+
+def _is_drawn(renderer: vtkRenderer) -> bool:
+    window = renderer.GetRenderWindow()
+    return window is not None and bool(window.IsCurrent())
+
+
+def _actors() -> Iterator[vtkActor]:
+    """Yield the actors that Python or a renderer that it leads to has; some more than once."""
+    seen: set[str] = set()
+    for held in [held for held in gc.get_objects() if isinstance(held, vtkObjectBase)]:
+        if isinstance(held, vtkProp):
+            yield from actors_in(held)
+        for renderer in _renderers(held):
+            if renderer.GetAddressAsString("") not in seen:
+                seen.add(renderer.GetAddressAsString(""))
+                for prop in items_of(renderer.GetViewProps()):
+                    yield from actors_in(prop)
+
+
+def _renderers(held: Any) -> Iterator[vtkRenderer]:
+    """Yield the renderers to which an object leads."""
+    leads = [held, *(getattr(held, lead)() for lead in _LEADS if _takes_nothing(held, lead))]
+    for lead in leads:
+        if isinstance(lead, vtkRenderer):
+            yield lead
+        elif isinstance(lead, vtkRenderWindow):
+            yield from items_of(lead.GetRenderers())
+
+
+def _takes_nothing(held: Any, lead: str) -> bool:
+    # Of filters, whose GetInput would be one of data, and slow.
+    return hasattr(held, lead) and (lead != "GetInput" or held.IsA("vtkWindowToImageFilter"))
