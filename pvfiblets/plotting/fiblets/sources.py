@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -187,7 +188,7 @@ def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool |
     name = name_of(path)
     if where == "per_streamline":
         return replace(fiblets, per_streamline={**fiblets.per_streamline, name: values})
-    return with_stored(fiblets, name, numbers_of_points(name, values, rgb))
+    return add_values(fiblets, name, numbers_of_points(name, values, rgb))
 
 
 def numbers_of_points(name: str, values: np.ndarray, rgb: bool | None) -> np.ndarray:
