@@ -169,8 +169,9 @@ together(Scope("halos' vertices", {k: v for k, v in HALOS.items() if k.endswith(
 # Volumes.
 VOLUMES = Scope(
     "volumes",
-    {"media": 9, "voxels": 10, "nodes": 11, "colours": 12, "segments": 13, "outside": 14, "means": 15},
-)
+    {"media": 9, "voxels": 10, "nodes": 11, "colours": 12, "segments": 13, "outside": 14, "means": 15,
+     "allowed_bends": 21},
+)  # fmt: skip
 VOLUME_COARSE = Scope(
     "coarse rays",
     {"coarse_depth": 16, "coarse_owner": 17, "coarse_position": 18, "coarse_normal": 19, "coarse_colour": 20},

@@ -35,6 +35,9 @@ MAX_VALUES = 8
 MOST_STEPS = 30_000
 """Steps of a ray up to which flat voxels may shorten them: software OpenGL ends a loop after 65,535 turns."""
 
+DEEPEST, MOST_SHORTER = 16.0, 4.0
+"""Optical depth of a step beyond which it is shortened, and to what part of itself at the most."""
+
 LARGEST = (2.0 - 2.0**-23) * 2.0**127
 """The largest number that float32 holds."""
 
@@ -66,9 +69,9 @@ class RaycastOptions:
     iterations : int
         Steps of the refinement, 1 to 64.
     integrator : str
-        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` where one look-up a step is enough, takes steps in parts
-        over which values bend, as at edges from voxel to voxel, and halves them until their halves agree where colours
-        are steep or dense (:mod:`pvfiblets.volumes.steepness`).
+        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` for steps of which one look-up is enough, takes those in
+        parts over which values bend, as at edges from voxel to voxel, and halves others until their halves agree
+        (:mod:`pvfiblets.volumes.steepness`).
     octree : bool
         Whether nodes in which there is nothing to see are skipped. It changes no pixel.
     homogeneous : float
@@ -155,7 +158,9 @@ class RaycastOptions:
 
         Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
         of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
-        a ray through the whole volume took more than `MOST_STEPS` then.
+        a ray through the whole volume took more than `MOST_STEPS` then. Light that is as dense as fog is not, of which
+        ``'adaptive'`` is to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter
+        than one by `MOST_SHORTER` of that.
 
         Parameters
         ----------
@@ -167,7 +172,11 @@ class RaycastOptions:
         lengths = np.asarray(spacing, np.float64)
         mean, least = self.step * float(lengths.mean()), max(self.step, 1.0) * float(lengths.min())
         through = float(np.linalg.norm(lengths * shape))
-        return min(mean, max(least, through / MOST_STEPS))
+        step = min(mean, max(least, through / MOST_STEPS))
+        if self.mode == "composite" and self.integrator == "adaptive" and self.transfer is not None:
+            deep = step * self.transfer.largest_extinction
+            step /= min(max(deep / DEEPEST, 1.0), MOST_SHORTER)
+        return step
 
     def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
         try:

@@ -1,70 +1,52 @@
-"""Whether a transfer function is so steep, or so dense, that one look-up for each step of a ray is not enough.
+"""How much values may bend within a step of a ray, by the values at its ends, so that one look-up is enough for it.
 
-A pre-integrated table is exact where the value is linear over a step and both its ends are entries of the table.
-Between entries a texture interpolates, and what it is off by is told by how the table bends. Light of steps is put
-together along the ray: a value that hardly changes meets the same error at every step, so that of m steps
-``exp(-m tau)`` is off by ``|exp(-m tau) - exp(-m tau')|``, whichever m is worst. And a table tells nothing of parts of
-a step that are so dense that its opacity is 1 but for rounding.
+A pre-integrated table is exact where the value is linear over a step and both its ends are entries of the table. Two
+things take light away from it, and both are of some pairs of values, not of a transfer function as a whole:
 
-Values are not linear over a step that crosses from one cell to another: from the chord they are up to a quarter of the
-step times the change of their slope away. Of what is smooth that is hardly anything. Of edges it is much, and a step is
-taken in `PARTS` where its values bend (``shaders/volumes/preintegrated.glsl``). Of noise as thick as fog it is too much
-everywhere.
+* Between entries a texture interpolates. How far that is off is known: opacities in the middle of four entries have a
+  closed form. A value that hardly changes meets the same error at every step, so that of m steps ``exp(-m tau)`` is
+  off by ``|exp(-m tau) - exp(-m tau')|``, whichever m is worst. Pairs for which it is off are `UNTRUSTED`.
+* Values are not linear over a step that crosses from one cell to another. If they make a tent of some height over
+  their chord, light is that of two steps half as long; the height at which it differs is what they may bend by.
+
+A ray then goes step by step by its own values (``shaders/volumes/preintegrated.glsl``): one look-up; or `PARTS` shorter
+ones where values bend by more; or the light of a stretch that is halved until its halves agree.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .transfer import Transfer
 from .volume import RaycastVolume
 
-__all__ = ["DENSE", "OFF", "PARTS", "allowed_bend", "is_steep", "largest_bend", "typical_bend"]
+__all__ = ["DEEP", "KINKS", "OFF", "PARTS", "UNTRUSTED", "allowed_bends", "largest_bend"]
 
 OFF = 1e-2
 """What colours and opacities may be off by."""
 
-DENSE = 9.0
-"""Optical depth of a step beyond which its parts are not told from its opacity. The denser, the more a bend of the
-values within a step counts, such as where a field begins: at 10, light of a ball is off by 0.012. Steps of half a voxel
-through a table that ends in opacity 1, as most do, have 8.3, and one look-up is enough for them."""
-
-THICK = 2.0
-"""Optical depth of a step up to which the parts of steps are enough for what bends everywhere, such as noise. Beyond, a
-corner that a ray passes within one step, unseen, counts for too much."""
+DEEP = 9.0
+"""Optical depth of a step beyond which that of what is left at a ray's end is not told from its opacity. Steps of half
+a voxel through a table that ends in opacity 1, as most do, have 8.3."""
 
 PARTS = 4
 """Parts of a step over which values bend: a power of two, so that they add up to it exactly."""
 
 KINKS = 5.0
-"""Bends up to so many times what is allowed need no parts: at the worst, a twelfth of them is left as an error, of
-either sign."""
+"""Bends up to so many times what is allowed need no shorter parts than a step's: at the worst, a twelfth of them is
+left as an error, of either sign."""
 
-FINE = 64
-"""Part of the colours, one by this, over which it is looked at how fast light changes with the value."""
+UNTRUSTED = -1.0
+"""In place of what is allowed: a look-up is off even where values do not bend at all."""
 
-STEPS = 3.0
-"""What errors of steps add up to, as they have either sign, in errors of one."""
+MOST = 512
+"""Pairs of values along each side of what is allowed; of a larger table, the least of neighbours counts."""
 
-TAKEN = 20_000
-"""Voxels that the typical bend is found from."""
-
-
-def typical_bend(volume: RaycastVolume) -> float:
-    """Return by how much the slope of values changes at a voxel, per voxel: the median over some voxels and axes."""
-    values, rng = volume.values, np.random.default_rng(0)
-    bends = [np.zeros(1)]
-    for axis in range(3):
-        if volume.shape[axis] < 3:
-            continue
-        at = [rng.integers(1 if k == axis else 0, n - (k == axis), TAKEN) for k, n in enumerate(volume.shape)]
-        before, after = list(at), list(at)
-        before[axis], after[axis] = at[axis] - 1, at[axis] + 1
-        near = (values[tuple(before)].astype(np.float64), values[tuple(after)].astype(np.float64))
-        bends.append(np.abs(near[0] + near[1] - 2.0 * values[tuple(at)].astype(np.float64)))
-    return float(np.median(np.concatenate(bends[1:] or bends)))
+Array = npt.NDArray[np.float64]
 
 
 def largest_bend(volume: RaycastVolume) -> float:
@@ -84,25 +66,8 @@ def largest_bend(volume: RaycastVolume) -> float:
 
 
 @lru_cache(maxsize=8)
-def allowed_bend(transfer: Transfer, step: float) -> float:
-    """Return by how much a value's change may differ from that in the step before, for `OFF` of a step's light at most.
-
-    Parameters
-    ----------
-    transfer : Transfer
-    step : float
-        mm.
-    """
-    table = transfer.preintegrated(step)
-    apart = max(1, len(table) // FINE)
-    level = table[np.arange(len(table)), np.arange(len(table))].astype(np.float64)
-    rise = float(np.abs(level[apart:] - level[:-apart]).max()) / apart * (len(table) - 1)
-    return OFF * (transfer.clim[1] - transfer.clim[0]) / max(rise, OFF)  # never more than all
-
-
-@lru_cache(maxsize=8)
-def is_steep(transfer: Transfer, step: float, low: float = -np.inf, high: float = np.inf, chord: float = 0.0) -> bool:
-    """Say whether light of steps in which the value is linear would be off by more than `OFF` with one look-up a step.
+def allowed_bends(transfer: Transfer, step: float, low: float = -np.inf, high: float = np.inf) -> npt.NDArray[Any]:
+    """Return by how much a value's change may differ from that in the step before, for `OFF` of light at most.
 
     Parameters
     ----------
@@ -111,32 +76,84 @@ def is_steep(transfer: Transfer, step: float, low: float = -np.inf, high: float 
         mm.
     low, high : float
         Values that are there; opacity jumps where others begin.
-    chord : float
-        How far values within a step typically are from its chord; it counts where a step is `THICK`.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n, n)`` float32 for the value at the step's front, first, and back, second, in n intervals of ``clim`` each:
+        a difference of values, at most the length of ``clim``, which says that nothing is too much; or `UNTRUSTED`.
+        Not to be written to.
     """
-    cuts = np.array([value for value in (low, high) if np.isfinite(value)])
-    if (-np.expm1(-step * transfer.extinction(cuts)) > OFF).any():
-        return True
+    from .steepness_kernels import tents
+
     table = transfer.preintegrated(step)
-    fine = transfer.extinction(np.linspace(*transfer.clim, 2 * len(table) - 1)) * step
-    if fine.max() > DENSE:
-        return True
-    # Between two entries linear interpolation is off by a quarter of what the table bends by, if it bends at once.
-    bend = max(float(np.abs(np.diff(table, 2, axis=axis)).max()) for axis in (0, 1)) / 4.0
-    off = round(min(chord / (transfer.clim[1] - transfer.clim[0]), 1.0) * (len(table) - 1))
-    if off > 0 and fine.max() > THICK:
-        level = table[np.arange(len(table)), np.arange(len(table))]
-        if STEPS * float(np.abs(level[off:] - level[:-off]).max()) > OFF:
-            return True
-    return max(bend, _of_level_values(table[..., 3].astype(np.float64), fine[1::2])) > OFF
+    span = transfer.clim[1] - transfer.clim[0]
+    allowed = tents(table, 0.25 * OFF) * (span / (len(table) - 1))
+    allowed[_off_between_entries(transfer, step, table) > 0.5 * OFF] = UNTRUSTED
+    for cut in (low, high):
+        if np.isfinite(cut) and -np.expm1(-step * float(transfer.extinction(cut))) > OFF:
+            place = (cut - transfer.clim[0]) / span * (len(table) - 1)
+            before = np.arange(len(table) - 1) <= place  # of an interval, the end before it, or what it may bend to
+            after = np.arange(1, len(table)) >= place
+            allowed[np.logical_and.outer(before, after) | np.logical_and.outer(after, before)] = UNTRUSTED
+    together = -(-len(allowed) // MOST)
+    if together > 1:
+        starts = np.arange(0, len(allowed), together)
+        allowed = np.minimum.reduceat(np.minimum.reduceat(allowed, starts, 0), starts, 1)
+    made: npt.NDArray[Any] = np.minimum(allowed, span).astype(np.float32)
+    made.flags.writeable = False
+    return made
 
 
-def _of_level_values(opacity: np.ndarray, depth: np.ndarray) -> float:
-    """Largest error of any number of steps in which the value stays half way between two entries."""
-    n = np.arange(len(depth))
-    between = (opacity[n, n] + opacity[n + 1, n + 1] + opacity[n, n + 1] + opacity[n + 1, n]) / 4.0
-    found = -np.log1p(-np.minimum(between, 1.0 - 1e-12))
-    there = np.flatnonzero(np.abs(depth - found) > 1e-12)
-    tau, off = np.maximum(depth[there], 1e-300), np.maximum(found[there], 1e-300)
-    steps = np.maximum(np.log(tau / off) / (tau - off), 1.0)  # at which the difference is largest
-    return float(np.abs(np.exp(-steps * tau) - np.exp(-steps * off)).max(initial=0.0))
+def _off_between_entries(transfer: Transfer, step: float, table: npt.NDArray[np.float32]) -> Array:
+    """``(n - 1, n - 1)``: by how much linear interpolation between four entries of a table is off in their middle."""
+    from .preintegration import unit_depths
+
+    n = len(table)
+    alpha = transfer.lookup(np.linspace(*transfer.clim, 2 * n - 1))[:, 3]
+    within = np.append(0.0, np.cumsum(unit_depths(alpha)))  # from the first value on, over half entries
+    steady = transfer.extinction(np.linspace(*transfer.clim, 2 * n - 1)) * step
+    at = np.arange(2 * n - 1)
+    opacity = table[..., 3].astype(np.float64)
+
+    def off(front: npt.NDArray[Any], back: npt.NDArray[Any], found: Array) -> Array:
+        apart = (at[back] - at[front][:, None]).astype(np.float64)
+        depth = np.divide(within[back] - within[front][:, None], apart, out=np.zeros_like(apart), where=apart != 0.0)
+        depth = np.where(apart == 0.0, steady[front][:, None], depth * (step / transfer.unit))
+        error = np.abs(-np.expm1(-depth) - found) / np.sqrt(np.maximum(found, 1e-12))
+        level = apart == 0.0
+        error[level] = np.maximum(
+            error[level], _of_many(depth[level], -np.log1p(-np.minimum(found[level], 1.0 - 1e-12)))
+        )
+        return error
+
+    whole, half = np.arange(0, 2 * n - 1, 2), np.arange(1, 2 * n - 1, 2)
+    by_front, by_back = (opacity[1:] + opacity[:-1]) / 2.0, (opacity[:, 1:] + opacity[:, :-1]) / 2.0
+    middle = off(half, half, (by_front[:, 1:] + by_front[:, :-1]) / 2.0)
+    front, back = off(half, whole, by_front), off(whole, half, by_back)
+    edges = np.maximum(np.maximum(front[:, 1:], front[:, :-1]), np.maximum(back[1:], back[:-1]))
+    return np.maximum(np.maximum(middle, edges), _colours_off(table))
+
+
+def _of_many(depth: Array, found: Array) -> Array:
+    """Largest error of any number of steps of some depth that are taken as others."""
+    tau, other = np.maximum(depth, 1e-300), np.maximum(found, 1e-300)
+    apart = tau - other
+    same = np.abs(apart) <= 1e-12
+    ratio = np.log(np.where(same, 2.0, tau) / np.where(same, 1.0, other)) / np.where(same, 1.0, apart)
+    steps = np.clip(ratio, 1.0, 1e6)  # at which the difference is largest
+    return np.where(same, 0.0, np.abs(np.exp(-steps * tau) - np.exp(-steps * other)))
+
+
+def _colours_off(table: npt.NDArray[np.float32]) -> Array:
+    """The same of mean colours, by how they bend from entry to entry: by a quarter, if they bend at once."""
+    opacity = table[..., 3].astype(np.float64)
+    mean = table[..., :3] / np.maximum(opacity, 1e-12)[..., None]
+    off = np.zeros_like(opacity)
+    for axis in (0, 1):
+        inner = [slice(None)] * 2
+        inner[axis] = slice(1, -1)
+        least = np.minimum.reduce([np.roll(opacity, shift, axis) for shift in (-1, 0, 1)])[tuple(inner)]
+        bend = np.abs(np.diff(mean, 2, axis=axis)).max(axis=-1) * np.sqrt(least) / 4.0
+        off[tuple(inner)] = np.maximum(off[tuple(inner)], bend)
+    return np.maximum(np.maximum(off[1:, 1:], off[1:, :-1]), np.maximum(off[:-1, 1:], off[:-1, :-1]))

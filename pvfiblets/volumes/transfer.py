@@ -132,6 +132,11 @@ class Transfer:
         """Return the extinction kappa of values, 1/mm."""
         return _depth(self.lookup(values)[..., 3]) / self.unit
 
+    @cached_property
+    def largest_extinction(self) -> float:
+        """The largest extinction of all values, 1/mm."""
+        return float(_depth(self.table[:, 3].astype(np.float64)).max()) / self.unit
+
     def emission(self, values: npt.ArrayLike) -> Array:
         """Return ``(..., 3)`` emission g = kappa c of values, 1/mm."""
         rgba = self.lookup(values)
@@ -252,9 +257,9 @@ class Transfer:
         Returns
         -------
         media : ndarray
-            ``(2, n, 4)`` float32. First the table, RGBA, at places evenly over ``clim``; then the integral of
-            extinction, 1/mm, over places from the first on, in two numbers of which the second is what the first
-            lacks, the extinction, and 0.
+            ``(2, n, 4)`` float32. First colour and extinction, 1/mm, at places evenly over ``clim``; then the integral
+            of extinction over places from the first on, in two numbers of which the second is what the first lacks, by
+            how much it grows to the next place, and 0.
         places : int
             From each entry of the table to the next.
         """
@@ -263,11 +268,12 @@ class Transfer:
         pieces = len(self.table) - 1
         places = -(-least // pieces)
         rgba = self.lookup(np.linspace(*self.clim, pieces * places + 1))
-        depth = np.append(0.0, np.cumsum(unit_depths(rgba[:, 3]))) / self.unit
+        grows = np.append(unit_depths(rgba[:, 3]), 0.0) / self.unit
+        depth = np.append(0.0, np.cumsum(grows[:-1]))
         first = depth.astype(np.float32)
         made = np.zeros((2, len(rgba), 4), np.float32)
-        made[0] = rgba
-        made[1, :, :3] = np.column_stack([first, depth - first, _depth(rgba[:, 3]) / self.unit])
+        made[0] = np.column_stack([rgba[:, :3], _depth(rgba[:, 3]) / self.unit])
+        made[1, :, :3] = np.column_stack([first, depth - first, grows])
         return made, places
 
 

@@ -5,7 +5,7 @@
 //   u            place of a value in the table, in entries: alpha and c are linear between whole numbers, and go on beyond the ends
 //   kappa        -ln(1 - alpha) / unit
 //   K(u)         integral of kappa over u from 0: what lies in entries before in two floats, so that differences keep their digits,
-//                and the part within u's own entry, whose primitive is (1 - alpha) ln(1 - alpha) + alpha
+//                and the part within u's own place
 //
 // Between two samples A and B the optical depth is mm (K(B) - K(A)) / (B - A), exactly, however steep and narrow what lies between
 // is; the mean colour is that of the table of segments, of which only quotients are taken, or within an entry that of its ends.
@@ -14,10 +14,8 @@
 // may have turned between the samples and met there what it does not meet at them. A tent or a parabola through A, M, B
 // reaches no farther beyond the three than |A - 2 M + B|.
 
-uniform sampler2D media;          // at places of the table: (c, alpha); below, (K in two floats, kappa, 0)
-uniform sampler2D segments;       // of whole steps: premultiplied colour and opacity by the values at both ends
+uniform sampler2D media;          // at places of the table: (c, kappa); below, (K in two floats, by how much it grows to the next, 0)
 uniform float places_per_entry;
-uniform float opacity_unit;       // mm
 
 const int FINEST = {{ finest }};            // parts of a stretch
 const float ALLOWED = {{ adaptive_error }};      // that the light of halves differs
@@ -32,11 +30,6 @@ float u_of(float value) {
     return (value - transfer_low) * (float(textureSize(media, 0).x - 1) / max(transfer_high - transfer_low, 1e-30));
 }
 
-float extinction(float alpha) {
-    return (alpha < 0.05 ? alpha * (1.0 + alpha * (0.5 + alpha * (1.0 / 3.0 + alpha * 0.25)))
-                         : min(-log(max(1.0 - alpha, 1e-30)), 16.635532)) / opacity_unit;
-}
-
 Look look_at(float u) {
     // What lies beyond the thresholds has no extinction: K stays as it is.
     float kept = clamp(u, u_of(value_low), u_of(value_high)), i = clamp(floor(kept), 0.0, float(textureSize(media, 0).x - 2));
@@ -44,9 +37,9 @@ Look look_at(float u) {
     vec3 before = texelFetch(media, ivec2(int(i), 1), 0).xyz;
     float f = kept - i, inside = clamp(f, 0.0, 1.0);
     vec4 medium = mix(low, high, inside);
-    medium.a = extinction(medium.a);
-    float middle = extinction(mix(low.a, high.a, 0.5 * inside));
-    float part = inside * (before.z + 4.0 * middle + medium.a) / 6.0 + (f - inside) * medium.a;
+    // Hermite's cubic: both ends' kappa, but no more of it than K can grow by, and all of K's growth.
+    float rise = inside * inside * (3.0 - 2.0 * inside), to_end = 1.0 - inside, most = 2.0 * before.z;
+    float part = rise * before.z + inside * to_end * (to_end * min(low.a, most) - inside * min(high.a, most)) + (f - inside) * medium.a;
     if (u != kept) medium.a = 0.0;
     return Look(u, medium, vec3(before.xy, part));
 }
@@ -82,7 +75,8 @@ vec4 light_between(Look a, Look b, float mm) {
         Look turn = look_at(next);
         float head = mm * max(depth_between(a, turn) / change, 0.0), shown = min(opacity_of(head), alpha);
         vec2 ends = vec2(next, clamp(b.u, low, high)) / last;
-        vec4 whole = textureLod(segments, (ends * (size - 1.0) + 0.5) / size, 0.0);
+        vec2 place = (ends * (size - 1.0) + 0.5) / size;
+        vec4 whole = textureLod(segments, vec2(place.x, 0.5 * place.y), 0.0);      // of the table of whole steps
         vec3 rest = whole.a > 0.0 ? whole.rgb / whole.a : c;
         c = mix(rest, colour_between(a.medium, turn.medium, head), shown / max(alpha, 1e-30));
     }
@@ -90,13 +84,6 @@ vec4 light_between(Look a, Look b, float mm) {
 }
 
 float largest(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
-
-// Mm to the end of the cell of eight voxels that the ray is about to be in: there the field bends.
-float to_end_of_cell(Ray ray, float t, float step) {
-    vec3 p = at(ray, t), cell = floor(p + 1e-3 * step * ray.d);
-    vec3 out_of = (cell + vec3(greaterThan(ray.d, vec3(0.0))) - p) * ray.inverse;
-    return max(min(out_of.x, min(out_of.y, out_of.z)), 1e-3 * step);
-}
 
 // Of a stretch from t on, of some mm, the look at whose beginning is known, before which a part of the light is left.
 vec4 adaptive_stretch(Ray ray, float t, float mm, float step, float left, inout Look a) {

@@ -12,9 +12,6 @@
 // value is linear: integrated exactly beforehand.
 
 uniform sampler2D colours;
-#if FEATURE_VOLUME_ADAPTIVE
-#include "volumes/adaptive.glsl"
-#endif
 
 float place_of(float value) { return clamp((value - transfer_low) / max(transfer_high - transfer_low, 1e-30), 0.0, 1.0); }
 
@@ -27,13 +24,7 @@ vec4 medium_at(float value) {
 #if FEATURE_VOLUME_PREINTEGRATED
 #include "volumes/preintegrated.glsl"
 #else
-#if FEATURE_VOLUME_ADAPTIVE
-#define WHOLE(mm) (mm)      // nodes end where cells do
-#define Before Look
-Look before_at(Ray ray, float t) { return look_along(ray, t); }
-#else
 #define WHOLE(mm) (floor((mm) / step) * step)
-#define Before float
 float before_at(Ray ray, float t) {
 #if FEATURE_VOLUME_SIMPSON || FEATURE_VOLUME_ROMBERG || FEATURE_VOLUME_RK4
     return value_at(at(ray, t));
@@ -41,10 +32,8 @@ float before_at(Ray ray, float t) {
     return 0.0;
 #endif
 }
-#endif
 
 // Premultiplied colour and opacity of a stretch of some mm.
-#if !FEATURE_VOLUME_ADAPTIVE
 vec4 stretch(Ray ray, float t, float mm, float step, inout float before) {
 #if FEATURE_VOLUME_RIEMANN
     vec4 m = medium_at(value_at(at(ray, t + 0.5 * mm)));
@@ -83,12 +72,11 @@ vec4 stretch(Ray ray, float t, float mm, float step, inout float before) {
     return vec4(m.rgb * a, a);
 #endif
 }
-#endif
 
 // Colour (premultiplied) and opacity, and where the first of it is.
 bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
     float t = start;
-    Before before = before_at(ray, t);
+    float before = before_at(ray, t);
     light = vec4(0.0);
     hit = -1.0;
     while (t < ray.last && light.a < opaque_from) {
@@ -111,16 +99,10 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
         }
 #endif
         do {
-#if FEATURE_VOLUME_ADAPTIVE
-            float whole = to_end_of_cell(ray, t, step), mm = min(whole, ray.last - t);
-            vec4 part = adaptive_stretch(ray, t, mm, step, 1.0 - light.a, before);
-#else
-            float whole = step, mm = min(step, ray.last - t);
-            vec4 part = stretch(ray, t, mm, step, before);
-#endif
+            vec4 part = stretch(ray, t, min(step, ray.last - t), step, before);
             if (part.a > 0.0 && hit < 0.0) hit = t;
             light += (1.0 - light.a) * part;
-            t += whole;
+            t += step;
         } while (t < end && t < ray.last && light.a < opaque_from);
     }
     if (light.a >= opaque_from) light /= light.a;      // what is behind would not be seen

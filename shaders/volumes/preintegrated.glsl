@@ -14,16 +14,21 @@
 // That is of no help at an edge between two cells, where the value turns at once: what the step's line is off by depends on where in
 // it the edge is. There is one if the bend is large; then the step is taken again in parts, and so are those that follow as long
 // as their last part bends. A kink D at a share x of the step shows as (1 - x) D, and its line is off by x (1 - x) D / 2 at most:
-// what hardly shows is hardly off.
+// what hardly shows is hardly off. By how much values may bend depends on them: pvfiblets/volumes/steepness.py. Where even parts are not
+// to be looked up, light is that of volumes/adaptive.glsl.
 
 uniform sampler2D segments;       // of a step: premultiplied colour and opacity by the values at both ends; above, of a part
 #if FEATURE_VOLUME_FINER
-uniform float allowed_bend;
+uniform sampler2D allowed_bends;  // by the values at a step's ends; above, of a part; negative where the table is off
+uniform float all_bends;          // what nothing exceeds
 uniform vec2 opaque_values;       // what is lower than the first or higher than the second is not seen
 const float PARTS = float({{ parts }});
 #define SHORTEST (step / PARTS)
 #else
 #define SHORTEST step
+#endif
+#if FEATURE_VOLUME_EXACT
+#include "volumes/adaptive.glsl"
 #endif
 
 const float MOVED = 1.0 / 12.0, UNKNOWN = 3e38;
@@ -37,6 +42,12 @@ vec4 light_of_step(float front, float back, float row) {
     return middle >= value_low && middle <= value_high ? textureLod(segments, place, 0.0) : vec4(0.0);
 }
 
+#if FEATURE_VOLUME_FINER
+float allowed_between(float front, float back, float row) {
+    return textureLod(allowed_bends, vec2(place_of(front), 0.5 * (min(place_of(back), 0.999999) + row)), 0.0).x;
+}
+#endif
+
 // Colour (premultiplied) and opacity, and where the first of it is.
 bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
     float t = start, front = value_at(at(ray, t)), slope = UNKNOWN;
@@ -45,7 +56,13 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
 #endif
     light = vec4(0.0);
     hit = -1.0;
+#if FEATURE_VOLUME_EXACT
+    for (;;) {
+    bool off = false;       // the next stretch is not to be looked up
+    while (!off && t + SHORTEST <= ray.last && light.a < opaque_from) {
+#else
     while (t + SHORTEST <= ray.last && light.a < opaque_from) {
+#endif
         float number, end = t + to_end_of_node(ray, t, 0.5, number);
         if (number <= 0.5 && end - t >= step) {
             t += floor((end - t) / step) * step;
@@ -71,17 +88,23 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             float share = parts > 0.0 ? 1.0 / PARTS : 1.0;
             float back = value_at(at(ray, t + share * step)), change = back - front;
             float bend = slope == UNKNOWN ? 0.0 : change - share * slope, seen = abs(bend) * (1.0 - light.a);
+            float row = parts > 0.0 ? 1.0 : 0.0, allowed = allowed_between(front, back, row);
             bool visible = max(front, back) + abs(bend) > opaque_values.x && min(front, back) - abs(bend) < opaque_values.y;
-            if (parts == 0.0 && visible && (seen > allowed_bend || slope == UNKNOWN || t + step > ray.last)) {
+#if FEATURE_VOLUME_EXACT
+            off = visible && (allowed < 0.0 || (parts > 0.0 && seen > allowed));
+            if (off) break;
+#endif
+            bool bent = seen > allowed || (slope == UNKNOWN && allowed < all_bends);
+            if (parts == 0.0 && visible && (bent || t + step > ray.last)) {
                 parts = PARTS;
             } else {
-                vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, parts > 0.0 ? 1.0 : 0.0);
+                vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, row);
                 if (part.a > 0.0 && hit < 0.0) hit = t;
                 light += (1.0 - light.a) * part;
                 t += share * step;
                 front = back;
                 slope = change / share;
-                parts = parts == 1.0 && PARTS * seen > allowed_bend ? PARTS : max(parts - 1.0, 0.0);
+                parts = parts == 1.0 && PARTS * PARTS * seen > allowed ? PARTS : max(parts - 1.0, 0.0);
             }
         } while ((parts > 0.0 || t < end) && t + SHORTEST <= ray.last && light.a < opaque_from);
 #else
@@ -96,6 +119,21 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
         } while (t < end && t + SHORTEST <= ray.last && light.a < opaque_from);
 #endif
     }
+#if FEATURE_VOLUME_EXACT
+    if (!(t < ray.last && light.a < opaque_from)) break;
+    // What is off, or left in the end. In a loop of its own: software OpenGL works out what branches leave out, at every step.
+    float mm = min(parts > 0.0 || !off ? step / PARTS : step, ray.last - t);
+    Look here = look_at(u_of(front));
+    vec4 part = adaptive_stretch(ray, t, mm, step, 1.0 - light.a, here);
+    if (part.a > 0.0 && hit < 0.0) hit = t;
+    light += (1.0 - light.a) * part;
+    t += mm;
+    float back = value_at(at(ray, t));
+    slope = (back - front) * (step / mm);
+    front = back;
+    parts = parts == 1.0 ? PARTS : max(parts - 1.0, 0.0);      // it bent in the last of them
+    }
+#else
     if (t < ray.last && light.a < opaque_from) {
         // What is left is shorter. A power is dear, and software OpenGL works out what branches leave out: not in the loop.
         vec4 part = light_of_step(value_at(at(ray, t)), value_at(at(ray, ray.last)), 0.0);
@@ -104,6 +142,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             light += (1.0 - light.a) * part * ((1.0 - pow(1.0 - min(part.a, 0.9999999), (ray.last - t) / step)) / part.a);
         }
     }
+#endif
     if (light.a >= opaque_from) light /= light.a;      // what is behind would not be seen
     return light.a > 0.0;
 }

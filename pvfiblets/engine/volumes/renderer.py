@@ -34,7 +34,7 @@ _OF_MODE = {
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
 _OF_REFINEMENT = {"none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
 _OF_INTEGRATOR = {
-    "adaptive": ["VOLUME_PREINTEGRATED"],  # where that does
+    "adaptive": ["VOLUME_PREINTEGRATED"],  # and more where that does not do
     "preintegrated": ["VOLUME_PREINTEGRATED"],
     "exponential": [],
     "riemann": ["VOLUME_RIEMANN"],
@@ -213,8 +213,9 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":
-            features += ["VOLUME_ADAPTIVE"] if self._tables.steep else _OF_INTEGRATOR[casting.integrator]
+            features += _OF_INTEGRATOR[casting.integrator]
             features += ["VOLUME_FINER"] if self._tables.finer else []
+            features += ["VOLUME_EXACT"] if self._tables.exact else []
             features += ["VOLUME_HOMOGENEOUS"] if takes_means(casting) else []
         features += [] if casting.octree else ["VOLUME_WHOLE"]
         return [*features, *(["VOLUME_JITTER"] if casting.jitter else []), *(["SCENE_DEPTH"] if outside else [])]

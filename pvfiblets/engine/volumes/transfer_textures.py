@@ -10,18 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.raycast_options import LARGEST
-from ...volumes.steepness import KINKS, PARTS, allowed_bend, is_steep, largest_bend, typical_bend
+from ...volumes.steepness import DEEP, KINKS, PARTS, allowed_bends, largest_bend
 from ..bindings import VOLUMES
 
 if TYPE_CHECKING:
     from ...volumes.raycast_options import RaycastOptions
+    from ...volumes.transfer import Transfer
     from ...volumes.volume import RaycastVolume
 
 __all__ = ["TransferTextures"]
 
 SIZE = 1024
 """Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
-
 
 
 class TransferTextures:
@@ -34,10 +34,10 @@ class TransferTextures:
 
     Attributes
     ----------
-    steep : bool
-        Whether stretches must be halved where they are steep, for one look-up a step would not do.
     finer : bool
         Whether steps are taken in parts where values bend.
+    exact : bool
+        Whether there are values between which not even parts of a step may be looked up: stretches are halved there.
     """
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
@@ -45,7 +45,7 @@ class TransferTextures:
         self._made_for: object = None
         self._textures: dict[str, moderngl.Texture] = {}
         self._numbers: dict[str, float | tuple[float, float]] = {}
-        self.steep = self.finer = False
+        self.finer = self.exact = False
 
     def make(self, casting: RaycastOptions, step: float) -> None:
         """Bring them up to date for steps of some mm."""
@@ -60,32 +60,42 @@ class TransferTextures:
             values = np.linspace(*transfer.clim, max(SIZE, len(transfer.table)))
             medium = np.concatenate([transfer.colour(values), transfer.extinction(values)[:, None]], axis=1)
             self._textures["colours"] = self._texture(medium[None])
-            self.steep = adaptive and is_steep(transfer, step, casting.low, casting.high, self._chord(casting))
-            self.finer = adaptive and not self.steep and self._bends_in(step) > KINKS * allowed_bend(transfer, step)
+            if adaptive:
+                self._allow(transfer, step, casting.low, casting.high)
             if beforehand is not None:
                 lengths = [beforehand, *([beforehand / PARTS] if self.finer else [])]
                 rows = [transfer.preintegrated(length).transpose(1, 0, 2) for length in lengths]
                 self._textures["segments"] = self._texture(np.concatenate(rows))
-            if self.finer:
-                ends = np.clip(transfer.opaque_range, -LARGEST, LARGEST).tolist()
-                self._numbers = {"allowed_bend": allowed_bend(transfer, step), "opaque_values": (ends[0], ends[1])}
-            if self.steep:
+            if self.exact:
                 media, places = transfer.media()
-                self._numbers = {"places_per_entry": float(places), "opacity_unit": transfer.unit}
+                self._numbers["places_per_entry"] = float(places)
                 self._textures["media"] = self._texture(media)
         self._made_for = key
 
-    def _chord(self, casting: RaycastOptions) -> float:
-        """Return how far values within a step typically are from its chord."""
-        return 0.25 * min(casting.step, 1.0) * self._typical_bend
+    def _allow(self, transfer: Transfer, step: float, low: float, high: float) -> None:
+        """Find what rays must do where values bend, or where a look-up is off; do no more than this volume needs."""
+        allowed, bend = allowed_bends(transfer, step, low, high), self._bends_in(step)
+        there = self._met(transfer, len(allowed))
+        least = float(allowed[there, there].min())
+        deep = step * transfer.largest_extinction > DEEP
+        self.finer = deep or bend > KINKS * least
+        if not self.finer:
+            return
+        in_parts = allowed_bends(transfer, step / PARTS, low, high)
+        self.exact = deep or least < 0.0 or bend / PARTS > KINKS * float(in_parts[there, there].min())
+        self._textures["allowed_bends"] = self._numbers_texture(np.concatenate([allowed.T, in_parts.T]))
+        ends = np.clip(transfer.opaque_range, -LARGEST, LARGEST).tolist()
+        self._numbers |= {"all_bends": transfer.clim[1] - transfer.clim[0], "opaque_values": (ends[0], ends[1])}
+
+    def _met(self, transfer: Transfer, count: int) -> slice:
+        """Return which of so many intervals of colours have values of the volume."""
+        ends = (np.array(self._volume.value_range) - transfer.clim[0]) / (transfer.clim[1] - transfer.clim[0]) * count
+        first, last = np.clip(np.floor(ends), 0, count - 1).astype(int)
+        return slice(int(first), int(last) + 1)
 
     def _bends_in(self, step: float) -> float:
         """Return by how much, at the most, the change of values changes from one step to the next, across an edge."""
         return step / float(self._volume.spacing.min()) * self._largest_bend
-
-    @cached_property
-    def _typical_bend(self) -> float:
-        return typical_bend(self._volume)
 
     @cached_property
     def _largest_bend(self) -> float:
@@ -95,6 +105,12 @@ class TransferTextures:
         height, width = rows.shape[:2]
         texture = self._ctx.texture((width, height), 4, np.ascontiguousarray(rows, "<f4"), dtype="f4")
         texture.filter = moderngl.LINEAR, moderngl.LINEAR
+        texture.repeat_x = texture.repeat_y = False
+        return texture
+
+    def _numbers_texture(self, rows: npt.NDArray[Any]) -> moderngl.Texture:
+        texture = self._ctx.texture(rows.shape[::-1], 1, np.ascontiguousarray(rows, "<f4"), dtype="f4")
+        texture.filter = moderngl.NEAREST, moderngl.NEAREST
         texture.repeat_x = texture.repeat_y = False
         return texture
 
@@ -111,11 +127,15 @@ class TransferTextures:
     @property
     def sizes(self) -> dict[str, int]:
         """Bytes by name."""
-        return {name: 16 * texture.width * texture.height for name, texture in self._textures.items()}
+        return {
+            name: 4 * texture.components * texture.width * texture.height for name, texture in self._textures.items()
+        }
 
     def release(self) -> None:
         """Give everything back; twice is harmless."""
         for texture in self._textures.values():
             texture.release()
         self._textures.clear()
+        self._numbers.clear()
+        self.finer = self.exact = False
         self._made_for = None

@@ -175,8 +175,8 @@ class VolumeSettings(Settings):
     integrator: Setting[str] = Setting(
         "adaptive",
         'How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
-        'light however dense and steep opacities are: it is ``"preintegrated"`` where that suffices, takes steps in '
-        "parts at edges from voxel to voxel, and is several times as slow where opacities are steep.",
+        'light however dense and steep opacities are: by its own values each step is taken as by ``"preintegrated"``, '
+        "in parts where values bend, or halved until its halves agree.",
         kind="str",
         choices=INTEGRATORS,
         where=CASTING,
