@@ -20,6 +20,8 @@ __all__ = ["MeshProgram"]
 _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x955A}
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
+_STRICT, _LAX = "flat perprimitiveEXT in", "perprimitiveEXT in"
+"""How fragments are handed integers of a primitive: Khronos' compiler refuses the second, Mesa's the first."""
 _LONGEST = 256
 """Characters of a uniform's name, the closing zero included."""
 
@@ -57,7 +59,7 @@ class MeshProgram:
         shaders = []
         try:
             for name, source in sources.items():
-                shaders.append(self._compiled(name, source))
+                shaders.append(self._compiled_either(name, source))
                 self._call("glAttachShader", self.glo, shaders[-1])
             self._call("glLinkProgram", self.glo)
             self._check("Program", self.glo, _LINK_STATUS, "the program")
@@ -77,6 +79,15 @@ class MeshProgram:
 
     def _call(self, name: str, *arguments: Any) -> Any:
         return self._gl.function(name)(*arguments)
+
+    def _compiled_either(self, name: str, source: str) -> int:
+        """Compile a stage as it is; if that fails, by the other word for what primitives hand over."""
+        try:
+            return self._compiled(name, source)
+        except moderngl.Error:
+            if _STRICT not in source:
+                raise
+            return self._compiled(name, source.replace(_STRICT, _LAX))
 
     def _compiled(self, name: str, source: str) -> int:
         shader: int = self._call("glCreateShader", _STAGES[name])

@@ -191,7 +191,8 @@ def assemble(
         The stage's text, instead of a file; ``name`` then only serves messages.
     version : int
         Of GLSL: sources are written for 4.30 and the later ones that they name. Below 4.20 bindings are left out, for
-        the caller to make; below 4.00 ``shaders/fiblets/data/glsl330.glsl`` supplies what is missing.
+        the caller to make, and lines that end in a backslash are joined with the next; below 4.00
+        ``shaders/fiblets/data/glsl330.glsl`` supplies what is missing.
 
     Returns
     -------
@@ -236,7 +237,7 @@ def assemble(
     switches = "".join(f"#define FEATURE_{feature} {int(feature in active)}\n" for feature in sorted(used))
     if version < NEWEST:
         if version < 420:
-            body = _BINDING.sub("", body)
+            body = _BINDING.sub("", body).replace("\\\n", " ")
         if version < 400:
             switches += read_shader("fiblets/data/glsl330.glsl")
         return f"#version {version}\n{switches}{head}{body}"

@@ -22,7 +22,7 @@ const float LEAST_SIDES = {{ least_sides }};
 const float MOST_SIDES = {{ most_sides }};
 const float MOST_STEPS = {{ most_steps }};
 
-uniform bool scaled;          // slopes are per mm, to be multiplied with the chord
+uniform int scaled;           // slopes are per mm, to be multiplied with the chord
 uniform vec4 depth_row;       // . (x, y, z, 1): distance in front of the eye, mm
 uniform float nearest;        // of the near plane, mm
 uniform float pixels;         // that 1 mm takes at a distance of 1 mm
@@ -43,7 +43,7 @@ float corners(vec4 place) {
 }
 
 void main() {
-    float chord = scaled ? distance(nodes[0].place.xyz, nodes[1].place.xyz) : 1.0;
+    float chord = scaled != 0 ? distance(nodes[0].place.xyz, nodes[1].place.xyz) : 1.0;
     ends[gl_InvocationID].place = nodes[gl_InvocationID].place;
     ends[gl_InvocationID].slope = nodes[gl_InvocationID].slope * chord;
     ends[gl_InvocationID].across = nodes[gl_InvocationID].across;

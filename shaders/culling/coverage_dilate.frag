@@ -41,7 +41,7 @@ uniform vec3 ray;            // v of the corner of texel (0, 0)
 uniform vec3 ray_x;          // change of v per texel; in a parallel view, of where v starts (mm)
 uniform vec3 ray_y;
 uniform vec2 pitch;          // least distance of neighbours' rays, per mm of distance from the eye in perspective
-uniform bool perspective;
+uniform int perspective;
 uniform vec2 radius;         // x: R (mm); y: by how many texels a gap is less
 uniform float far;           // zeta of the far plane: what is allowed behind it is as good as everything
 
@@ -62,7 +62,7 @@ float zeta_of(ivec2 texel, int level) {
 float allowed(float y, vec2 place, vec2 gap) {
     if (gap == vec2(0.0)) return y == EMPTY ? EMPTY : y + radius.x;
     vec3 delta = gap.x * ray_x + gap.y * ray_y, u = ray;
-    if (perspective) {
+    if (perspective != 0) {
         vec3 v = ray + place.x * ray_x + place.y * ray_y;
         u = v + delta;
         float side = radius.x * length(v) / length(cross(delta, v)), foot = side * dot(u, v) / dot(v, v);
@@ -89,7 +89,7 @@ void main() {
     most = max(most, allowed(EMPTY, vec2(middle.x, 0.0), vec2(0.0, max(low.y, 0.0))));
     most = max(most, allowed(EMPTY, vec2(middle.x, texels.y), vec2(0.0, min(high.y - float(texels.y), 0.0))));
     // Farther ones allow no more than is allowed already.
-    vec2 reach = radius.x / (pitch * (perspective ? most + eye : 1.0)) + 1.0 + radius.y;
+    vec2 reach = radius.x / (pitch * (perspective != 0 ? most + eye : 1.0)) + 1.0 + radius.y;
     int coarser = 0;
     while (max(reach.x, reach.y) > REACH * float(1 << coarser) && first_level + coarser < last_level) ++coarser;
     ivec2 last = (texels - 1) >> coarser, from = max(ivec2(floor(vec2(t) - reach)) >> coarser, ivec2(0));

@@ -15,7 +15,7 @@
 
 uniform sampler2D dilated;
 uniform ivec2 texels;       // in the last picture
-uniform bool perspective;   // was the last view
+uniform int perspective;    // was the last view
 uniform float eye;
 uniform mat4 clip_from_texel;   // of the next camera, from (X d, Y d, d, 1), or in a parallel view from (X, Y, zeta, 1)
 uniform vec4 zeta_from_texel;   // zeta of the next camera, likewise
@@ -29,7 +29,7 @@ const ivec2 CORNERS[6] = ivec2[6](ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0
 
 vec4 place(ivec2 texel, float depth) {
     vec2 at = vec2(texel) + 0.5;
-    return perspective ? vec4(at * (depth + eye), depth + eye, 1.0) : vec4(at, depth, 1.0);
+    return perspective != 0 ? vec4(at * (depth + eye), depth + eye, 1.0) : vec4(at, depth, 1.0);
 }
 
 void main() {

@@ -28,7 +28,7 @@ uniform mat3 normals_to_view;
 uniform usampler2D ids;
 uniform mat3 data_to_view;
 #endif
-uniform bool parallel;
+uniform int parallel;
 uniform float radius;
 uniform int samples;
 out float open;
@@ -55,7 +55,7 @@ void main()
 #if FEATURE_SURFACE_NORMALS
     vec3 normal = normalize(normals_to_view * direction_of(texelFetch(normals, pixel, 0).r));
 #else
-    vec3 viewer = parallel ? vec3(0.0, 0.0, 1.0) : normalize(-place);
+    vec3 viewer = parallel != 0 ? vec3(0.0, 0.0, 1.0) : normalize(-place);
     vec3 tangent = normalize(data_to_view * direction_of(texelFetch(ids, pixel, 0).g));
     vec3 normal = viewer - tangent * dot(tangent, viewer);
     float size_of_normal = length(normal);

@@ -1,4 +1,4 @@
-"""Mesh pipelines on a machine without mesh shaders: every stage compiled off-line, and run as compute shaders.
+"""Mesh pipelines on a machine without mesh shaders: linked off-line, and run as compute shaders.
 
 The drivers' own part is what remains: that they link what glslang links, and draw what the stages wrote.
 """
@@ -6,10 +6,10 @@ The drivers' own part is what remains: that they link what glslang links, and dr
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from types import SimpleNamespace
 
+import moderngl
 import numpy as np
 import pytest
 
@@ -17,7 +17,9 @@ from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
+from pvfiblets.engine.mesh_program import MeshProgram
 from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
+from tests.reference_compiler import glslang, link
 
 from .cells import SHIFT_256
 from .emulated import emulated_renderer
@@ -25,11 +27,6 @@ from .pictures import EVERY_POINT, SIZE, assert_same, differences, read
 from .polylines import to_clip, to_window
 from .visibility_bits import planned
 
-RECORDS = {
-    "directions": ["DIRECTION"],
-    "lattices": ["LATTICE", "WIDE_LATTICE", "ANCHORS_LOW"],
-    "both": ["DIRECTION", "LATTICE", "WIDE_LATTICE", "ANCHORS_LOW", "RANK_TO_ID"],
-}
 DRAWN = {
     "whole": [],
     "cut": ["CLIPPING", "CLIPPING_DEPTH", "LEVEL_OF_DETAIL"],
@@ -37,20 +34,6 @@ DRAWN = {
     "wide": ["WIDE_LINES", "LEVEL_OF_DETAIL"],
     "wide-planes": ["WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "LEVEL_OF_DETAIL"],
 }
-CULLED = {
-    "none": [],
-    "first": ["CULL_PYRAMID"],
-    "second": ["CULL_PYRAMID", "SECOND_ROUND", "SUBGROUPS"],
-    "coverage": ["CULL_COVERAGE", "SUBGROUPS"],
-}
-VALUES = {
-    "plain": [],
-    "stored": ["VALUES_STORED"],
-    "length": ["VALUES_ARC_LENGTH"],
-    "curvature": ["VALUES_CURVATURE"],
-    "volume": ["VALUES_VOLUME"],
-}
-
 
 def stages(kind, features):
     """Sources by glslang's names of the stages."""
@@ -62,38 +45,6 @@ def stages(kind, features):
     }
     every = {*features, "PER_PRIMITIVE"}
     return {stage: assemble(name, every, CONSTANTS, version=EXTENDED) for stage, name in files.items()}
-
-
-def glslang():
-    """Path of the compiler; the test is skipped where there is none."""
-    tool = shutil.which("glslangValidator")
-    if tool is None:
-        pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
-    return tool
-
-
-def link(folder, sources):
-    """Compile all stages and link them; return what glslang says."""
-    for stage, source in sources.items():
-        (folder / f"stage.{stage}").write_text(source)
-    paths = [str(folder / f"stage.{stage}") for stage in sources]
-    return subprocess.run([glslang(), "-l", *paths], capture_output=True, text=True, check=False)
-
-
-@pytest.mark.every("pair")
-@pytest.mark.parametrize("culled", CULLED)
-@pytest.mark.parametrize("drawn", DRAWN)
-@pytest.mark.parametrize("records", RECORDS)
-@pytest.mark.parametrize("kind", ["together", "serial"])
-def test_stages_compile_and_link(tmp_path, kind, records, drawn, culled):
-    for value in VALUES.values() if culled in ("none", "second") else [[]]:
-        sources = stages(kind, [*RECORDS[records], *DRAWN[drawn], *CULLED[culled], *value])
-        done = link(tmp_path, sources)
-        assert done.returncode == 0, done.stdout
-        assert "ERROR" not in done.stdout
-        for source in sources.values():
-            bindings = [int(n) for n in re.findall(r"std430, binding = (\d+)", source)]
-            assert len(set(bindings)) <= 8, "OpenGL promises eight"
 
 
 def test_the_compiler_sees_every_stage(tmp_path):
@@ -374,3 +325,27 @@ def test_emulation_replaces_one_page_only():
     source = read_shader("fiblets/mesh/outputs.glsl")
     for word in ("if", "for", "?"):
         assert not re.search(rf"(?m)^[^/\n]*(?<!\w){re.escape(word)}(?!\w)", source.replace("#if", ""))
+
+
+def test_fragments_are_handed_primitives_by_the_word_that_the_driver_takes(monkeypatch):
+    """Khronos' compiler wants `flat` beside the extension's word, and Mesa's refuses it."""
+    program = object.__new__(MeshProgram)
+    source = stages("together", ["DIRECTION", "MESH_EXT"])["frag"]
+    tried = []
+
+    def driver(refused):
+        def compiled(self, name, text):
+            tried.append(text)
+            if re.search(refused, text):
+                raise moderngl.Error(f"{name}: no {refused}")
+            return len(tried)
+
+        monkeypatch.setattr(MeshProgram, "_compiled", compiled)
+        return program._compiled_either("fragment_shader", source)
+
+    assert driver(r"\bVARYING perprimitiveEXT in") == 1
+    assert driver("flat perprimitiveEXT in") == 3
+    assert tried[0] == tried[1] == source
+    assert "#define VARYING perprimitiveEXT in" in tried[2]
+    with pytest.raises(moderngl.Error):
+        driver("void main")

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
-import shutil
-import subprocess
 from types import SimpleNamespace
 
 import pytest
 
 from pvfiblets.engine.fiblets import pipelines
-from pvfiblets.engine.shaders import Programs, assemble, read_shader
+from pvfiblets.engine.shaders import Programs, read_shader
 
 STAGES = {
     "geometry": (
@@ -54,29 +52,6 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     programs = Programs(older, pipelines.CONSTANTS)
     assert programs.render(chosen, [*every, *wide, *culling, *clipping, f"VALUES_{values}"]).glo
     programs.release()
-
-
-@pytest.mark.every("value")
-@pytest.mark.parametrize("name", STAGES)
-@pytest.mark.parametrize("values", [(), *((f"VALUES_{v}",) for v in ("STORED", "ARC_LENGTH", "CURVATURE", "VOLUME"))])
-def test_stages_link_for_the_reference_compiler(tmp_path, name, values):
-    """Mesa's compiler lets pass what others do not."""
-    tool = shutil.which("glslangValidator")
-    if tool is None:
-        pytest.skip("no glslangValidator on this machine (Debian: glslang-tools)")
-    version = 410 if "tessellation" in name else 330
-    wide = ["WIDE_LINES"] if "wide" in name else []
-    every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "RANK_TO_ID", "LEVEL_OF_DETAIL", "TEXTURE_DATA"]
-    for clipping in ((), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")):
-        for culling in ((), ("CULL_PYRAMID", "SECOND_ROUND"), ("CULL_COVERAGE",)):
-            files = []
-            for stage, file in zip(("vert", "tesc", "tese", "geom", "frag"), STAGES[name], strict=True):
-                if file is not None:
-                    features = [*every, *wide, *values, *clipping, *culling]
-                    files.append(tmp_path / f"stage.{stage}")
-                    files[-1].write_text(assemble(file, features, pipelines.CONSTANTS, version=version))
-            done = subprocess.run([tool, "-l", *map(str, files)], capture_output=True, text=True, check=False)
-            assert done.returncode == 0, done.stdout
 
 
 def switched(source, features):

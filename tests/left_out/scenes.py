@@ -5,6 +5,7 @@ PyVista is imported first and the process forked, so that what a scene imports i
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import sys
@@ -248,6 +249,20 @@ def frame(plotter, name: str) -> None:
         plotter.screenshot(None)
 
 
+def keep_shaders(folder: Path, mapper) -> None:
+    """Write into a folder what VTK compiles, with the pieces of the resolve in it: a file for each distinct text."""
+    from vtkmodules.util.misc import calldata_type
+    from vtkmodules.util.vtkConstants import VTK_OBJECT
+
+    @calldata_type(VTK_OBJECT)
+    def keep(caller, event, program):
+        for kind, shader in (("vert", program.GetVertexShader()), ("frag", program.GetFragmentShader())):
+            text = shader.GetSource()
+            (folder / f"vtk-{hashlib.sha1(text.encode()).hexdigest()}.{kind}").write_text(text)
+
+    mapper.AddObserver("UpdateShaderEvent", keep)
+
+
 def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
     """Draw a scene and say what it is made of."""
     sys.path.insert(0, str(Path(__file__).parent))
@@ -257,6 +272,7 @@ def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
     from watch import Watch  # nothing is drawn yet, and all that it imports is there already
 
     watch, plotter = Watch(), scene.plotter
+    keep_shaders(folder, scene.actor.mapper)
     plotter.show(auto_close=False)
     for _ in steps:
         pass

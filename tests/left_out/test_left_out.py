@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from pvfiblets.engine.shaders import FEATURES
+from tests.reference_compiler import complaints
 
 from .changed import CHANGED
 from .expected import COMPANIONS, expected
@@ -42,13 +43,19 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory, _headless, request):
+def folder(tmp_path_factory):
+    """Data of all scenes, and what VTK compiled for them."""
+    place = tmp_path_factory.mktemp("left-out")
+    prepare(place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def seen(folder, _headless, request):
     """What every scene that a test asks for is made of, by name."""
     renderer = _headless._context.info["GL_RENDERER"]
     if "llvmpipe" not in renderer:
         pytest.skip(f"what a picture is made of depends on the OpenGL; plain.py has llvmpipe's, this is {renderer}")
-    folder = tmp_path_factory.mktemp("left-out")
-    prepare(folder)
     items = (item for item in request.session.items if item.path == request.path and hasattr(item, "callspec"))
     asked = {item.callspec.params["name"] for item in items}
     names = [name for name in SCENES if name in asked]
@@ -104,3 +111,10 @@ def test_all_switches_that_were_on_are_told_and_no_others(seen, name):
     told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)
     of_pictures = {switch for switch in FEATURES if switch.startswith(("PICTURE_", "TONE_"))}
     assert told == set(seen[name]["features"]) - of_pictures
+
+
+def test_what_vtk_compiles_is_valid_for_the_reference_compiler(seen, folder):
+    """VTK's own shaders with the pieces of the resolve in them; drivers do not agree on what is."""
+    paths = sorted(folder.glob("vtk-*"))
+    assert len(paths) > len(seen) / 4
+    assert complaints(paths) == []

@@ -276,7 +276,7 @@ class CoverageBuffer:
             "ray_x": tuple(camera.ray_x),
             "ray_y": tuple(camera.ray_y),
             "pitch": tuple(pitch),
-            "perspective": camera.perspective,
+            "perspective": int(camera.perspective),
             "radius": (self.radius + self._thicker, less),
             "far": far,
         }.items():
@@ -301,7 +301,7 @@ class CoverageBuffer:
         self._textures[0].use(CULLING["occlusion"])
         program["dilated"] = CULLING["occlusion"]
         program["texels"] = texels
-        program["perspective"] = before.perspective
+        program["perspective"] = int(before.perspective)
         program["eye"] = before.eye
         program["clip_from_texel"] = tuple((clip @ place).T.ravel())
         program["zeta_from_texel"] = tuple(np.append(now.axis, 0.0) @ place)

@@ -71,7 +71,7 @@ class AmbientOcclusionPass(ScreenEffect):
         turn = tuple(np.asarray(directions_to_view, np.float64).T.ravel().tolist())
         uniforms = lens.uniforms() | {
             "data_to_view": turn,
-            "parallel": lens.scale[2] == 0.0,
+            "parallel": int(lens.scale[2] == 0.0),
             "radius": radius,
             "samples": samples,
             "strength": strength,

@@ -106,7 +106,7 @@ class Coverage(PicturePasses):
             target.viewport = (0, 0, *size)
             for index, lines in enumerate(drawn):
                 seen = outside | {"keys": lines.buffer.depth, "edges": lines.buffer.edges}
-                thinner = {"narrower": lines.narrower, "first": index == 0}
+                thinner = {"narrower": lines.narrower, "first": int(index == 0)}
                 self._tile_pass("visible_edges", target, seen, {**uniforms, **thinner}, features)
             picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
             try:

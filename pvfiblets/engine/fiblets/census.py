@@ -77,7 +77,7 @@ class Census:
     ) -> tuple[int, int | None]:
         program = self._programs.compute("fiblets/compute/count.comp", features)
         counts = storage_buffer(self._ctx, np.zeros(2, np.uint32), "counts")
-        program["marked"] = marks is not None
+        program["marked"] = int(marks is not None)
         if marks is not None:
             marks.bind_to_storage_buffer(STORAGE["visibility_bits"])
         for index, chunk in enumerate(chunks):

@@ -26,7 +26,7 @@ uniform sampler2D depths;
 #endif
 uniform ivec2 origin;
 uniform float narrower;
-uniform bool first;
+uniform int first;
 
 out uvec4 shown;
 
@@ -44,7 +44,7 @@ void main() {
     shown = uvec4(0u);
     bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, textureSize(keys, 0)));
     uint key = inside ? texelFetch(keys, pixel, 0).r : 0xFFFFFFFFu;
-    if (key == 0xFFFFFFFFu && !first) discard;
+    if (key == 0xFFFFFFFFu && first == 0) discard;
     if (!inside) return;
 #if FEATURE_PICTURE_SAMPLES
     float depth = 1.0;
@@ -63,7 +63,7 @@ void main() {
 #endif
     float z = float(key) / 4294967295.0;
     bool visible = key != 0xFFFFFFFFu && z <= depth + MARGIN;
-    if (!visible && !first) discard;
+    if (!visible && first == 0) discard;
     uint word = visible ? thinned(texelFetch(edges, pixel, 0).r) : 0u;
     shown = uvec4(floatBitsToUint(visible ? z : depth), word, packUnorm4x8(colour), 0u);
 }

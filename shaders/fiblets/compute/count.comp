@@ -12,7 +12,7 @@ layout(local_size_x = {{ group_size }}) in;
 
 layout(std430, binding = {{ storage_fiblet_counts }}) buffer Counts { uint in_view; uint drawn; };
 
-uniform bool marked;  // whether there are marks
+uniform int marked;  // whether there are marks
 
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
@@ -20,7 +20,7 @@ void main() {
     if (first >= chunk_fiblets) return;
     uint inside = 0u, these = 0u, count = min(32u, chunk_fiblets - first);
     for (uint i = 0u; i < count; ++i) inside += outside_view(first + i, capsule_of(first + i)) ? 0u : 1u;
-    if (marked) {
+    if (marked != 0) {
         for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk_first >> 5u) + word, which)));
     }
     atomicAdd(in_view, inside);

@@ -15,3 +15,8 @@ int findMSB(uint value) {
     return at;
 }
 int findMSB(int value) { return findMSB(uint(value < 0 ? ~value : value)); }
+uint packUnorm4x8(vec4 value) {
+    uvec4 bytes = uvec4(round(clamp(value, 0.0, 1.0) * 255.0));
+    return bytes.x | bytes.y << 8u | bytes.z << 16u | bytes.w << 24u;
+}
+vec4 unpackUnorm4x8(uint word) { return vec4(word & 255u, word >> 8u & 255u, word >> 16u & 255u, word >> 24u) / 255.0; }

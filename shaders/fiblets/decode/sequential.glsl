@@ -30,10 +30,16 @@ struct Walk {
 };
 
 Walk walk;
-precise vec3 walk_anchor;
-precise vec3 walk_point;
-precise vec3 walk_delta;
-precise vec4 walk_frame;
+vec3 walk_anchor;
+vec3 walk_point;
+vec3 walk_delta;
+vec4 walk_frame;
+#if __VERSION__ >= 400  // qualified afterwards: glslang takes `precise vec3 name;` for a variable of the next function
+precise walk_anchor;
+precise walk_point;
+precise walk_delta;
+precise walk_frame;
+#endif
 
 void walk_begin(uint f) {
     uvec3 words = decoding_words(f);

@@ -10,7 +10,7 @@
 #if FEATURE_CULL_PYRAMID
 #include "culling/visibility_prediction.glsl"
 
-uniform bool second_round;
+uniform int second_round;
 uniform usampler2D seen;  // a texel for each fiblet of all chunks
 uniform int seen_bits;    // its width is 2^seen_bits
 
@@ -25,7 +25,8 @@ bool survives(uint f) {
     if (outside_view(f, c)) return false;
 #if FEATURE_CULL_PYRAMID
     bool first = was_seen(f) || predicted_visible(c);
-    if (first == second_round || (second_round && hidden(c))) return false;
+    bool second = second_round != 0;
+    if (first == second || (second && hidden(c))) return false;
 #elif FEATURE_CULL_COVERAGE
     if (hidden(c)) return false;
 #endif

@@ -10,8 +10,8 @@
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif
-#if FEATURE_MESH_EXT
-#define VARYING perprimitiveEXT in
+#if FEATURE_MESH_EXT  // Mesa wants them without `flat` (pvfiblets/engine/mesh_program.py)
+#define VARYING flat perprimitiveEXT in
 #elif FEATURE_PER_PRIMITIVE
 #define VARYING flat perprimitiveNV in
 #else

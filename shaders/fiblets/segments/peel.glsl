@@ -41,7 +41,10 @@ const float WIDTHS = 2.0;
 uint peel_streamline;
 float peel_first;      // place of the fiblet's first point
 float peel_steps;      // of the segment, from point to point
-precise float peel_reach;
+float peel_reach;
+#if __VERSION__ >= 400
+precise peel_reach;
+#endif
 
 void begin_peel(uint streamline, float first_point) {
     peel_streamline = streamline;

@@ -357,7 +357,7 @@ class RasterPipeline(abc.ABC):
         if self._seen is not None and "seen" in program:
             self._seen.texture.use(FIBLET_ROUNDS["seen"])
             program["seen"], program["seen_bits"] = FIBLET_ROUNDS["seen"], self._seen.bits
-            program["second_round"] = "SECOND_ROUND" in features
+            program["second_round"] = int("SECOND_ROUND" in features)
         if self._target is not None and self._target.kept is not None and "first_round" in program:
             self._target.kept.use(FIBLET_ROUNDS["first_round"])
             program["first_round"] = FIBLET_ROUNDS["first_round"]

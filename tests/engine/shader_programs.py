@@ -1,0 +1,358 @@
+"""Every program that the engine can link, and the features to compile it with: each pair of them at least once.
+
+A `Kind` is a program's files, and the features that they look at are those that it varies. What Python never asks for
+together stands once, in `EXCLUSIVE` and `NEEDS`. The rows of a kind are
+choices in which every pair of features that can occur does: a covering array, found greedily.
+"""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+
+from pvfiblets.engine import shaders
+from pvfiblets.engine.effects.ambient_occlusion import BIAS, GAIN
+from pvfiblets.engine.effects.antialias_coverage import TILE as LINE_TILE
+from pvfiblets.engine.effects.halos import TILE as HALO_TILE
+from pvfiblets.engine.effects.picture import STEPS
+from pvfiblets.engine.effects.picture import TILE as PICTURE_TILE
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
+from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
+from pvfiblets.engine.shaders import EXTENDED, NEWEST, assemble
+from pvfiblets.engine.volumes.ray_occlusion import GOLDEN, LIFT
+from pvfiblets.engine.volumes.uniform_blocks import CONSTANTS as OF_VOLUMES
+from pvfiblets.report.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
+
+__all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "rows", "varied"]
+
+VALUES = ("VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME")
+PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE")
+INTEGRATORS = (
+    "VOLUME_ADAPTIVE", "VOLUME_PREINTEGRATED", "VOLUME_RIEMANN", "VOLUME_SIMPSON", "VOLUME_ROMBERG", "VOLUME_RK4",
+)  # fmt: skip
+# One of each line, or none.
+EXCLUSIVE = (
+    VALUES,
+    PAINTS,
+    INTEGRATORS,
+    ("CULL_PYRAMID", "CULL_COVERAGE"),
+    ("ONE_SEGMENT", "CLIPPING"),
+    ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
+    ("GATHER", "PEEL", "EDGES"),
+    ("GATHER", "CROSS_LINE"),
+    ("TUBE_ILLINOIS", "TUBE_ITP", "TUBE_NEWTON"),
+    ("TUBE_VALUES", "TUBE_COLOURS"),
+    ("HALO_VALUES", "HALO_COLOURS"),
+    ("VOLUME_SURFACE", "VOLUME_COMPOSITE", "VOLUME_LOCAL"),
+    ("VOLUME_NEAREST", "VOLUME_TRICUBIC"),
+    ("VOLUME_UNREFINED", "VOLUME_NEWTON"),
+    ("VOLUME_WHOLE", "VOLUME_HOMOGENEOUS"),
+    ("TONE_REINHARD", "TONE_EXPONENTIAL", "TONE_ACES", "TONE_HABLE"),
+)
+# What the first asks for: all of one of the lines after it.
+NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
+    **dict.fromkeys(("CLIP_PLANES", "POINT_MASK", "CLIP_REGION"), (("CLIPPING", "CLIPPING_DEPTH"),)),
+    "CLIPPING_DEPTH": (("CLIPPING",),),
+    "WIDE_LATTICE": (("LATTICE",),),
+    "TUBES": (("WIDE_LINES",),),
+    "CROSS_LINE": (("WIDE_LINES",),),
+    "SECOND_ROUND": (("CULL_PYRAMID",),),
+    **dict.fromkeys(("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED"), (("GATHER",),)),
+    "PAINTED": tuple((source, "GATHER") for source in PAINTS),
+    **dict.fromkeys((*PAINTS, "PAINT_LIGHT", "PAINT_ALPHA"), (("PAINTED",),)),
+    "PAINT_TABLE": tuple((value, "PAINTED") for value in VALUES),
+    "PAINT_LOGARITHM": (("PAINT_TABLE",),),
+    "PAINT_OPACITIES": (("PAINT_ALPHA",),),
+    "PAINT_VALUE_OPACITY": tuple((value, "PAINT_ALPHA") for value in VALUES),
+    **dict.fromkeys(("VOLUME_UNREFINED", "VOLUME_NEWTON"), (("VOLUME_SURFACE",),)),
+    **dict.fromkeys((*INTEGRATORS, "VOLUME_FINER", "VOLUME_HOMOGENEOUS"), (("VOLUME_COMPOSITE",),)),
+    "TUBE_HOLLOW": (("TUBE_CHAIN",),),
+    "HALO_TAPER": (("!HALO_POINTS",),),
+    "HALO_CUT": (("!HALO_POINTS",),),
+}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """The files of a program.
+
+    Attributes
+    ----------
+    stages : mapping of str to str
+        Files by glslang's names of stages.
+    versions : tuple of int
+        Of GLSL: what drivers of different ages get.
+    always, never : tuple of str
+        Features that are on in all such programs, or in none.
+    needs : mapping
+        More of `NEEDS`, for these programs; an empty entry takes one away.
+    constants : mapping
+    """
+
+    stages: Mapping[str, str]
+    versions: tuple[int, ...] = (NEWEST,)
+    always: tuple[str, ...] = ()
+    never: tuple[str, ...] = ()
+    needs: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
+    constants: Mapping[str, object] = field(default_factory=dict)
+
+    def sources(self, features, version: int) -> dict[str, str]:
+        """GLSL by glslang's names of stages."""
+        return {
+            stage: assemble(name, features, {**OF_PIPELINES, **self.constants}, version=version)
+            for stage, name in self.stages.items()
+        }
+
+
+def _features_in(name: str, seen: set[str]) -> set[str]:
+    if name in seen:
+        return set()
+    seen.add(name)
+    text = shaders.read_shader(name)
+    found = set(shaders._FEATURE.findall(text))
+    return found.union(*(_features_in(included, seen) for included in shaders._INCLUDE.findall(text)))
+
+
+def varied(kind: Kind) -> tuple[str, ...]:
+    """Features that programs of a kind look at, and that are not the same in all of them."""
+    found = set().union(*(_features_in(name, set()) for name in kind.stages.values()))
+    return tuple(sorted(found - set(kind.always) - set(kind.never)))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Features that are on, those that must be off, and nothing that contradicts `NEEDS` or `EXCLUSIVE`."""
+
+    needs: Mapping[str, tuple[tuple[str, ...], ...]]
+    draw: random.Random
+    on: frozenset[str]
+    off: frozenset[str]
+
+    def having(self, names: Iterable[str]) -> Choice | None:
+        """Return the choice with more features, and all that these need; None if that cannot be."""
+        on, off, todo = set(self.on), set(self.off), list(names)
+        while todo:
+            name = todo.pop()
+            if name.startswith("!"):
+                off.add(name[1:])
+                continue
+            if name in on:
+                continue
+            on.add(name)
+            off |= _BESIDE.get(name, frozenset())
+            options = self.needs.get(name, ())
+            if options and not any(all(other in on or other[0] == "!" for other in option) for option in options):
+                free = [option for option in options if not off.intersection(option)]
+                todo += self.draw.choice(free or options)
+            elif options:
+                todo += [other for other in options[0] if other[0] == "!"]
+        return None if on & off else Choice(self.needs, self.draw, frozenset(on), frozenset(off))
+
+
+_BESIDE = {
+    name: frozenset(other for line in EXCLUSIVE if name in line for other in line if other != name)
+    for name in itertools.chain(*EXCLUSIVE)
+}
+
+
+@cache
+def rows(kind_name: str, size: int = 2) -> list[frozenset[str]]:
+    """Return choices of a kind's features, the plain program first.
+
+    Parameters
+    ----------
+    kind_name : str
+        Of `KINDS`.
+    size : {2, 1}
+        Whether each pair of features that can occur (both, either, none) does in some choice, or each feature.
+    """
+    kind = KINDS[kind_name]
+    draw, names = random.Random(kind_name), varied(kind)
+    bits = {name: 1 << k for k, name in enumerate(names)}
+    empty = Choice({**NEEDS, **kind.needs}, draw, frozenset(), frozenset(kind.never)).having(kind.always)
+    assert empty is not None
+
+    def word(choice: Choice) -> int:
+        return sum(bits.get(name, 0) for name in choice.on)
+
+    # A pair is the bits that it speaks of, and what they are to be.
+    levels = [(bits[name], bits[name] * on) for name in names for on in (1, 0)]
+    pairs = [(m | n, v | w) for (m, v), (n, w) in itertools.combinations(levels, 2) if m != n]
+    missing = np.array((pairs if size == 2 else []) or levels, np.int64).reshape(-1, 2)
+    taken = []
+    choice = _decoding(empty, names)
+    while choice is not None or len(missing):
+        if choice is not None:
+            taken.append(choice.on)
+            missing = missing[(missing[:, 0] & word(choice)) != missing[:, 1]]
+        if not len(missing):
+            break
+        mask, value = missing[0].tolist()
+        fixed = [name if value & bit else f"!{name}" for name, bit in bits.items() if mask & bit]
+        begun = [_begun(empty, fixed, names) for _ in range(8)]
+        filled = [_filled(begin, names) for begin in begun if begin is not None]
+        choice = max(filled, key=lambda one: ((missing[:, 0] & word(one)) == missing[:, 1]).sum(), default=None)
+        if choice is None:  # it cannot occur
+            missing = missing[1:]
+    return taken
+
+
+def _begun(empty: Choice, fixed: list[str], names: tuple[str, ...]) -> Choice | None:
+    """Return a choice with some features fixed, and what these need."""
+    begun = empty.having([name for name in fixed if name[0] == "!"])
+    begun = begun and begun.having([name for name in fixed if name[0] != "!"])
+    return begun and _decoding(begun, names)
+
+
+def _decoding(choice: Choice, names: tuple[str, ...]) -> Choice | None:
+    """Add a kind of record, if fiblets are decoded: there is no set without."""
+    kinds = [name for name in ("DIRECTION", "LATTICE") if name not in choice.off]
+    if "DIRECTION" not in names or choice.on.intersection(kinds):
+        return choice
+    return choice.having([choice.draw.choice(kinds)]) if kinds else None
+
+
+def _filled(choice: Choice, names: tuple[str, ...]) -> Choice:
+    """Add half of the other features, as far as they go with those that are there."""
+    for name in choice.draw.sample(names, len(names)):
+        if name not in choice.on and name not in choice.off and choice.draw.random() < 0.5:
+            choice = choice.having([name]) or choice
+    return choice
+
+
+SCREEN = (330, 410, NEWEST)
+FREE = {"CLIP_PLANES": (), "POINT_MASK": (), "CLIP_REGION": ()}  # what culls is drawn by nobody
+# Whole programs of the rasteriser: both edges of the picture or none.
+RASTER = {"CLIPPING": (("CLIPPING_DEPTH",),), "REGION_FIELDS": (("CLIP_REGION",),)}
+GATHERED = ("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED")
+PICTURE = ("blur", "copy", "gather", "mean", "reach", "tiles", "tone")
+
+
+def _raster(vertex: Mapping[str, str], fragment: str, versions, always, never=()) -> Kind:
+    wide = fragment == "capsule"
+    fragments = {"frag": f"fiblets/hardware_raster/{fragment}.frag"}
+    never = (*never, "ONE_SEGMENT", *(() if wide else ("WIDE_LINES", "TUBES", "CROSS_LINE")))
+    return Kind({**vertex, **fragments}, versions, (*always, *(("WIDE_LINES",) if wide else ())), never, RASTER)
+
+
+def _fiblets() -> dict[str, Kind]:
+    kinds: dict[str, Kind] = {}
+    survivors, textured = {"vert": "fiblets/hardware_raster/survivors.vert"}, ("TEXTURE_DATA",)
+    not_mesh = ("PER_PRIMITIVE", "MESH_EXT", "SUBGROUPS")
+    decode = {**survivors, "tesc": "fiblets/tessellation/decode.tesc"}
+    for fragment, shape in (("line", "lines"), ("capsule", "capsules")):
+        kinds[f"geometry {fragment}"] = _raster(
+            {**survivors, "geom": f"fiblets/geometry/{shape}.geom"}, fragment, (330, 410, NEWEST), textured, not_mesh
+        )
+        stages = {**decode, "tese": f"fiblets/tessellation/{shape}.tese"}
+        if fragment == "capsule":
+            stages["geom"] = "fiblets/tessellation/capsules.geom"
+        kinds[f"tessellation {fragment}"] = _raster(stages, fragment, (410, NEWEST), textured, not_mesh)
+        for how, form in itertools.product(("together", "serial"), ("nv", "ext")):
+            stages = {"task": "fiblets/mesh/fiblets.task", "mesh": f"fiblets/mesh/{how}.mesh"}
+            always = ("PER_PRIMITIVE", *(("MESH_EXT",) if form == "ext" else ()))
+            never = ("TEXTURE_DATA", *(() if form == "ext" else ("MESH_EXT",)))
+            kinds[f"{form} mesh {how} {fragment}"] = _raster(stages, fragment, (EXTENDED,), always, never)
+    classes = {**RASTER, "CLIPPING": ()}
+    for stage in ("depth", "gather", "resolve_owner", "resolve_ties"):
+        gathers = ("GATHER",) if stage == "gather" else ()
+        kinds[f"compute {stage}"] = Kind(
+            {"comp": f"fiblets/compute/{stage}.comp"},
+            always=gathers,
+            never=("TEXTURE_DATA", "PER_PRIMITIVE", "INT64_ATOMICS", *(() if gathers else GATHERED)),
+            needs=classes,
+        )
+    for stage in ("arguments", "clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
+        needs = FREE if stage == "query" else {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
+        kinds[f"compute {stage}"] = Kind(
+            {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs
+        )
+    for stage in ("clear", "depth", "split"):
+        kinds[f"compute {stage}, 64 bits"] = Kind(
+            {"comp": f"fiblets/compute/{stage}.comp"},
+            (EXTENDED,),
+            always=("INT64_ATOMICS",),
+            never=("TEXTURE_DATA", *GATHERED),
+            needs=classes,
+        )
+    for name, fragment in (("count", "count"), ("measure", None), ("visible", "visible")):
+        stages = {"vert": f"fiblets/hardware_raster/{name}.vert"}
+        if fragment:
+            stages["frag"] = f"fiblets/hardware_raster/{fragment}.frag"
+        always = () if name == "visible" else textured
+        needs = {**FREE, "REGION_FIELDS": (("CLIP_REGION",),)}
+        kinds[f"raster {name}"] = Kind(stages, SCREEN, always=always, needs=needs)
+    return kinds
+
+
+def _others() -> dict[str, Kind]:
+    kinds: dict[str, Kind] = {}
+
+    def screen(*names: str, vertex: str = "screen/triangle.vert", versions=SCREEN, **rest) -> None:
+        for name in names:
+            kinds[name] = Kind({"vert": vertex, "frag": f"{name}.frag"}, versions, **rest)
+
+    screen("fiblets/gather/greatest", "fiblets/gather/slice_keys", "fiblets/hardware_raster/between", "screen/keys")
+    screen("fiblets/layers/copy", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": ()})
+    screen("culling/coverage_dilate", "culling/pyramid_reduce")
+    screen("regions/inspect", "regions/tally", always=("PEEL",))
+    screen("culling/coverage_grid", vertex="culling/coverage_grid.vert")
+    screen("effects/halo", "effects/tile_min_distance", constants={"tile": HALO_TILE})
+    screen("effects/linear_depth", "effects/outline", "effects/selection_mask")
+    screen("effects/ssao", "effects/ssao_blur", constants={"gain": GAIN, "bias": BIAS})
+    picture = {"steps": float(STEPS), "tile": PICTURE_TILE}
+    screen(*(f"effects/picture/{name}" for name in PICTURE), constants=picture)
+    screen("effects/picture/line_tiles", constants={"tile": LINE_TILE})
+    tiled = [f"effects/picture/{name}" for name in ("antialias_coverage", "visible_edges")]
+    screen(*tiled, vertex="effects/picture/line_tiles.vert", constants={"tile": LINE_TILE})
+    screen("regions/peel", "regions/overflow", vertex="regions/surface.vert")
+    for outputs, kind, leaves in ((1, "SPHERE", 1), (2, "PLANES", 1), (4, "SPHERE", 2), (8, "PLANES", 2)):
+        constants = {
+            "leaves": leaves,
+            "kinds": ", ".join([f"RAYS_{kind}"] * leaves),
+            "planes": ", ".join(["0", "6"][:leaves]),
+            "expression": " && ".join(f"!LEAF({k})" for k in range(leaves)),
+            "outputs": outputs,
+        }
+        name = "regions/combine"
+        kinds[f"{name} {outputs}"] = Kind(
+            {"vert": "screen/triangle.vert", "frag": f"{name}.frag"}, SCREEN, constants=constants
+        )
+    screen("tubes/probe", needs={"CLIP_PLANES": (("TUBE_CHAIN",),)})
+    plain = {"CLIP_PLANES": ()}
+    for shape, vertex in (("rectangles", "rectangles"), ("pulled boxes", "boxes"), ("boxes", "pass")):
+        stages = {"vert": f"tubes/{vertex}.vert", "frag": "tubes/tube.frag"}
+        if vertex == "pass":
+            stages["geom"] = "tubes/boxes.geom"
+        kinds[f"tubes {shape}"] = Kind(stages, SCREEN, always=("TUBES",), needs=plain)
+    screen("tubes/attributes", vertex="screen/near.vert", always=("TUBES",), needs=plain)
+    for shape, points in (("strips", False), ("discs", True)):
+        point = {"always": ("HALO_POINTS",)} if points else {"never": ("HALO_POINTS",)}
+        stages = {"vert": f"halos/{shape}.vert", "frag": "halos/halo.frag"}
+        cut = {"CLIP_PLANES": () if points else (("HALO_CUT",),), "TUBES": ()}
+        never = (*point.get("never", ()), "TUBES")
+        kinds[f"halos {shape}"] = Kind(stages, SCREEN, point.get("always", ()), never, cut, OF_HALOS)
+    screen("halos/attributes", vertex="screen/near.vert", never=("TUBES",), constants=OF_HALOS)
+    volume = {"CLIP_REGION": ()}
+    screen("volumes/cast", "volumes/fill", "volumes/ray_occlusion_mean", needs=volume, constants=OF_VOLUMES)
+    occlusion = {**OF_VOLUMES, "lift": LIFT, "golden_u": GOLDEN[0], "golden_v": GOLDEN[1]}
+    screen("volumes/ray_occlusion", needs=volume, never=("VOLUME_HOMOGENEOUS",), constants=occlusion)
+    for name in ("culling/item_commands", "culling/visible_items", "halos/cull", "tubes/cull"):
+        always = ("TUBES",) if name == "tubes/cull" else ()
+        never = ("TUBES",) if name == "halos/cull" else ()
+        kinds[name] = Kind({"comp": f"{name}.comp"}, always=always, never=never, constants=OF_HALOS)
+    kinds["scene depth"] = Kind({"frag": "frame/scene_depth.frag"}, (330,))
+    stages = {stage: f"baselines/tessellated.{stage}" for stage in ("vert", "tesc", "tese", "frag")}
+    sides = {"least_sides": float(LEAST_SIDES), "most_sides": float(MOST_SIDES), "most_steps": 6.0}
+    sides |= {"tolerance": TOLERANCE, "discard": 0}
+    kinds["tessellated tubes"] = Kind(stages, constants=sides)
+    return kinds
+
+
+KINDS: dict[str, Kind] = {**_fiblets(), **_others()}
+"""Every program, by a name for messages."""
