@@ -119,6 +119,8 @@ FEATURES: dict[str, str] = {
     "TUBE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
     "PICTURE_SAMPLES": "a picture of several samples a pixel",
     "PICTURE_DEPTH": "the depths of a picture, beside its colours",
+    "SEEN_LIGHT": "the depth of light through a volume, where it is more than faint",
+    "SEEN_PEAK": "the depth of peaks in a volume, where their values show",
     "PICTURE_TONE": "other tones for a picture, beside depth of field",
     "TONE_REINHARD": "tones by Reinhard's operator",
     "TONE_EXPONENTIAL": "tones by the exponential function",

@@ -30,7 +30,7 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import Frame, frame_of, others_before, pixel_scale, smoothers, world_planes
+from pvfiblets.mappers.scene import Frame, frame_of, lenses, others_before, pixel_scale, smoothers, world_planes
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
@@ -264,11 +264,20 @@ class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Gene
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)
+        lens = lenses.get(renderer.GetAddressAsString(""))
+        if lens is not None and actor.HasTranslucentPolygonalGeometry():
+            lens[self.GetAddressAsString("")] = self._seen_through(buffer)
         if is_shifted(renderer.GetActiveCamera()) or style.exact:  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
+
+    def _seen_through(self, buffer: Any) -> Any:
+        """Return what depth of field is to know of a G-buffer of something translucent."""
+        from pvfiblets.engine.effects.picture import SeenThrough
+
+        return SeenThrough(buffer.depth)
 
     def _cuts(self) -> tuple[Any, Any]:
         """Return what cuts in world mm: planes, and the region that is not planes."""

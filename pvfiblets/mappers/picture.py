@@ -31,7 +31,7 @@ from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
-from pvfiblets.mappers.scene import in_motion
+from pvfiblets.mappers.scene import in_motion, lenses
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
 from pvfiblets.mappers.tiles import Margin, margin_of
@@ -66,6 +66,7 @@ class Picture:
 
     def __init__(self, renderer: vtkRenderer) -> None:
         self._renderer = weak(renderer)
+        self._address: str = renderer.GetAddressAsString("")
         self._tone = Tone()
         self._depth_of_field: DepthOfField | None = None
         self._prop: PictureProp | None = None
@@ -209,6 +210,7 @@ class Picture:
         """Leave the renderer and give everything on the GPU back; twice is harmless."""
         if self._smoothing is not None:
             self._smoothing.release()
+        lenses.pop(self._address, None)
         prop, self._prop = self._prop, None
         if prop is None:
             return
@@ -262,7 +264,9 @@ class Picture:
         self._begin()
 
     def _begin(self) -> None:
-        """Have mappers note the edges of this frame."""
+        """Have mappers note what effects want to know of this frame: edges, and what depths lack."""
+        if self._depth_of_field is not None:
+            lenses[self._address] = {}
         if self._smoothing is not None:
             self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
 
@@ -299,6 +303,7 @@ class Picture:
         if renderer.GetSelector() is not None:
             return
         self._overlay.let_go(renderer)
+        lenses.pop(self._address, None)
         if self._inside:
             return
         renderer.GetViewProps().RemoveItem(self._prop)
@@ -378,6 +383,7 @@ class Picture:
             effects.copy(colour, depth, viewport)
         else:
             effects.copy(colour, depth, viewport, size=margin.padded, corner=margin.corner(self._shift))
+        effects.take_in(lenses.get(self._address, {}).values())
         if self._shift != (0, 0):
             return
         lens = lens_of(renderer, viewport[2:])

@@ -16,6 +16,10 @@ Matrix = npt.NDArray[np.float64]
 smoothers: dict[str, Any] = {}
 """What smooths the edges of lines (`pvfiblets.mappers.antialias_coverage`), by the address of its vtkRenderer."""
 
+lenses: dict[str, dict[str, Any]] = {}
+"""What hides nothing in a picture with depth of field (`pvfiblets.engine.effects.picture.SeenThrough`), by the address
+of its vtkRenderer, then by that of the mapper."""
+
 USUAL_DPI = 72
 """Dots per inch of a vtkRenderWindow that nobody has changed."""
 

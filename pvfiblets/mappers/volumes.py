@@ -7,6 +7,7 @@ when all that is opaque is there, so that rays end at it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -243,6 +244,24 @@ class VolumeMapper(CutMapper[Options]):
         depth = slot.outside_depth(context.ctx)
         found = depth.copy(viewport, moved=True)
         return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
+
+    def _seen_through(self, buffer: Any) -> Any:
+        """Light and peaks that hardly show are not looked at."""
+        from pvfiblets.engine.effects.picture import FAINTEST, SeenThrough
+
+        if self._casting.mode == "composite":
+            return SeenThrough(buffer.depth, lights=buffer.colours)
+        colours = self._colouring
+        if self._casting.mode == "isosurface" or colours.lut is None or colours.clim is None:
+            return SeenThrough(buffer.depth)
+        shown = np.flatnonzero(colours.lut[:, 3] >= FAINTEST * 255.0)
+        if not shown.size:
+            return SeenThrough(buffer.depth, positions=buffer.position, values=(math.inf, -math.inf))
+        low, high = colours.clim
+        ends = low + (high - low) * np.array([shown[0], shown[-1] + 1]) / len(colours.lut)
+        least = -math.inf if shown[0] == 0 else float(ends[0])
+        greatest = math.inf if shown[-1] == len(colours.lut) - 1 else float(ends[1])
+        return SeenThrough(buffer.depth, positions=buffer.position, values=(least, greatest))
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> VolumeStyle:  # noqa: ARG002
         from pvfiblets.engine.volumes import VolumeStyle

@@ -4,7 +4,7 @@
 bool is_there(float value) { return value >= value_low && value <= value_high; }
 
 bool find_peak(Ray ray, float step, float start, out float hit, out float value) {
-    float t = start, best = -3e38;
+    float t = start, best = -3e38, found = -3e38;      // found: of a plateau, the first place counts, however values round
     hit = start;
     while (t <= ray.last) {
         float number, end = t + to_end_of_node(ray, t, best, number);
@@ -24,7 +24,10 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
             float v = value_at(at(ray, t));
             if (is_there(v) && v > best) {
                 best = v;
-                hit = t;
+                if (v > found + peak_rounding) {
+                    found = v;
+                    hit = t;
+                }
             }
 #if FEATURE_VOLUME_LOCAL
             over = v < best - peak_rounding && best >= peak_threshold;

@@ -6,6 +6,11 @@ made of are textures of a framebuffer that is not the engine's, known by their O
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +20,35 @@ from .picture_passes import Attachment, PicturePasses, bytes_of
 from .projection import Projection
 from .tone import Tone
 
-__all__ = ["Attachment", "PictureEffects"]
+__all__ = ["FAINTEST", "Attachment", "PictureEffects", "SeenThrough"]
+
+FAINTEST = 0.02
+"""Opacity below which things that one sees something through are not what one looks at."""
+
+_LARGEST = float(np.finfo(np.float32).max)
+
+
+@dataclass(frozen=True, eq=False)
+class SeenThrough:
+    """A G-buffer of something that hides nothing, but lies in focus or out of it.
+
+    Attributes
+    ----------
+    depth : moderngl.Texture
+        Where it begins, as keys.
+    lights : moderngl.Texture, optional
+        Colour and opacity, if that differs by pixel; what is fainter than `FAINTEST` does not count.
+    positions : moderngl.Texture, optional
+        With `values`: place and value by pixel; others do not count.
+    values : tuple of 2 floats
+        Least and greatest value that counts.
+    """
+
+    depth: moderngl.Texture
+    lights: moderngl.Texture | None = None
+    positions: moderngl.Texture | None = None
+    values: tuple[float, float] = (-math.inf, math.inf)
+
 
 class PictureEffects(PicturePasses):
     """What changes pictures in one context.
@@ -70,6 +103,34 @@ class PictureEffects(PicturePasses):
             target.viewport = (*corner, width, height)
             self._pass("copy", target, outside, uniforms, features)
         self._corner = corner
+
+    def take_in(self, things: Iterable[SeenThrough]) -> None:
+        """Have the copy's depths be those of things that one sees something through, where they are nearer.
+
+        Parameters
+        ----------
+        things : iterable of SeenThrough
+            Of the picture that was copied last, with its depths.
+        """
+        with self._plain_state():
+            target = self._framebuffer(("depths",))
+            self._ctx.enable_only(moderngl.BLEND)
+            self._ctx.blend_equation = moderngl.MIN, moderngl.MIN
+            for thing in things:
+                textures: dict[str, Any] = {"found": thing.depth}
+                uniforms: dict[str, Any] = {"corner": self._corner, "faintest": FAINTEST}
+                features = []
+                if thing.lights is not None:
+                    textures["lights"] = thing.lights
+                    features.append("SEEN_LIGHT")
+                if thing.positions is not None:
+                    textures["positions"] = thing.positions
+                    uniforms["values"] = tuple(min(max(value, -_LARGEST), _LARGEST) for value in thing.values)
+                    features.append("SEEN_PEAK")
+                target.viewport = (*self._corner, *thing.depth.size)
+                self._pass("seen_through", target, textures, uniforms, features)
+            self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+            self._ctx.enable_only(moderngl.NOTHING)
 
     def depths(self, rectangle: tuple[int, int, int, int]) -> npt.NDArray[np.float32]:
         """Read window depths of the copy.
