@@ -113,6 +113,7 @@ FEATURES: dict[str, str] = {
     "VOLUME_WHOLE": "rays that skip nothing",
     "VOLUME_FINER": "light of shorter steps where values bend",
     "VOLUME_EXACT": "light of stretches halved until they agree, where steps are not to be looked up",
+    "VOLUME_SHADED": "light through a volume that lamps shine on",
     "VOLUME_HOMOGENEOUS": "light through nodes of hardly any change at once",
     "VOLUME_JITTER": "rays that start at places of their own",
     "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",

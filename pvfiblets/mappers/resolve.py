@@ -51,6 +51,7 @@ FEATURES = (
     "illuminated",
     "line_light",
     "legend_colours",
+    "own_light",
     "ambient_occlusion",
     "ray_occlusion",
     "ink",

@@ -23,6 +23,7 @@ from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import PixelHit, nearest_pixel
 from pvfiblets.mappers.scene import in_motion, others_opaque
+from pvfiblets.mappers.volume_lamps import OwnLight, shading_of
 from pvfiblets.mappers.windows import Slot, WindowContext
 
 if TYPE_CHECKING:
@@ -87,6 +88,9 @@ class VolumeMapper(CutMapper[Options]):
 
     Attributes
     ----------
+    shaded : bool
+        Whether the scene's lights shine on light through the volume, as the actor's property reflects them. Takes
+        effect with the next frame.
     coarser : InteractiveQuality or None
         How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
 
@@ -103,7 +107,7 @@ class VolumeMapper(CutMapper[Options]):
 
     _NAME = "VolumeMapper"
 
-    COPIED = (*CutMapper.COPIED, "_casting", "_taken", "coarser")
+    COPIED = (*CutMapper.COPIED, "_casting", "_taken", "coarser", "shaded")
 
     def __init__(
         self,
@@ -122,6 +126,7 @@ class VolumeMapper(CutMapper[Options]):
         self._casting = casting
         self._taken: tuple[Any, ...] = (0, None)
         self.coarser: InteractiveQuality | None = None
+        self.shaded = False
         usual = _plain(casting) if volume is not None else None
         super().__init__(volume, colouring=usual, options=Options(), renderer_factory=renderer_factory)
         follows = self._follows and colouring is None
@@ -196,6 +201,9 @@ class VolumeMapper(CutMapper[Options]):
         surface = casting.mode == "isosurface"
         if surface != ("normals" in self._effects):
             self.set_effect("normals", SurfaceNormals() if surface else None)
+        light = casting.mode == "composite"
+        if light != ("own light" in self._effects):
+            self.set_effect("own light", OwnLight() if light else None)
 
     @property
     def colouring(self) -> Colouring:
@@ -269,7 +277,8 @@ class VolumeMapper(CutMapper[Options]):
         casting = self._casting
         if self.coarser is not None and in_motion(renderer):
             casting = self.coarser.of(casting)
-        return VolumeStyle(casting=casting)
+        lit = self.shaded and casting.mode == "composite" and self.actor is not None
+        return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)
 
 
 def _plain(casting: RaycastOptions) -> Colouring:

@@ -112,10 +112,11 @@ class _AddRaycastVolume(Protocol):
         refine: str = "regula-falsi", iterations: int = 5, integrator: str = "adaptive", jitter: bool = False,
         octree: bool = True, homogeneous: float = 0.0, recon: bool = False, sparse: int = 1,
         sparse_threshold: float = 0.05, stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5,
-        box: Any = None, lighting: bool | None = None, ray_occlusion: bool | dict[str, Any] = False,
-        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
-        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True, user_matrix: Any = None,
-        reset_camera: bool | None = None, render: bool = True,
+        box: Any = None, lighting: bool | None = None, shade: bool = False, ambient: float | None = None,
+        diffuse: float | None = None, specular: float | None = None, specular_power: float | None = None,
+        ray_occlusion: bool | dict[str, Any] = False, name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
     ) -> VolumeActor: ...
 
 class _RaycastVolumesComponent(RaycastVolumesComponent):

@@ -12,6 +12,7 @@
 // value is linear: integrated exactly beforehand.
 
 uniform sampler2D colours;
+#include "volumes/shading.glsl"
 
 float place_of(float value) { return clamp((value - transfer_low) / max(transfer_high - transfer_low, 1e-30), 0.0, 1.0); }
 
@@ -100,6 +101,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
 #endif
         do {
             vec4 part = stretch(ray, t, min(step, ray.last - t), step, before);
+            part = shaded(ray, t + 0.5 * min(step, ray.last - t), part);
             if (part.a > 0.0 && hit < 0.0) hit = t;
             light += (1.0 - light.a) * part;
             t += step;

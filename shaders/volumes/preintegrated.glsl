@@ -100,7 +100,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             } else {
                 vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, row);
                 if (part.a > 0.0 && hit < 0.0) hit = t;
-                light += (1.0 - light.a) * part;
+                light += (1.0 - light.a) * shaded(ray, t + 0.5 * share * step, part);
                 t += share * step;
                 front = back;
                 slope = change / share;
@@ -112,7 +112,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
             float bend = slope == UNKNOWN ? 0.0 : change - slope;
             vec4 part = light_of_step(front - MOVED * bend, back - MOVED * bend, 0.0);
             if (part.a > 0.0 && hit < 0.0) hit = t;
-            light += (1.0 - light.a) * part;
+            light += (1.0 - light.a) * shaded(ray, t + 0.5 * step, part);
             t += step;
             front = back;
             slope = change;
@@ -126,7 +126,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
     Look here = look_at(u_of(front));
     vec4 part = adaptive_stretch(ray, t, mm, step, 1.0 - light.a, here);
     if (part.a > 0.0 && hit < 0.0) hit = t;
-    light += (1.0 - light.a) * part;
+    light += (1.0 - light.a) * shaded(ray, t + 0.5 * mm, part);
     t += mm;
     float back = value_at(at(ray, t));
     slope = (back - front) * (step / mm);
@@ -139,6 +139,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
         vec4 part = light_of_step(value_at(at(ray, t)), value_at(at(ray, ray.last)), 0.0);
         if (part.a > 0.0) {
             if (hit < 0.0) hit = t;
+            part = shaded(ray, 0.5 * (t + ray.last), part);
             light += (1.0 - light.a) * part * ((1.0 - pow(1.0 - min(part.a, 0.9999999), (ray.last - t) / step)) / part.a);
         }
     }

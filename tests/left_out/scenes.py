@@ -222,6 +222,7 @@ SCENES = {
     "volume: gentle light": made("volume", mode="composite", opacity=[0, 0.05]),
     "volume: light": made("volume", mode="composite", opacity=[0, 0.5]),
     "volume: dense light": made("volume", mode="composite"),
+    "volume: shaded light": made("volume", mode="composite", shade=True),
     "volume: nearest": made("volume", filter="nearest"),
     "volume: tricubic": made("volume", filter="tricubic"),
     "volume: jitter": made("volume", jitter=True),

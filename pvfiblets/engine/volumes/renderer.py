@@ -21,6 +21,7 @@ from .uniform_blocks import CONSTANTS, RayBlock
 if TYPE_CHECKING:
     from ...volumes.raycast_options import RaycastOptions
     from ...volumes.volume import RaycastVolume
+    from .shading import Shading
 
 __all__ = ["VolumeRenderer", "VolumeStyle"]
 
@@ -53,9 +54,12 @@ class VolumeStyle(Style):
     values : str, optional
         Not looked at: the value of a voxel stands beside each pixel.
     casting : RaycastOptions
+    shading : Shading, optional
+        Of light: lamps that shine on it. Without, it has its own colours.
     """
 
     casting: RaycastOptions = field(kw_only=True)
+    shading: Shading | None = field(default=None, kw_only=True)
 
     @property
     def relief(self) -> str | None:
@@ -100,6 +104,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         super().__init__(ctx, CONSTANTS)
         self._volume = volume
+        self._shading: Shading | None = None
+        self._clim: tuple[float, float] | None = None
         with self._making():
             self._voxels = self._keep(VolumeTexture(ctx, volume), "voxels")
             self._block = self._keep(RayBlock(ctx, volume, (self._voxels.scale, self._voxels.shift)))
@@ -110,9 +116,13 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
         casting = style.casting
         self._nodes.make(casting)
+        self._clim = None if casting.transfer is None else casting.transfer.clim
         self._tables.make(casting, self._block.step_mm(casting))
         target = self._ray_target("gbuffer", view.size, style, marked=casting.sparse > 1)
+        shaded = casting.mode == "composite" and style.shading is not None
         features = [*self._features_of(casting, outside is not None), *self._cuts.update(view)]
+        features += ["VOLUME_SHADED"] if shaded else []
+        self._shading = style.shading if shaded else None
         self._block.write(view, casting, self._nodes.levels)
         self._voxels.filter(casting.filter != "nearest")
         if casting.sparse > 1:
@@ -184,6 +194,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         self._tables.bind(program)
         self._nodes.bind(program)
         self._cuts.bind(program)
+        if self._shading is not None and self._clim is not None:
+            self._shading.set_uniforms(program, self._volume, self._clim)
         self._place(program, stride, size)
         target.framebuffer.use()
         self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)

@@ -17,12 +17,15 @@ from ..errors import EngineError
 from ..uniform_struct import Field, UniformStruct
 from ..view import MAX_CLIP_PLANES, View
 
-__all__ = ["CONSTANTS", "MAX_LEVELS", "RayBlock"]
+__all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]
 
 MAX_LEVELS = 12
 """Levels of an octree: leaves of 8 voxels in a volume of up to 16,384 along an axis."""
 
-CONSTANTS: dict[str, Any] = {"adaptive_error": ALLOWED, "finest": FINEST, "parts": PARTS}
+MOST_LAMPS = 8
+"""Lamps of a scene that shine on light through a volume: the first ones that are on."""
+
+CONSTANTS: dict[str, Any] = {"adaptive_error": ALLOWED, "finest": FINEST, "parts": PARTS, "lamps": MOST_LAMPS}
 """Of the shaders."""
 
 MAX_PLANES = MAX_CLIP_PLANES + 2

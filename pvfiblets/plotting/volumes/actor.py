@@ -95,6 +95,7 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._finish(mapper, given)
         self._quality, mapper.coarser = given["interactive_quality"], coarser
+        mapper.shaded = bool(given["shade"])
         self._look()
         self._take(given)
 
@@ -132,6 +133,13 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     def _write_lighting(self, lighting: bool) -> None:
         self._lit = lighting
         self._look()
+
+    def _read_shade(self) -> bool:
+        return bool(self._mapper.shaded)
+
+    def _write_shade(self, shade: bool) -> None:
+        self._mapper.shaded = shade
+        self.Modified()
 
     # Questions ----------------------------------------------------------------------------------
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Real
 from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.setting_places import OWN, Effect, Own, Place
-from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings
+from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings, truth
 from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
 from pvfiblets.volumes.volume import FILTERS
 
@@ -36,7 +37,29 @@ class _Chosen(Own):
         return actor._choices[one.field]  # noqa: SLF001
 
 
-CASTING, CHOSEN = _Casting(), _Chosen()
+class _Reflection(Place):
+    """A number of the actor's ``prop``; ``None`` leaves it to the theme."""
+
+    made_with = False
+
+    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+        return getattr(actor.prop, setting.field)
+
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        if value is not None:
+            setattr(actor.prop, setting.field, float(value))
+
+
+CASTING, CHOSEN, REFLECTION = _Casting(), _Chosen(), _Reflection()
+
+
+def _up_to(most: float) -> Any:
+    def check(name: str, value: Any) -> float | None:
+        if value is not None and not (isinstance(value, Real) and 0.0 <= float(value) <= most):
+            raise ValueError(f"{name} is {value!r}; give a number from 0 to {most:g}, or None for the theme's")
+        return None if value is None else float(value)
+
+    return check
 
 
 def _mode(*modes: str) -> Any:
@@ -245,8 +268,40 @@ class VolumeSettings(Settings):
         where=CASTING,
     )
     lighting = shared.lighting("Shade surfaces by the scene's lights; the theme's by default.", None).but(
-        __doc__="Whether the scene's lights shade surfaces; light and peaks are not shaded.", where=OWN
+        __doc__="Whether the scene's lights shade surfaces; ``shade`` has them shade light, and peaks are not shaded.",
+        where=OWN,
     )
+    shade: Setting[bool] = Setting(
+        False,
+        "Whether the scene's lights shade light by the gradient of the values, as ``add_volume``'s ``shade``.\n\n"
+        "Both sides of a gradient are lit. Where values hardly change, by less than a 50th of ``clim``\n"
+        "from voxel to voxel, light goes over into its own colours: noise casts no shadows. Six more\n"
+        "looks at the volume for each step.",
+        kind="bool",
+        where=OWN,
+        check=truth,
+        row=Row("Shade", "Shade light by the scene's lights.", "Shading", "bool", matters=_mode("composite")),
+    )
+    ambient: Setting[float] = Setting(
+        None,
+        "Share of its colour that surfaces, and light with ``shade``, have without any lamp; the theme's by default.",
+        kind="float | None", where=REFLECTION, check=_up_to(1.0),
+    )  # fmt: skip
+    diffuse: Setting[float] = Setting(
+        None,
+        "Share of its colour that they have in full light; the theme's by default, 1.",
+        kind="float | None", where=REFLECTION, check=_up_to(1.0),
+    )  # fmt: skip
+    specular: Setting[float] = Setting(
+        None,
+        "Strength of reflections of the lamps themselves; the theme's by default, 0.",
+        kind="float | None", where=REFLECTION, check=_up_to(1.0),
+    )  # fmt: skip
+    specular_power: Setting[float] = Setting(
+        None,
+        "How small those are, 0 to 128; the theme's by default.",
+        kind="float | None", where=REFLECTION, check=_up_to(128.0),
+    )  # fmt: skip
     ambient_occlusion = shared.AMBIENT_OCCLUSION
     depth_cue = shared.DEPTH_CUE
     ray_occlusion: Setting[dict[str, Any] | bool] = Setting(
