@@ -15,7 +15,6 @@ from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
 from .parameters import DEFAULT_ANGLE, Parameters, Survey, survey
 from .quantised import QuantisedPoints, quantise_values
-from .resample import resample
 
 __all__ = ["CHUNK_POINTS", "LARGEST_FIT", "PerPoint", "choose_per_point", "compress", "not_kept", "split_chunks"]
 
@@ -101,6 +100,8 @@ def compress(
     per_point = choose_per_point(streamlines, per_point, per_point_bits)
     check_order(order)
     if step != "auto":
+        from .resample import resample  # compiled code: most sets need none
+
         streamlines = resample(streamlines, step)
     found = survey([streamlines], per_point)
     parameters = Parameters.choose(found, max_error)

@@ -14,6 +14,7 @@ from ..streamlines import Streamlines
 from .archive import forget
 from .direction_codebook import quaternions
 from .layout import MAX_POINTS, PAGE_BITS, unpack
+from .small_sets import without_kernels
 from .streamline_ranges import StreamlineRanges, ranges_of
 
 if TYPE_CHECKING:
@@ -72,24 +73,33 @@ def decode_fiblets(
     p = fiblets.parameters
     low = fiblets.anchors_low
     arrays = (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1]))
-    from . import decode_kernels  # compiled code: opening and drawing a file need none
-
-    damaged = decode_kernels.decode(
-        which,
-        destination,
-        arrays,
-        np.zeros((1, 3), np.uint16) if low is None else low,
-        low is not None,
-        fiblets.origin,
-        fiblets.anchor_scale,
-        (p.step_lo, p.step_hi, p.lattice),
-        quaternions().astype(np.float64),
-        points,
-    )
+    with without_kernels("decoding", len(points)) as small:
+        damaged = _decoder(small)(
+            which,
+            destination,
+            arrays,
+            np.zeros((1, 3), np.uint16) if low is None else low,
+            low is not None,
+            fiblets.origin,
+            fiblets.anchor_scale,
+            (p.step_lo, p.step_hi, p.lattice),
+            quaternions().astype(np.float64),
+            points,
+        )
     if damaged:
         raise FormatError(
             "the set of fiblets", None, f"{damaged} records that point beyond its arrays", "an undamaged file"
         )
+
+
+def _decoder(small: bool) -> Any:
+    if small:
+        from .decode_arrays import decode
+
+        return decode
+    from . import decode_kernels  # numba loads only for what is worth it
+
+    return decode_kernels.decode
 
 
 def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None = None) -> Streamlines:

@@ -10,34 +10,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from . import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
 from .capsules import capsule_ends
-from .direction_codebook import cap_ratios, directions, quaternions
-from .jit import parallel_kernel
-from .layout import CAPS, PAGE, PAGE_BITS, pack, unpack_ends
+from .layout import PAGE, PAGE_BITS, pack, unpack_ends
 from .parameters import DEFAULT_ANGLE, Parameters
+from .small_sets import without_kernels
 from .tangents import PIXELS
 
-__all__ = ["Encoder", "FibletChunk", "search_tables"]
+if TYPE_CHECKING:
+    from .array_coder import ArrayCoder
+    from .compiled_coder import CompiledCoder
+
+__all__ = ["Encoder", "FibletChunk"]
 
 Effort = Literal["fast", "high"]
-
-
-@cache
-def search_tables() -> tuple[npt.NDArray[Any], ...]:
-    """What the encoder searches: quaternions, directions, ratios, and candidate rows of all cap angles."""
-    rows = [nearest.candidates(cap) for cap in range(CAPS)]
-    base = np.cumsum([0] + [len(r.codes) for r in rows[:-1]])
-    start = np.stack([r.start + b for r, b in zip(rows, base, strict=True)]).astype(np.int32)
-    return quaternions().astype(np.float64), directions(), cap_ratios(), start, np.concatenate([r.codes for r in rows])
 
 
 @dataclass
@@ -101,37 +92,51 @@ class Encoder:
         diagonal = math.hypot(*self.parameters.anchor_scale) * self.top
         return diagonal / PIXELS, math.sin(angle), 2.0 * math.sin(0.5 * angle)
 
+    def _coder(
+        self, points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], compiled: bool
+    ) -> ArrayCoder | CompiledCoder:
+        if compiled:
+            from .compiled_coder import CompiledCoder  # numba loads only for what is worth it
+
+            return CompiledCoder(points, offsets, self.parameters, self._bound(), self.effort)
+        from .array_coder import ArrayCoder
+
+        return ArrayCoder(points, offsets, self.parameters, self._bound())
+
     def add(self, streamlines: Streamlines) -> FibletChunk:
         """Code the next streamlines."""
-        p = self.parameters
         points = np.ascontiguousarray(streamlines.points)
         offsets = np.asarray(streamlines.offsets, np.int64)
-        origin, scale = np.array(p.origin), np.array(p.anchor_scale)
-        bound = self._bound()
-        slots, rank, end = _cut(points, offsets, bound)
+        if self.effort == "high":
+            return self._add(self._coder(points, offsets, True), points, offsets)
+        with without_kernels("coding", len(points)) as small:
+            return self._add(self._coder(points, offsets, not small), points, offsets)
+
+    def _add(
+        self,
+        coder: ArrayCoder | CompiledCoder,
+        points: npt.NDArray[np.floating],
+        offsets: npt.NDArray[np.int64],
+    ) -> FibletChunk:
+        slots, per = coder.cut()
+        rank = np.repeat(np.cumsum(per > 0) - 1, per)
+        end = np.zeros(len(slots), np.uint8)
+        end[np.cumsum(per)[per > 0] - 1] = 1
         self._count_empty(offsets)
         m = len(slots)
         ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
         cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(len(points), np.uint8)
         end_words = np.zeros(m, np.uint32)
-        encode = direction_kernels.encode_directions if self.effort == "fast" else beam_kernels.encode_directions
-        out = (ok, shape, step, cap, radius, end, end_words, codes)
-        steps = (p.step_lo, p.step_hi)
-        encode(points, origin, slots, scale, self.top, steps, p.budget, bound, p.end_scale, search_tables(), out)
+        coder.code_directions(slots, end, (ok, shape, step, cap, radius, end_words, codes))
 
         wanted = np.flatnonzero(ok == 0)
         pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
-        cuts = np.zeros(len(points) if wanted.size else 0, np.uint8)
         if wanted.size:
-            found, bytes_ = np.zeros(len(wanted), np.int64), np.zeros(len(wanted), np.int64)
-            lattice_kernels.plan_lattices(
-                points, origin, slots, wanted, end, scale, self.top, p.lattice, bound, found, bytes_, cuts
-            )
-            pieces[wanted], size[wanted] = found, bytes_
+            pieces[wanted], size[wanted] = coder.plan_lattices(slots, end, wanted)
         fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
         total, n_codes = int(pieces.sum()), int(size.sum())
         packed = np.empty(n_codes, np.uint8)
-        _gather(codes, slots, np.flatnonzero(ok), code_at, packed)
+        coder.gather(codes, slots, np.flatnonzero(ok), code_at, packed)
         rows = {name: _spread(total, fiblet_at, a) for name, a in (("shape", shape), ("step", step), ("cap", cap))}
         rows["kind"] = np.zeros(total, np.uint8)
         rows["end_words"] = _spread(total, fiblet_at, end_words)
@@ -151,9 +156,7 @@ class Encoder:
                 radii,
                 rows["end_words"],
             )
-            lattice_kernels.encode_lattices(
-                points, origin, slots, wanted, scale, self.top, p.lattice, bound, p.end_scale, cuts, end, at, filled
-            )
+            coder.code_lattices(slots, end, wanted, at, filled)
         ranks = np.repeat(rank, pieces)
         begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
         ends = np.append(begins[1:], True) if total else begins
@@ -235,31 +238,8 @@ class Encoder:
         return np.flatnonzero(keep)
 
 
-def _cut(
-    points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], bound: tuple[float, float, float]
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.uint8]]:
-    """Slots of at most 60 points: ``(m, 2)`` first point and count, rank, and whether each ends its streamline."""
-    per = np.zeros(len(offsets) - 1, np.int64)
-    turn_kernels.cut(points, offsets, bound, per, per, np.empty((0, 2), np.int64))
-    slots, at = np.empty((int(per.sum()), 2), np.int64), np.cumsum(per) - per
-    if len(slots):
-        turn_kernels.cut(points, offsets, bound, per, at, slots)
-    end = np.zeros(len(slots), np.uint8)
-    end[(at + per)[per > 0] - 1] = 1
-    return slots, np.repeat(np.cumsum(per > 0) - 1, per), end
-
-
 def _spread(total: int, at: npt.NDArray[np.int64], values: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Values of the slots at their first fiblet; the rows of further pieces are filled by the lattice encoder."""
     spread = np.zeros(total, values.dtype)
     spread[at] = values
     return spread
-
-
-@parallel_kernel
-def _gather(codes: Any, slots: Any, which: Any, code_at: Any, packed: Any) -> None:
-    for w in numba.prange(len(which)):
-        slot = which[w]
-        first, at = slots[slot, 0], code_at[slot]
-        for i in range(slots[slot, 1] - 2):
-            packed[at + i] = codes[first + i]

@@ -13,7 +13,7 @@ from .decompress import iter_chunks
 from .fibletset import FibletSet
 from .layout import unpack
 from .streamline_ranges import coded_rows
-from .tangents import pixel, tangent_angles
+from .tangents import pixel
 
 __all__ = ["CodingError", "ErrorTally", "measure_error"]
 
@@ -106,6 +106,8 @@ class ErrorTally:
     def _add_angles(
         self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]
     ) -> None:
+        from .tangent_kernels import tangent_angles  # numba loads only for those who measure
+
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
         tangent_angles(true, drawn, offsets, self._firsts.of_next(len(true)), self._pixel, degrees, uses)
         bins = np.ceil(degrees * _PER_DEGREE).astype(np.int64)

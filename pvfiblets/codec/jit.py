@@ -14,54 +14,55 @@ them compiled, and a package folder that nobody may write to is none the worse.
 
 from __future__ import annotations
 
-import hashlib
 import logging
 import os
-import shutil
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
-from numba.misc.appdirs import AppDirs
 from numba.np.ufunc import parallel
 
-__all__ = ["compilation_noticed", "kernel", "parallel_kernel", "sources_digest"]
+from .kernel_cache import kept_folder, sources_digest
+
+__all__ = ["kernel", "parallel_kernel"]
 
 logger = logging.getLogger("pvfiblets.codec")
 NOTICED = 1.0  # seconds, after which one wonders
-FORGOTTEN = 30 * 86400.0  # seconds, after which kernels of other sources are not kept any more
-_DISPATCHERS: list[Any] = []
-HOME = Path(__file__).resolve().parent
 
 
-@cache
-def sources_digest(folder: Path = HOME) -> str:
-    """Digest of every source file of the codec, and of those in a folder of it."""
-    digest = hashlib.sha256()
-    for home in sorted({HOME, folder}):
-        for path in sorted(home.glob("*.py")):
-            digest.update(path.name.encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+class _Notice:
+    """Tells people who wait for a compiler why: once, when it has taken more than a second in all."""
+
+    def __init__(self) -> None:
+        self._begun: list[float] = []  # of kernels that are being compiled, one for another
+        self._taken = 0.0
+        self._timer: threading.Timer | None = None
+        self._told = False
+
+    def begin(self) -> None:
+        self._begun.append(time.perf_counter())
+        if len(self._begun) == 1 and not self._told:
+            self._timer = threading.Timer(max(NOTICED - self._taken, 0.0), self._tell)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def end(self) -> None:
+        begun = self._begun.pop() if self._begun else time.perf_counter()
+        if not self._begun:
+            self._taken += time.perf_counter() - begun
+            if self._timer is not None:
+                self._timer.cancel()
+
+    def _tell(self) -> None:
+        if self._begun and not self._told:
+            self._told = True
+            logger.warning("compiling kernels for this machine; this happens once, and takes up to a minute")
 
 
-@cache
-def kept_folder(digest: str) -> Path:
-    """Return the folder of the kernels of sources of some digest; of others, what nobody has used for a month goes."""
-    home = Path(AppDirs("pvfiblets", appauthor=False).user_cache_dir) / "kernels"
-    folder = home / digest[:16]
-    folder.mkdir(parents=True, exist_ok=True)
-    os.utime(folder)
-    for other in home.iterdir():
-        if other.stat().st_mtime < time.time() - FORGOTTEN:
-            shutil.rmtree(other, ignore_errors=True)
-    return folder
+NOTICE = _Notice()
 
 
 class _KeyedBySources(FunctionCache):
@@ -81,6 +82,16 @@ class _KeyedBySources(FunctionCache):
             cache_path=folder, filename_base=self._impl.filename_base, source_stamp=digest
         )
 
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        found = super().load_overload(sig, target_context)
+        if found is None:
+            NOTICE.begin()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        NOTICE.end()
+        super().save_overload(sig, data)
+
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         folder = Path(self._py_func.__code__.co_filename).resolve().parent
         return (*super()._index_key(sig, codegen), sources_digest(folder), self._threaded)
@@ -91,7 +102,6 @@ def _compiled(function: Any, threaded: bool) -> Any:
     # would have to be raised out of a parallel loop.
     dispatcher = numba.njit(function, error_model="numpy", parallel=threaded)
     dispatcher._cache = _KeyedBySources(function, threaded)  # noqa: SLF001 - numba offers no public way to key its cache
-    _DISPATCHERS.append(dispatcher)
     return dispatcher
 
 
@@ -131,34 +141,3 @@ def _forked() -> None:
 
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_forked)
-
-
-@contextmanager
-def compilation_noticed(what: str) -> Iterator[None]:
-    """Log a warning if kernels are compiled within, which takes more than a second: nobody has used them here before.
-
-    Parameters
-    ----------
-    what : str
-        Which kernels, for people.
-    """
-    done, before = threading.Event(), _compilations()
-
-    def watch() -> None:
-        while not done.wait(NOTICED):
-            if _compilations() > before:
-                logger.warning("compiling %s for this machine; this happens once, and takes up to a minute", what)
-                return
-
-    watcher = threading.Thread(target=watch, daemon=True)
-    watcher.start()
-    try:
-        yield
-    finally:
-        done.set()
-        watcher.join()
-
-
-def _compilations() -> int:
-    """How many kernels were not found compiled on disk so far."""
-    return sum(sum(dispatcher.stats.cache_misses.values()) for dispatcher in _DISPATCHERS)

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from ..ragged import blocks
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
+from .small_sets import without_kernels
 
 __all__ = ["DEFAULT_ANGLE", "DEFAULT_PROMISE_EXTENT", "DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
 
@@ -23,6 +25,7 @@ CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 LARGEST = 1e35  # mm
+BLOCK_POINTS = 2_000_000
 BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
@@ -77,11 +80,8 @@ class Survey:
                 self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
         if not len(points):
             return
-        from .direction_kernels import scan  # numba loads only when something is compressed
-
-        rows = np.empty((-(-len(streamlines) // 1024), 8))
-        scan(points, streamlines.offsets, rows)
-        lower, upper, longest = rows[:, :3].min(0), rows[:, 3:6].max(0), float(np.sqrt(rows[:, 6].max()))
+        with without_kernels("coding", len(points)) as small:
+            lower, upper, longest, widest_end = _scan(points, np.asarray(streamlines.offsets, np.int64), small)
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
             bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise ValueError(
@@ -94,12 +94,45 @@ class Survey:
             )
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
-        self.widest_end = max(self.widest_end, float(rows[:, 7].max()))
+        self.widest_end = max(self.widest_end, widest_end)
         # The sample stays evenly taken: when it would overflow, every other length goes and half as many come then.
         while self.n_points > self.stride * SAMPLE:
             self.sample = [part[::2].copy() for part in self.sample]
             self.stride *= 2
         self.sample.append(_segments(points, streamlines.offsets, self.stride))
+
+
+def _scan(
+    points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], small: bool
+) -> tuple[Vector, Vector, float, float]:
+    """Bounds, longest segment and widest end (mm) of streamlines that have points; bounds are infinite if one is."""
+    if not small:
+        from .direction_kernels import scan  # numba loads only for what is worth it
+
+        parts = []
+        for a, b in blocks(offsets, BLOCK_POINTS):
+            rows = np.empty((-(-(b - a) // 1024), 8))
+            # One type of points, so that the kernel is not compiled twice.
+            scan(points[offsets[a] : offsets[b]].astype(np.float64), offsets[a : b + 1] - offsets[a], rows)
+            parts.append(rows)
+        found = np.concatenate(parts)
+        return found[:, :3].min(0), found[:, 3:6].max(0), float(np.sqrt(found[:, 6].max())), float(found[:, 7].max())
+    if not np.isfinite(points).all():
+        return np.full(3, -np.inf), np.full(3, np.inf), 0.0, 0.0
+    wide = np.asarray(points, np.float64)
+    joins = np.zeros(len(points), bool)
+    joins[offsets[1:-1][offsets[1:-1] < len(points)]] = True  # a segment into the next streamline is none
+    delta = (wide[1:] - wide[:-1])[~joins[1:]]
+    squares = delta[:, 0] ** 2 + delta[:, 1] ** 2 + delta[:, 2] ** 2
+    filled = offsets[1:] > offsets[:-1]
+    first, last = offsets[:-1][filled], offsets[1:][filled] - 1
+    widest = 0.0
+    for back in range(1, MAX_POINTS):
+        first, last = first[last - back >= first], last[last - back >= first]
+        if not first.size:
+            break
+        widest = max(widest, float(np.abs(wide[last] - wide[last - back]).max()))
+    return wide.min(0), wide.max(0), float(np.sqrt(squares.max(initial=0.0))), widest
 
 
 def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], stride: int) -> Vector:

@@ -12,7 +12,8 @@ import numba
 
 from .jit import kernel, parallel_kernel
 from .layout import MAX_POINTS
-from .tangents import LEAST_SUM, ONE_POINT, direction, unit
+from .tangent_kernels import direction, unit
+from .tangents import LEAST_SUM, ONE_POINT
 
 __all__ = ["cut", "excess", "may_turn", "within"]
 

@@ -28,7 +28,6 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.jit import compilation_noticed
 from ..codec.progress import Progress
 from ..memory import check_room, of_machine, shown
 from ..ragged import blocks
@@ -141,9 +140,8 @@ class _Sums:
         self._visitor = np.zeros(grid.n_voxels if visits else 0, marks)
         self._lines = 0
         self._all = self._within = 0.0  # mm, or end points
-        with compilation_noticed("the kernels of density maps"):
-            _compile(marks)
-            source.compile()
+        _compile(marks)
+        source.compile()
 
     def add(self, part: Part) -> None:
         """Add some streamlines, which follow those before."""

@@ -97,3 +97,35 @@ def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path
         [sys.executable, str(script)], env=environment, capture_output=True, text=True, check=False, timeout=150
     )
     assert done.stdout.split() == ["done"], done.stderr
+
+
+def test_all_that_codes_is_compiled_beforehand() -> None:
+    """A part that lacks a kernel would leave it to the first large set."""
+    environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}
+    code = "from pvfiblets.codec.precompile import PARTS\nfor part in PARTS.values():\n    part()\n" + BEFOREHAND
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["done"]
+
+
+BEFOREHAND = """
+import pvfiblets
+from pvfiblets.codec import compiled_coder, decode_kernels, direction_kernels, jit, lattice_kernels, turn_kernels
+from pvfiblets.codec.small_sets import STATES
+from pvfiblets.synthetic import brain_streamlines
+
+def compiled():
+    modules = compiled_coder, decode_kernels, direction_kernels, lattice_kernels, turn_kernels
+    kernels = [k for m in modules for k in vars(m).items() if isinstance(k[1], jit._ParallelKernel)]
+    return {name: set(kernel._threaded.signatures) for name, kernel in kernels}
+
+before = compiled()
+STATES["coding"].loaded = STATES["decoding"].loaded = True
+lines = brain_streamlines(20)
+uneven = pvfiblets.Streamlines(lines.points ** 2, lines.offsets)
+for made in (lines, uneven):
+    pvfiblets.compress(made).decompress()
+assert all(before.values()), before
+assert compiled() == before
+print("done")
+"""

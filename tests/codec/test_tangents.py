@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.codec.tangents import pixel, tangent_angles
+from pvfiblets.codec.tangent_kernels import tangent_angles
+from pvfiblets.codec.tangents import pixel
 from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.streamlines import Streamlines
 

@@ -7,10 +7,7 @@ from dataclasses import replace
 from .what import What
 
 # Of how far apart lines lie: some of them are decoded.
-MEASURING = (
-    "codec.capsule_kernels, codec.decode_kernels, codec.decompress, codec.direction_kernels, codec.jit, codec.nearest, "
-    "codec.tangents, codec.turn_kernels, halos.spacing"
-)
+MEASURING = "codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets, halos.spacing"
 
 # The hardware's rasteriser in place of compute shaders.
 HARDWARE = """
@@ -50,15 +47,13 @@ CHANGED = {
         features="VALUES_ARC_LENGTH",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
-        packages="numba",
-        modules="codec.decode_kernels",
+        modules="codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets",
     ),
     "colours: curvature": What(
         features="VALUES_CURVATURE",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
-        packages="numba",
-        modules="codec.decode_kernels",
+        modules="codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets",
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
@@ -127,7 +122,6 @@ CHANGED = {
         resolve="ambient_occlusion",
         passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
-        packages="numba",
         modules=f"{MEASURING}, engine.effects.ambient_occlusion",
     ),
     "depth cue": What(
@@ -138,7 +132,6 @@ CHANGED = {
         resolve="halo",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        packages="numba",
         modules=f"{MEASURING}, engine.effects.halos",
     ),
     "ink": What(
@@ -146,7 +139,6 @@ CHANGED = {
         resolve="-line_light, halo, ink",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
-        packages="numba",
         modules=f"{MEASURING}, engine.effects.halos",
     ),
     "clip: plane": What(
@@ -189,7 +181,7 @@ CHANGED = {
         features="STREAMLINE_MASK",
         buffers="filter",
         packages="numba",
-        modules="codec.decode_kernels, query.measure_kernels",
+        modules="codec.decode_arrays, query.measure_kernels",
     ),
     "criterion: per point": What(
         features="POINT_MASK",
@@ -212,9 +204,8 @@ CHANGED = {
         features="TUBE_ILLINOIS, TUBES",
         resolve="highlight",
         buffers="fibletChosenMap",
-        packages="numba",
         modules="""
-            codec.decode_kernels, engine.tubes.renderer, mappers.tubes, plotting.fiblets.selection_overlay,
+            codec.decode_arrays, engine.tubes.renderer, mappers.tubes, plotting.fiblets.selection_overlay,
             tubes.build
         """,
     ),

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import logging
-import time
 
 import nibabel as nib
 import numba
@@ -457,23 +455,6 @@ def test_damaged_images_are_told(tmp_path):
     path.write_bytes(b"no image")
     with pytest.raises(pf.FormatError, match="a NIfTI or MGH image"):
         pf.density(LINES, like=path)
-
-
-def test_compilation_is_told_and_waiting_is_not(caplog, monkeypatch):
-    from pvfiblets.codec import jit
-
-    monkeypatch.setattr(jit, "NOTICED", 0.02)
-    with caplog.at_level(logging.WARNING), jit.compilation_noticed("the kernels"):
-        time.sleep(0.2)
-    assert not caplog.records
-    monkeypatch.setattr(jit._KeyedBySources, "load_overload", lambda *_: None)  # nothing was ever compiled
-    monkeypatch.setattr(jit._KeyedBySources, "save_overload", lambda *_: None)
-    with caplog.at_level(logging.WARNING), jit.compilation_noticed("the kernels"):
-        assert jit.kernel(lambda x: x + 1)(2) == 3
-        time.sleep(0.2)
-    assert [record.getMessage() for record in caplog.records] == [
-        "compiling the kernels for this machine; this happens once, and takes up to a minute"
-    ]
 
 
 def test_progress_is_told():

@@ -1,0 +1,65 @@
+"""Where compiled kernels are kept, by the sources that they were compiled from; without numba."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import time
+from functools import cache
+from pathlib import Path
+
+__all__ = ["HOME", "is_filled", "kept_folder", "mark_filled", "sources_digest"]
+
+FORGOTTEN = 30 * 86400.0  # seconds, after which kernels of other sources are not kept any more
+HOME = Path(__file__).resolve().parent
+
+
+@cache
+def sources_digest(folder: Path = HOME) -> str:
+    """Digest of every source file of the codec, and of those in a folder of it."""
+    digest = hashlib.sha256()
+    for home in sorted({HOME, folder}):
+        for path in sorted(home.glob("*.py")):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def kept_folder(digest: str) -> Path:
+    """Return the folder of the kernels of sources of some digest; of others, what nobody has used for a month goes."""
+    import platformdirs
+
+    home = Path(platformdirs.user_cache_dir("pvfiblets", appauthor=False)) / "kernels"
+    folder = home / digest[:16]
+    folder.mkdir(parents=True, exist_ok=True)
+    os.utime(folder)
+    for other in home.iterdir():
+        if other.stat().st_mtime < time.time() - FORGOTTEN:
+            shutil.rmtree(other, ignore_errors=True)
+    return folder
+
+
+def _mark(work: str) -> Path:
+    digest = sources_digest()
+    chosen = os.environ.get("NUMBA_CACHE_DIR")  # the user's own choice
+    return Path(chosen) / f"pvfiblets-{digest[:16]}-{work}" if chosen else kept_folder(digest) / work
+
+
+def is_filled(work: str) -> bool:
+    """Whether the kernels of some work were compiled here before, from the same sources."""
+    try:
+        return _mark(work).exists()
+    except OSError:
+        return False
+
+
+def mark_filled(work: str) -> None:
+    """Remember that they are; a folder that nobody may write to is no error."""
+    try:
+        mark = _mark(work)
+        mark.parent.mkdir(parents=True, exist_ok=True)
+        mark.touch()
+    except OSError:
+        return
