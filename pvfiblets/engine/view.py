@@ -37,6 +37,10 @@ class View:
         normalised. None, or planes that nothing touches, cost nothing.
     region : Region, optional
         Of the fiblets only what lies in it is there (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
+    waits : bool
+        Whether drawing may wait until the GPU has said in how many layers a region's closed surfaces lie there. If not,
+        as many are drawn as earlier pictures had: where a ray meets more, the picture lacks the farthest until the
+        number has come back, two or three pictures later.
 
     Raises
     ------
@@ -49,6 +53,7 @@ class View:
     model_view_projection: npt.NDArray[np.float64]
     clip_planes: Sequence[Sequence[float]] | npt.NDArray[np.float64] = ()
     region: Region | None = None
+    waits: bool = True
     _key: tuple[object, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -70,7 +75,7 @@ class View:
         object.__setattr__(self, "size", (width, height))
         object.__setattr__(self, "model_view_projection", matrix)
         object.__setattr__(self, "clip_planes", planes)
-        object.__setattr__(self, "_key", (width, height, matrix.tobytes(), planes.tobytes(), self.region))
+        object.__setattr__(self, "_key", (width, height, matrix.tobytes(), planes.tobytes(), self.region, self.waits))
 
     def __eq__(self, other: object) -> bool:
         return self._key == other._key if isinstance(other, View) else NotImplemented

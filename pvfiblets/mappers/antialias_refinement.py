@@ -26,7 +26,7 @@ from typing import Any
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
-from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, shift
+from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift
 from pvfiblets.mappers.windows import Slot
 
 __all__ = ["SHOWN_FROM", "Refinement"]
@@ -124,6 +124,7 @@ class Refinement:
             self._shift(renderer, self._left[0])
         elif self._taken >= (SHOWN_FROM if self._left else 1):
             self._frame = _Frame.MEAN
+        note_sample(renderer, begun=self._frame is not _Frame.PLAIN)
 
     def other_tile_frames(self, renderer: Any) -> Iterator[None]:
         """Yield for each sample of a tile but that which the renderer is about to draw, with the camera shifted."""
@@ -202,6 +203,7 @@ class Refinement:
             Whether pictures of one sample show wider lines than a sample does.
         """
         self.put_back()
+        note_sample(renderer, begun=False)
         self._exact = True
         if self._frame is _Frame.SAMPLE and self._name == _WHOLE:
             self._exact = self._left[0] == MIDDLE and not widened

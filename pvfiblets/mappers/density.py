@@ -10,7 +10,9 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.paint import Paint
 from pvfiblets.mappers.gathering import Sums, paint_of
+from pvfiblets.mappers.scene import in_motion
 from pvfiblets.mappers.shader_effects import ShaderEffect
+from pvfiblets.mappers.shifted_cameras import draws_sample
 
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
@@ -84,8 +86,9 @@ class Density(ShaderEffect):
             return kept.textures(draw, None)
         counts = draw.colouring.mode == "pixel_count"
         textures = kept.textures(draw, Paint() if counts else paint_of(draw, lit=False))
-        if self.most is None:
-            kept.most = draw.engine.most_lines()
+        if self.most is None and not (kept.known and draws_sample(draw.renderer)):
+            kept.most = draw.engine.most_lines(wait=not in_motion(draw.renderer))
+            kept.known = True
         return textures
 
     def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:

@@ -30,7 +30,16 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.scene import Frame, frame_of, lenses, others_before, pixel_scale, smoothers, world_planes
+from pvfiblets.mappers.scene import (
+    Frame,
+    frame_of,
+    in_motion,
+    lenses,
+    others_before,
+    pixel_scale,
+    smoothers,
+    world_planes,
+)
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
@@ -232,7 +241,11 @@ class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Gene
         frame = frame_of(renderer, actor, viewport)
         planes, region = self._cuts()
         view = View(
-            viewport[2:], frame.model_view_projection, frame.planes_in_data(planes), frame.region_in_data(region)
+            viewport[2:],
+            frame.model_view_projection,
+            frame.planes_in_data(planes),
+            frame.region_in_data(region),
+            waits=region is None or not in_motion(renderer),
         )
         style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._has_edges else None

@@ -76,6 +76,8 @@ class Sums:
         Of the last draw.
     most : float
         Lines in its fullest pixel, where an effect asked for that.
+    known : bool
+        Whether one has.
     paint : Paint or None
         Of the last draw.
     """
@@ -87,6 +89,7 @@ class Sums:
         self._blank = BlankArrays(ctx, "none")
         self.held: Gathered | None = None
         self.most = 1.0
+        self.known = False
         self.paint: Paint | None = None
 
     def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:

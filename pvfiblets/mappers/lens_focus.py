@@ -12,7 +12,7 @@ from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
 from pvfiblets.engine.effects.picture import PictureEffects
 from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import is_number
-from pvfiblets.mappers.scene import pixel_scale, samples_per_pixel, to_array
+from pvfiblets.mappers.scene import in_motion, pixel_scale, samples_per_pixel, to_array
 
 __all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
 
@@ -128,7 +128,8 @@ class Focusing:
         samples = samples_per_pixel(renderer, viewport)
         place = wanted.focal_distance
         if isinstance(place, str) and not held:
-            self._follow(_seen_at(place, renderer, effects, lens, samples), wanted.smooth)
+            wait = self._aim is None or not in_motion(renderer)
+            self._follow(_seen_at(place, renderer, effects, lens, samples, wait=wait), wanted.smooth)
         elif place is not None and not isinstance(place, str):
             self.distance = float(place)
         if place is None or self.distance is None:  # nothing has been seen there so far
@@ -164,8 +165,13 @@ def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
     return Projection(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
 
 
-def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float) -> float | None:
-    """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles."""
+def _seen_at(
+    place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
+) -> float | None:
+    """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles.
+
+    Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
+    """
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) != (1, 1):
         return None
@@ -180,6 +186,12 @@ def _seen_at(place: str, renderer: Any, effects: PictureEffects, lens: Projectio
         if not (0 <= x < lens.size[0] and 0 <= y < lens.size[1]):
             return None
     around = int(NEAR_CURSOR * samples)
-    depths = effects.depths((x - around, y - around, 2 * around + 1, 2 * around + 1))
+    rectangle = x - around, y - around, 2 * around + 1, 2 * around + 1
+    if wait:
+        depths = effects.depths(rectangle)
+    elif (came := effects.depths_later(rectangle, lens)) is None:
+        return None
+    else:
+        lens, depths = came
     nearest = float(depths.min(initial=1.0))
     return distance_of(lens, nearest) if nearest < 1.0 else None

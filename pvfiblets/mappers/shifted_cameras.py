@@ -10,11 +10,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["exact_wanted", "is_shifted", "note_depths", "shift", "shifted", "with_exact_depths"]
+__all__ = [
+    "draws_sample",
+    "exact_wanted",
+    "is_shifted",
+    "note_depths",
+    "note_sample",
+    "shift",
+    "shifted",
+    "with_exact_depths",
+]
 
 _cameras: set[str] = set()
 _renderers: set[str] = set()
 _exact: set[str] = set()
+_samples: set[str] = set()
 
 
 def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callable[[], None]:
@@ -62,6 +72,16 @@ def shifted(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Iter
 def is_shifted(camera: Any) -> bool:
     """Say whether a camera is shifted now."""
     return camera.GetAddressAsString("") in _cameras
+
+
+def note_sample(renderer: Any, *, begun: bool) -> None:
+    """Note that a renderer begins a frame that is one of many of the same picture, or that the frame has ended."""
+    (_samples.add if begun else _samples.discard)(renderer.GetAddressAsString(""))
+
+
+def draws_sample(renderer: Any) -> bool:
+    """Say whether a renderer draws such a frame: what all of them are to share was found out in the one before."""
+    return renderer.GetAddressAsString("") in _samples
 
 
 def note_depths(renderer: Any, *, exact: bool) -> None:

@@ -33,7 +33,7 @@ __all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "rows", "varied"]
 VALUES = ("VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME")
 PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE")
 INTEGRATORS = (
-    "VOLUME_ADAPTIVE", "VOLUME_PREINTEGRATED", "VOLUME_RIEMANN", "VOLUME_SIMPSON", "VOLUME_ROMBERG", "VOLUME_RK4",
+    "VOLUME_PREINTEGRATED", "VOLUME_RIEMANN", "VOLUME_SIMPSON", "VOLUME_ROMBERG", "VOLUME_RK4",
 )  # fmt: skip
 # One of each line, or none.
 EXCLUSIVE = (
@@ -71,6 +71,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "PAINT_VALUE_OPACITY": tuple((value, "PAINT_ALPHA") for value in VALUES),
     **dict.fromkeys(("VOLUME_UNREFINED", "VOLUME_NEWTON"), (("VOLUME_SURFACE",),)),
     **dict.fromkeys((*INTEGRATORS, "VOLUME_FINER", "VOLUME_HOMOGENEOUS"), (("VOLUME_COMPOSITE",),)),
+    "VOLUME_EXACT": (("VOLUME_PREINTEGRATED",),),
     "TUBE_HOLLOW": (("TUBE_CHAIN",),),
     "HALO_TAPER": (("!HALO_POINTS",),),
     "HALO_CUT": (("!HALO_POINTS",),),
@@ -230,7 +231,7 @@ FREE = {"CLIP_PLANES": (), "POINT_MASK": (), "CLIP_REGION": ()}  # what culls is
 # Whole programs of the rasteriser: both edges of the picture or none.
 RASTER = {"CLIPPING": (("CLIPPING_DEPTH",),), "REGION_FIELDS": (("CLIP_REGION",),)}
 GATHERED = ("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED")
-PICTURE = ("blur", "copy", "gather", "mean", "reach", "tiles", "tone")
+PICTURE = ("blur", "copy", "gather", "mean", "reach", "seen_through", "tiles", "tone")
 
 
 def _raster(vertex: Mapping[str, str], fragment: str, versions, always, never=()) -> Kind:

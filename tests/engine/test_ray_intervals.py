@@ -6,6 +6,7 @@ import itertools
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import moderngl
@@ -17,6 +18,7 @@ from pvfiblets import regions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.regions.layer_stack import Squares
 from pvfiblets.engine.regions.ray_intervals import RegionIntervals
 from pvfiblets.engine.shaders import Programs, assemble
 from pvfiblets.engine.view import View
@@ -439,3 +441,31 @@ def test_opengl_3_3_suffices(older_opengl):
     command = [sys.executable, "-W", "error", "-c", DRAW_ELSEWHERE, str(here)]
     result = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     assert result.returncode == 0, result.stderr
+
+
+def test_pictures_that_do_not_wait_are_right_some_later(gl, cutter, camera, shells):
+    """Shells are one deep from the side that cuts them, and many from the other; so are spheres in a row."""
+    row = regions.Sphere((0, -80, 0), 3)
+    for y in np.linspace(-72, 80, 20):
+        row = row | regions.Sphere((0, y, 0), 3)
+    within = View(SIZE, camera(SIZE, eye=(0, -1, 0), target=(0, 100, 0), near=1.0, far=300.0, angle=60))
+    along = View(SIZE, camera(SIZE, eye=(0, -200, 1), angle=15))
+    for region in (shells, row):
+        cutter.release()
+        first, second = (replace(view, region=region) for view in (within, along))
+        cutter.prepare(first, ORIGIN, SCALE, TOP)
+        layers = cutter.layers
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Squares, "ask", None)  # would wait
+            for _ in range(6):  # each asks for no more than twice as many
+                cutter.prepare(replace(first, waits=False), ORIGIN, SCALE, TOP)
+                cutter.prepare(replace(second, waits=False), ORIGIN, SCALE, TOP)
+                gl.finish()
+        assert cutter.layers > layers
+        patch = cutter.prepare
+        cutter.prepare = lambda view, *box: patch(replace(view, waits=False), *box)  # noqa: B023
+        try:
+            check(gl, cutter, region, along, rounds=1)
+        finally:
+            del cutter.prepare
+        check(gl, cutter, region, along, rounds=1)

@@ -10,6 +10,7 @@ import json
 import os
 import sys
 import traceback
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
@@ -267,22 +268,33 @@ def keep_shaders(folder: Path, mapper) -> None:
 
 def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
     """Draw a scene and say what it is made of."""
-    sys.path.insert(0, str(Path(__file__).parent))
+    sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
     scene = Scene(folder)
     steps = SCENES[name](scene)
     next(steps)
+    from gl_calls import possible, recording  # as of the watch
     from watch import Watch  # nothing is drawn yet, and all that it imports is there already
 
-    watch, plotter = Watch(), scene.plotter
+    watch = Watch()
     keep_shaders(folder, scene.actor.mapper)
+    with recording() if possible() else nullcontext() as calls:
+        return drawn(scene, name, steps, watch, calls, before) | {"left": watch.nbytes}
+
+
+def drawn(scene: Scene, name: str, steps, watch, calls, before: set[str]) -> dict[str, object]:
+    """Draw a scene's frames, say what it is made of, and close it."""
+    plotter = scene.plotter
     plotter.show(auto_close=False)
     for _ in steps:
         pass
     for _ in range(3):
         frame(plotter, name)
     watch.forget()
+    if calls is not None:
+        calls.forget()
     frame(plotter, name)
-    loaded = set(sys.modules) - before - {"watch"}
+    waits = {"at rest": sorted(set(calls.waits))} if calls is not None else {}
+    loaded = set(sys.modules) - before - {"watch", "gl_calls"}
     found = {
         "modules": sorted(name for name in loaded if name.startswith("pvfiblets")),
         "packages": sorted({name.partition(".")[0] for name in loaded} - sys.stdlib_module_names - {"pvfiblets"}),
@@ -302,8 +314,20 @@ def describe(folder: Path, name: str, before: set[str]) -> dict[str, object]:
         "buffers": {item["name"]: item["bytes"] for item in buffers},
         "selection": report.get("selection", {}).get("gpu_bytes", 0),
     }
+    if calls is not None:
+        waits["in motion"] = waits_in_motion(plotter, calls)
     plotter.close()
-    return found | {"left": watch.nbytes}
+    return found | {"waits": waits}
+
+
+def waits_in_motion(plotter, calls) -> list[str]:
+    """Calls that wait for the GPU in a frame of a camera that a user is turning."""
+    plotter.render_window.SetDesiredUpdateRate(15.0)  # as VTK's interactor styles do
+    for _ in range(4):
+        calls.forget()
+        plotter.camera.azimuth += 1.0
+        plotter.render()
+    return sorted(set(calls.waits))
 
 
 def forked(work) -> dict[str, object]:

@@ -33,6 +33,11 @@ ALIKE = {
     "volume: nearest", "volume: jitter", "volume: no octree", "volume: sparse", "volume: cut",
 }  # fmt: skip
 """Scenes whose like is among the others, by the same code: one setting of several."""
+EXACT_AT_ONCE = {
+    "density": ["glReadPixels"],  # the most lines of a pixel, for the range of colours
+    "density, by a map": ["glReadPixels"],
+    "clip: mesh": ["glReadPixels"],  # layers of the mesh along a pixel's ray
+}
 EACH = [pytest.param(name, marks=[pytest.mark.exhaustive] if name in ALIKE else []) for name in SCENES]
 
 pytestmark = [
@@ -111,6 +116,15 @@ def test_all_switches_that_were_on_are_told_and_no_others(seen, name):
     told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)
     of_pictures = {switch for switch in FEATURES if switch.startswith(("PICTURE_", "TONE_"))}
     assert told == set(seen[name]["features"]) - of_pictures
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_no_frame_waits_for_the_gpu(seen, name):
+    """None of a camera in motion; at rest, what is to be exact at once and no card can tell without being asked."""
+    waits = seen[name]["waits"]
+    if not waits:
+        pytest.skip("calls of OpenGL are recorded on x86-64 and Linux only")
+    assert waits == {"at rest": EXACT_AT_ONCE.get(name, []), "in motion": []}
 
 
 def test_what_vtk_compiles_is_valid_for_the_reference_compiler(seen, folder):

@@ -16,6 +16,7 @@ from pvfiblets.mappers import windows
 from pvfiblets.mappers.lens_focus import DepthOfField, Focusing
 from pvfiblets.mappers.picture import Picture
 from pvfiblets.mappers.scene import others_before, others_opaque
+from tests.gl_calls import possible, recording
 
 from ..engine import lenses
 
@@ -209,6 +210,33 @@ def test_the_focus_is_on_the_middle(make_plotter):
     picture.depth_of_field = DepthOfField(focal_distance="center")
     shot(plotter, picture)
     assert picture.focal_distance == pytest.approx(25.0, rel=1e-3)
+
+
+@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
+def test_a_focus_follows_a_hand_without_waiting_for_the_gpu(make_plotter):
+    plotter = make_plotter()
+    walls(plotter)
+    picture = Picture(plotter.renderer)
+    picture.depth_of_field = DepthOfField(focal_distance="cursor")
+    mouse = plotter.iren.interactor
+    mouse.SetEventPosition(60, 80)
+    with recording() as calls:
+        shot(plotter, picture)
+        assert picture.focal_distance == pytest.approx(50.0, rel=1e-4)
+        assert set(calls.waits) == {"glReadPixels"}
+        calls.forget()
+        plotter.render_window.SetDesiredUpdateRate(15.0)  # as VTK's interactor styles do
+        mouse.SetEventPosition(180, 80)
+        for _ in range(4):
+            plotter.render()
+            plotter.render_window.WaitForCompletion()
+        assert picture.focal_distance == pytest.approx(80.0, rel=1e-4)
+        assert calls.waits == []
+        plotter.render_window.SetDesiredUpdateRate(1e-4)
+        mouse.SetEventPosition(60, 80)
+        plotter.render()
+        assert picture.focal_distance == pytest.approx(50.0, rel=1e-4)
+    picture.raise_pending()
 
 
 def test_a_focus_may_take_its_time(make_plotter):

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonCore import vtkFloatArray
 from pvfiblets.antialias import VARIABLE
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import shifted
+from tests.gl_calls import possible, recording
 
 from .refined_scene import SIZE, Renders, drawn, fill, grabbed, ours, real_default, shot  # noqa: F401 - a fixture
 
@@ -118,6 +119,26 @@ def test_any_change_begins_anew(scene):
         renders.since()
         shot(scene)
         assert (renders.since(), scene.picture.samples) == (16, 16)
+
+
+@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
+@pytest.mark.parametrize("style", ["lines", "density", "translucent"])
+def test_samples_do_not_wait_for_the_gpu(style):
+    """Samples of sums go by the range of their picture, too: they are parts of one."""
+    with recording() as calls, drawn() as scene:
+        actor = ours(scene)
+        if style == "translucent":
+            actor.opacity = 0.5
+        elif style == "density":
+            actor.scalars = "density"
+        scene.render()
+        scene.render()
+        range_shown = actor.lookup_table.scalar_range
+        calls.forget()
+        while scene.picture.refine():
+            assert actor.lookup_table.scalar_range == range_shown
+        assert calls.waits == []
+        assert scene.picture.samples == 16
 
 
 def test_what_is_not_drawn_yet_is_not_in_the_picture(scene):

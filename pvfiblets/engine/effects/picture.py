@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..delayed_read import DelayedRead
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
 from .picture_passes import Attachment, PicturePasses, bytes_of
 from .projection import Projection
@@ -63,6 +64,7 @@ class PictureEffects(PicturePasses):
         super().__init__(ctx, {"steps": float(STEPS), "tile": TILE})
         self._areas: tuple[float, moderngl.Texture] | None = None
         self._corner = 0, 0
+        self._reads: DelayedRead | None = None
 
     def copy(
         self,
@@ -146,15 +148,38 @@ class PictureEffects(PicturePasses):
             (rows, columns) float32, the lowest row first; 1 where nothing was drawn.
         """
         target = self._framebuffer(("colours", "depths"))
-        x, y = (min(max(at, 0), side) for at, side in zip(rectangle, target.size, strict=False))
-        right, top = (
-            min(max(at + span, 0), side)
-            for at, span, side in zip(rectangle[:2], rectangle[2:], target.size, strict=True)
-        )
-        if right <= x or top <= y:
+        x, y, width, height = _within(rectangle, target.size)
+        if width <= 0 or height <= 0:
             return np.ones((0, 0), np.float32)
-        data = target.read((x, y, right - x, top - y), components=1, attachment=1, dtype="f4", alignment=1)
-        return np.frombuffer(data, np.float32).reshape(top - y, right - x)
+        data = target.read((x, y, width, height), components=1, attachment=1, dtype="f4", alignment=1)
+        return np.frombuffer(data, np.float32).reshape(height, width)
+
+    def depths_later(
+        self, rectangle: tuple[int, int, int, int], tag: Any
+    ) -> tuple[Any, npt.NDArray[np.float32]] | None:
+        """Have window depths of the copy read, and return those of an earlier picture, without waiting for the GPU.
+
+        Parameters
+        ----------
+        rectangle
+            As of `depths`.
+        tag : object
+            What comes back with them.
+
+        Returns
+        -------
+        tuple or None
+            Tag and depths of the newest that have come since the last call, None if none have.
+        """
+        if self._reads is None:
+            self._reads = DelayedRead(self._ctx, self._gl)
+        target = self._framebuffer(("colours", "depths"))
+        area = _within(rectangle, target.size)
+        if min(area[2:]) > 0:
+            with self._gl.framebuffers_kept():
+                self._reads.start(target, area, 1, tag, attachment=1)
+        came = self._reads.arrived()
+        return None if came is None else (came[0], came[1][..., 0])
 
     def draw(
         self,
@@ -232,13 +257,24 @@ class PictureEffects(PicturePasses):
 
     @property
     def nbytes(self) -> int:
-        """Bytes of textures on the GPU."""
-        if self._areas is None:
-            return super().nbytes
-        areas = self._areas[1]
-        return super().nbytes + areas.width * areas.height * bytes_of(areas)
+        """Bytes of textures and buffers on the GPU."""
+        areas = None if self._areas is None else self._areas[1]
+        own = 0 if areas is None else areas.width * areas.height * bytes_of(areas)
+        return super().nbytes + own + (0 if self._reads is None else self._reads.nbytes)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         self._forget_depths()
+        if self._reads is not None:
+            self._reads.release()
+            self._reads = None
         super().release()
+
+
+def _within(rectangle: tuple[int, int, int, int], size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Return the part of a rectangle (x, y, width, height) that lies in a picture."""
+    (x, y), (right, top) = (
+        tuple(min(max(at, 0), side) for at, side in zip(corner, size, strict=True))
+        for corner in (rectangle[:2], (rectangle[0] + rectangle[2], rectangle[1] + rectangle[3]))
+    )
+    return x, y, right - x, top - y

@@ -30,6 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import GATHERING, SUM_IMAGES
+from ..delayed_read import DelayedRead
 from ..errors import GPUMemoryError
 from .paint import Paint, set_uniforms
 from .pipelines.constants import GREATEST_SIDE
@@ -289,6 +290,8 @@ class Gatherer:
         self._made: Any = None
         self._squares: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
         self._greatest: tuple[Any, float] | None = None
+        self._asked: Any = None
+        self._later = DelayedRead(ctx, gl)
 
     def of(
         self,
@@ -345,12 +348,35 @@ class Gatherer:
             self._held = held = Gathered(self._ctx, self._gl, size, slices, painted, words)
         return held
 
-    def greatest(self) -> float:
-        """Return the greatest weight of a pixel in the first slice of what was made last; waits for the GPU."""
+    def greatest(self, *, wait: bool = True) -> float:
+        """Return the greatest weight of a pixel in the first slice of what was made last.
+
+        Parameters
+        ----------
+        wait : bool
+            Whether to wait for the GPU; if not, what is returned may be that of some pictures earlier, of which it is
+            known.
+        """
+        if (came := self._later.arrived()) is not None:
+            self._greatest = came[0], float(came[1].max())
+        known = self._greatest
+        if known is not None and (known[0] == self._made or (not wait and self._asked == self._made)):
+            return known[1]
+        framebuffer = self._reduce()
+        area = (0, 0, *framebuffer.size)
+        with self._gl.framebuffers_kept():
+            if known is not None and not wait:
+                self._asked = self._made if self._later.start(framebuffer, area, 1, self._made) else None
+                return known[1]
+            found = float(np.frombuffer(framebuffer.read(area, 1, dtype="f4", alignment=1), "<f4").max())
+        self._later.forget()
+        self._greatest = self._made, found
+        return found
+
+    def _reduce(self) -> moderngl.Framebuffer:
+        """Draw the greatest weight of each square of pixels."""
         held = self._held
         assert held is not None
-        if self._greatest is not None and self._greatest[0] == self._made:
-            return self._greatest[1]
         width, height = (-(-side // GREATEST_SIDE) for side in held.size)
         if self._squares is None or self._squares[0].size != (width, height):
             self._drop_squares()
@@ -365,9 +391,7 @@ class Gatherer:
             self._ctx.enable_only(moderngl.NOTHING)
             framebuffer.use()
             array.render(moderngl.TRIANGLES, vertices=3)
-            found = float(np.frombuffer(texture.read(), "<f4").max())
-        self._greatest = self._made, found
-        return found
+        return framebuffer
 
     def _drop_squares(self) -> None:
         if self._squares is not None:
@@ -380,11 +404,12 @@ class Gatherer:
         """Bytes of GPU memory."""
         own = sum(buffer.size for buffer in self._pipeline.buffers.values())
         squares = 0 if self._squares is None else 4 * math.prod(self._squares[0].size)
-        return own + squares + (0 if self._held is None else self._held.nbytes)
+        return own + squares + self._later.nbytes + (0 if self._held is None else self._held.nbytes)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         self._pipeline.release()
+        self._later.release()
         self._drop_squares()
         if self._held is not None:
             self._held.release()

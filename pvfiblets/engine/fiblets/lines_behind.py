@@ -145,12 +145,18 @@ class LinesBehind(Drawable[FibletStyle]):
                 state,
             )
 
-    def most_lines(self) -> float:
-        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
+    def most_lines(self, *, wait: bool = True) -> float:
+        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced.
+
+        Parameters
+        ----------
+        wait : bool
+            Whether to wait for the GPU; if not, it may be that of some pictures earlier.
+        """
         if self._gatherer is None:
             return 0.0
         with self._noting():
-            return self._gatherer.greatest()
+            return self._gatherer.greatest(wait=wait)
 
     def drop_gathered(self) -> None:
         """Give back what :meth:`gather` keeps; twice is harmless."""

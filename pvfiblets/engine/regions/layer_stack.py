@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ..delayed_read import DelayedRead
 from ..errors import EngineError
 from ..moderngl_extras import GLExtras
 from ..shaders import Programs
@@ -135,6 +136,16 @@ class Squares:
         numpy.ndarray
             ``(n_squares, 2)`` float32.
         """
+        framebuffer = self._run(name, rectangle)
+        found: Array = np.frombuffer(framebuffer.read(framebuffer.viewport, 2, dtype="f4"), "<f4").reshape(-1, 2)
+        return found
+
+    def ask_later(self, name: str, rectangle: Rectangle, reads: DelayedRead, tag: object = None) -> None:
+        """Run a program on all squares of a rectangle, and have some reads get what it says."""
+        framebuffer = self._run(name, rectangle)
+        reads.start(framebuffer, framebuffer.viewport, 2, tag)
+
+    def _run(self, name: str, rectangle: Rectangle) -> moderngl.Framebuffer:
         _, array = self._programs.screen(name, ["PEEL"])
         width, height = (-(-(rectangle[k + 2] - rectangle[k]) // SQUARE) for k in (0, 1))
         held = self._stack
@@ -146,8 +157,7 @@ class Squares:
         framebuffer.use()
         self._ctx.enable_only(moderngl.NOTHING)
         array.render(moderngl.TRIANGLES, vertices=3)
-        found: Array = np.frombuffer(framebuffer.read(framebuffer.viewport, 2, dtype="f4"), "<f4").reshape(-1, 2)
-        return found
+        return framebuffer
 
     @property
     def nbytes(self) -> int:

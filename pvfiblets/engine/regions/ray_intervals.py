@@ -25,6 +25,7 @@ import numpy.typing as npt
 
 from ...query.shapes import SURFACE
 from ..bindings import BLOCKS, REGIONS
+from ..delayed_read import DelayedRead
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..moderngl_extras import GLExtras
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 __all__ = ["RegionIntervals"]
 
 
+_OVERFLOW = "regions/overflow.frag"
 _SCISSOR_TEST = 0x0C11
 
 _FORMS = 8
@@ -76,6 +78,8 @@ class RegionIntervals:
         ] = {}
         self._block: moderngl.Buffer | None = None
         self.layers = 0
+        self._known = 0  # layers that sufficed for earlier pictures of the form, or nearly
+        self._reads = DelayedRead(ctx, gl)
 
     def prepare(self, view: View, origin: Array, scale: Array, top: int) -> bool:
         """Bring the boundaries up to date; nothing is done where region, size and camera are what they were.
@@ -107,7 +111,7 @@ class RegionIntervals:
             self.release()
             return False
         check_region(region)
-        key = (region, view.size, view.model_view_projection.tobytes(), tuple(origin), tuple(scale), top)
+        key = (region, view.size, view.model_view_projection.tobytes(), tuple(origin), tuple(scale), top, view.waits)
         if self._made == key:
             return True
         self._made = None
@@ -116,13 +120,13 @@ class RegionIntervals:
             self._ctx.enable_only(moderngl.NOTHING)
             self._ctx.wireframe = False
             try:
-                self._make(region, to_clip, to_data[:3, 3], view.size)
+                self._make(region, to_clip, to_data[:3, 3], view.size, view.waits)
             finally:
                 self._ctx.disable_direct(_SCISSOR_TEST)
         self._made = key
         return True
 
-    def _make(self, region: Region, to_clip: Array, offset: Array, size: tuple[int, int]) -> None:
+    def _make(self, region: Region, to_clip: Array, offset: Array, size: tuple[int, int], waits: bool) -> None:
         window = window_matrix(to_clip, size)
         try:
             block = rays_block(region, window, offset, size)
@@ -132,7 +136,7 @@ class RegionIntervals:
             self._gl.fill(stack.framebuffers[0], 0, (-1.0, 2.0, 2.0, 2.0))
             self.layers = 1
             return
-        crossings = self._draw_surfaces(region, block, to_clip, offset, size)
+        crossings = self._draw_surfaces(region, block, to_clip, offset, size, waits)
         crossings += 2 * sum(leaf.kind != SURFACE for leaf in region.leaves)
         if self._block is None:
             self._block = self._ctx.buffer(reserve=RAYS_BLOCK.nbytes)
@@ -142,20 +146,31 @@ class RegionIntervals:
         if (form, meshes) != self._form:  # a simpler one needs no more than it does
             self._form = form, meshes
             self._drop_stack()
+            self._known = 0
+            self._reads.forget()
         rectangle, most = (0, 0, *size), crossings + 1
         if form.bounded:
             rectangle = self._rectangle(region, block, to_clip, offset, size)
             # What is beyond all crossings is known, and with it whether boundaries are even or odd in number.
             most = crossings + (crossings + form.far) % 2
         enough = -(-most // 4)
-        layers = min(enough, _LAYERS)
+        if (came := self._reads.arrived()) is not None and came[1].any():  # what was known did not do
+            self._known = max(self._known, 2 * came[0])
+        layers = min(enough, max(_LAYERS, self._known))
         while True:
             stack = self._stack_of(size, layers)
             self.layers = stack.layers
             self._combine(form, stack, rectangle)
-            if stack.layers >= enough or not self._overflows(stack, rectangle):
+            if stack.layers >= enough:
+                break
+            if self._known and not waits:
+                if self._ask(stack, rectangle):
+                    self._squares.ask_later(_OVERFLOW, rectangle, self._reads, stack.layers)
+                return
+            if not self._overflows(stack, rectangle):
                 break
             layers = min(2 * stack.layers, enough)
+        self._known = stack.layers
 
     def _rectangle(
         self, region: Region, block: npt.NDArray[Any], to_clip: Array, offset: Array, size: tuple[int, int]
@@ -173,15 +188,25 @@ class RegionIntervals:
 
     def _overflows(self, stack: LayerStack, rectangle: Rectangle) -> bool:
         """Say whether any pixel has more boundaries than there are layers for."""
+        return self._ask(stack, rectangle) and bool(self._squares.ask(_OVERFLOW, rectangle).any())
+
+    def _ask(self, stack: LayerStack, rectangle: Rectangle) -> bool:
+        """Get ready to ask that; False if no pixel has any boundaries."""
         if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
-            return False  # no pixel has any
-        program = self._squares.program("regions/overflow.frag", rectangle)
+            return False
+        program = self._squares.program(_OVERFLOW, rectangle)
         stack.textures[0].use(REGIONS["region_boundaries"])
         program["region_boundaries"], program["last"] = REGIONS["region_boundaries"], stack.layers - 1
-        return bool(self._squares.ask("regions/overflow.frag", rectangle).any())
+        return True
 
     def _draw_surfaces(
-        self, region: Region, block: npt.NDArray[Any], to_clip: Array, offset: Array, size: tuple[int, int]
+        self,
+        region: Region,
+        block: npt.NDArray[Any],
+        to_clip: Array,
+        offset: Array,
+        size: tuple[int, int],
+        waits: bool,
     ) -> int:
         """Draw the surfaces' layers and pack where they are; return how many crossings a pixel can have of them."""
         leaves = [k for k, leaf in enumerate(region.leaves) if leaf.kind == SURFACE]
@@ -193,7 +218,7 @@ class RegionIntervals:
         if self._surfaces is None:
             self._surfaces = SurfaceLayers(self._ctx, self._gl, self._programs)
         surfaces = [cast("Surface", region.leaves[k]) for k in leaves]
-        peeled = self._surfaces.draw(surfaces, to_clip, offset, size)
+        peeled = self._surfaces.draw(surfaces, to_clip, offset, size, waits=waits)
         for k, place in zip(leaves, peeled, strict=True):
             block["rays_rectangles"][k] = place.rectangle
             block["rays_first_layers"][k] = place.first
@@ -277,7 +302,8 @@ class RegionIntervals:
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
         block = 0 if self._block is None else self._block.size
-        return block + sum(thing.nbytes for thing in (self._stack, self._surfaces, self._squares) if thing is not None)
+        parts = self._stack, self._surfaces, self._squares, self._reads
+        return block + sum(part.nbytes for part in parts if part is not None)
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
@@ -286,6 +312,8 @@ class RegionIntervals:
             self._surfaces.release()
             self._surfaces = None
         self._squares.release()
+        self._reads.release()
+        self._known = 0
         for program, array, _ in self._forms.values():
             array.release()
             program.release()

@@ -17,12 +17,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from ..bindings import CROSSINGS
+from ..delayed_read import DelayedRead
 from ..errors import EngineError, GPUMemoryError
 from ..frame import Array
 from ..moderngl_extras import GLExtras
@@ -37,6 +39,10 @@ __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
 MOST = 4095
 """Fragments of front or of back faces that a count holds."""
 
+IN_A_LAYER = 4
+"""Crossings that a layer holds."""
+
+_INSPECT = "regions/inspect.frag"
 _NONE = -3.0
 _DEPTH_CLAMP, _CLIP_DISTANCE_0 = 0x864F, 0x3000
 
@@ -60,6 +66,24 @@ class Peeled:
     layers: int
     tallies: int
     crossings: int
+
+
+class _Found(NamedTuple):
+    """How many layers there must be, the most crossings at a pixel, and whether layers miss any."""
+
+    layers: int
+    crossings: int
+    shared: bool
+
+    @classmethod
+    def of(cls, said: npt.NDArray[np.float32]) -> _Found:
+        """Read it from what the squares say, ``(2, n)``."""
+        faces, crossings = said
+        if faces.max() > MOST:
+            raise EngineError(
+                f"a ray crosses more than {MOST} faces of a surface, more than can be told apart; cut by a simpler one"
+            )
+        return cls(int(faces.max() + 1) // 2, int(np.abs(crossings).max()), bool((crossings < 0.0).any()))
 
 
 def rectangle_of(clip: Array, low: Array, high: Array, size: tuple[int, int]) -> Rectangle:
@@ -134,11 +158,21 @@ class SurfaceLayers:
         self._drawn: list[int] = []  # meshes
         self._counts: list[int] = []  # layers of the last picture
         self._room: list[int] = []  # layers that there is room for
+        self._known: list[_Found | None] = []  # the most that pictures have had, until one waited
+        self._reads: list[DelayedRead] = []
         self._stacks: list[LayerStack] = []  # even layers, odd layers
         self._tallies: LayerStack | None = None
         self._squares = Squares(ctx, gl, programs)
 
-    def draw(self, surfaces: Sequence[Surface], to_clip: Array, offset: Array, size: tuple[int, int]) -> list[Peeled]:
+    def draw(
+        self,
+        surfaces: Sequence[Surface],
+        to_clip: Array,
+        offset: Array,
+        size: tuple[int, int],
+        *,
+        waits: bool = True,
+    ) -> list[Peeled]:
         """Draw all layers of some surfaces.
 
         Leaves no framebuffer of the caller's bound, and blending off.
@@ -152,6 +186,8 @@ class SurfaceLayers:
             ``(3,)`` data mm of local 0.
         size : tuple of int
             Pixels.
+        waits : bool
+            As of a :class:`.View`.
 
         Returns
         -------
@@ -173,53 +209,82 @@ class SurfaceLayers:
         meshes = [id(surface.mesh) for surface in surfaces]
         if meshes != self._drawn:
             self._drawn, self._counts, self._room = meshes, [1] * len(meshes), [1] * len(meshes)
+            self._known = [None] * len(meshes)
+            self._drop_reads()
+            self._reads = [DelayedRead(self._ctx, self._gl) for _ in meshes]
             self._drop_stacks()
         try:
-            firsts, found = self._draw_all(surfaces, matrices, rectangles, size)
+            for k in range(len(meshes)):
+                self._learn(k)
+            firsts, found = self._draw_all(surfaces, matrices, rectangles, size, waits)
         except BaseException:
             # What was tried must not be where the next picture begins.
             self._drawn = []
             self._drop_stacks()
             raise
         peeled = [
-            Peeled(rectangle, first, layers, -1, crossings)
-            for rectangle, first, (layers, crossings, _) in zip(rectangles, firsts, found, strict=False)
+            Peeled(rectangle, first, some.layers, -1, some.crossings)
+            for rectangle, first, some in zip(rectangles, firsts, found, strict=False)
         ]
-        return self._tally(surfaces, matrices, peeled, [shared for _, _, shared in found])
+        return self._tally(surfaces, matrices, peeled, [some.shared for some in found])
 
     def _draw_all(
-        self, surfaces: Sequence[Surface], matrices: list[Array], rectangles: list[Rectangle], size: tuple[int, int]
-    ) -> tuple[list[int], list[tuple[int, int, bool]]]:
+        self,
+        surfaces: Sequence[Surface],
+        matrices: list[Array],
+        rectangles: list[Rectangle],
+        size: tuple[int, int],
+        waits: bool,
+    ) -> tuple[list[int], list[_Found]]:
         """Draw until there is room for all; return each surface's first layer, and what :meth:`_inspect` says of it."""
         while True:
             firsts = np.cumsum([0, *[(room + 1) // 2 * 2 for room in self._room]]).tolist()
             self._make_room(size, firsts[-1])
             found = [
-                self._draw_one(k, self._mesh(surface), matrices[k], rectangles[k], firsts[k])
+                self._draw_one(k, self._mesh(surface), matrices[k], rectangles[k], firsts[k], waits)
                 for k, surface in enumerate(surfaces)
             ]
-            needed = [layers for layers, _, _ in found]
+            needed = [some.layers for some in found]
             self._counts = [max(layers, 1) for layers in needed]
             if all(layers <= room for layers, room in zip(needed, self._room, strict=True)):
                 return firsts, found
             self._room = [max(pair) for pair in zip(needed, self._room, strict=True)]
 
     def _draw_one(
-        self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int
-    ) -> tuple[int, int, bool]:
+        self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, waits: bool
+    ) -> _Found:
         """Draw as many layers as the last picture had, and then those that are missing, as far as there is room.
 
-        Returns what :meth:`_inspect` does.
+        Returns what :meth:`_inspect` does; of earlier pictures, if it must not wait.
         """
         if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
-            return 0, 0, False
+            return _Found(0, 0, False)
+        known = self._known[k]
+        if known is not None and not waits:
+            if known.layers == 0:  # of none there would be nothing to learn
+                known = _Found(1, IN_A_LAYER, known.shared)
+            if known.layers <= self._room[k]:  # else there is another call, with more room
+                self._peel(mesh, matrix, rectangle, first, range(known.layers))
+                self._ask(rectangle, first, known.layers)
+                self._squares.ask_later(_INSPECT, rectangle, self._reads[k])
+            return known
         count = self._counts[k]
         self._peel(mesh, matrix, rectangle, first, range(count))
         found = self._inspect(rectangle, first, count)
-        if count < found[0] <= self._room[k]:
-            self._peel(mesh, matrix, rectangle, first, range(count, found[0]))
-            found = self._inspect(rectangle, first, found[0])
+        if count < found.layers <= self._room[k]:
+            self._peel(mesh, matrix, rectangle, first, range(count, found.layers))
+            found = self._inspect(rectangle, first, found.layers)
+        self._known[k] = found
+        self._reads[k].forget()
         return found
+
+    def _learn(self, k: int) -> None:
+        """Take notice of what has come back of earlier pictures."""
+        arrived, known = self._reads[k].arrived(), self._known[k]
+        if arrived is not None and known is not None:
+            found = _Found.of(arrived[1].reshape(-1, 2).T)
+            layers, crossings = max(known.layers, found.layers), max(known.crossings, found.crossings)
+            self._known[k] = _Found(layers, crossings, known.shared or found.shared)
 
     def _mesh(self, surface: Surface) -> _Mesh:
         return self._meshes[id(surface.mesh)][1]
@@ -299,17 +364,16 @@ class SurfaceLayers:
             if name in program:
                 program[name] = unit
 
-    def _inspect(self, rectangle: Rectangle, first: int, count: int) -> tuple[int, int, bool]:
-        """Return how many layers there must be, the most crossings at a pixel, and whether layers miss any."""
-        program = self._squares.program("regions/inspect.frag", rectangle)
+    def _inspect(self, rectangle: Rectangle, first: int, count: int) -> _Found:
+        """Return what a picture's layers hold."""
+        self._ask(rectangle, first, count)
+        return _Found.of(self._squares.ask(_INSPECT, rectangle).T)
+
+    def _ask(self, rectangle: Rectangle, first: int, count: int) -> None:
+        """Get ready to ask that."""
+        program = self._squares.program(_INSPECT, rectangle)
         self.bind(program)
         program["base"], program["count"] = first, count
-        faces, crossings = self._squares.ask("regions/inspect.frag", rectangle).T
-        if faces.max() > MOST:
-            raise EngineError(
-                f"a ray crosses more than {MOST} faces of a surface, more than can be told apart; cut by a simpler one"
-            )
-        return int(faces.max() + 1) // 2, int(np.abs(crossings).max()), bool((crossings < 0.0).any())
 
     def _tally(
         self,
@@ -348,7 +412,7 @@ class SurfaceLayers:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        stacks = [*self._stacks, self._tallies, self._squares]
+        stacks = [*self._stacks, self._tallies, self._squares, *self._reads]
         meshes = [mesh for _, mesh in self._meshes.values()]
         return sum(thing.nbytes for thing in (*stacks, *meshes) if thing is not None)
 
@@ -357,11 +421,17 @@ class SurfaceLayers:
             stack.release()
         self._stacks.clear()
 
+    def _drop_reads(self) -> None:
+        for reads in self._reads:
+            reads.release()
+        self._reads.clear()
+
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         for _, mesh in self._meshes.values():
             mesh.release()
         self._meshes.clear()
+        self._drop_reads()
         self._drop_stacks()
         self._squares.release()
         if self._tallies is not None:
