@@ -53,8 +53,8 @@ _NEEDS: dict[str, tuple[int, str | None]] = {
 
 PIPELINES = (AUTO, *_NEEDS)
 """Values of ``pipeline``."""
-CULLINGS = ("none", "coverage", "two-phase")
-"""Values of ``culling``; None means ``'none'``."""
+CULLINGS = ("auto", "none", "coverage", "two-phase")
+"""Values of ``culling``; None means ``'none'``, and ``'auto'`` two-phase where that is measured to be faster."""
 FITS = (None, "sample")
 """Values of ``fit``."""
 

@@ -41,8 +41,8 @@ class EngineOptions(Options):
     pipeline : str, default 'auto'
         How fiblets become pixels: ``'auto'`` takes the fastest that the window's OpenGL has; see
         `pvfiblets.engine.capabilities.pipelines`.
-    culling : {'two-phase', 'coverage', 'none', None}
-        How fiblets behind others are found out.
+    culling : {'auto', 'two-phase', 'coverage', 'none', None}, default 'auto'
+        How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster.
     fit : {None, 'sample'}
         What to do where memory does not suffice: refuse, or draw a share of the streamlines.
 
@@ -53,7 +53,7 @@ class EngineOptions(Options):
     """
 
     pipeline: str = AUTO
-    culling: str | None = "two-phase"
+    culling: str | None = AUTO
     fit: str | None = None
 
     def _check(self) -> None:
@@ -70,4 +70,5 @@ def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
     """
     from pvfiblets.engine import FibletRenderer
 
+    options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
     return FibletRenderer(ctx, fiblets, **options)

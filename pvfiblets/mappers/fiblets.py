@@ -68,6 +68,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._filtering: Any = None
         self._compression = dict(compression or {})
         self._compressed: tuple[Any, Any] = (None, None)
+        self._detail = 0.0
         super().__init__(
             fiblets,
             colouring=Colouring() if colouring is None and fiblets is not None else colouring,
@@ -108,8 +109,24 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._line_width = float(pixels)
         self._actor_modified()
 
+    @property
+    def detail(self) -> float:
+        """Pixels of the window by which lines may be off (`FibletStyle.tolerance`); 0 draws every point."""
+        return self._detail
+
+    @detail.setter
+    def detail(self, pixels: float) -> None:
+        if not (math.isfinite(pixels) and pixels >= 0.0):
+            raise ValueError(f"detail is {pixels}; give a finite number of pixels, 0 or more")
+        self._detail = float(pixels)
+        self._actor_modified()
+
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
-        return FibletStyle(line_width=self.line_width * pixel_scale, min_width=max(1.0, pixel_scale))
+        return FibletStyle(
+            line_width=self.line_width * pixel_scale,
+            min_width=max(1.0, pixel_scale),
+            tolerance=self._detail * pixel_scale,
+        )
 
     def _narrower(self, pixel_scale: float) -> float:
         return 0.0 if self._thickness > 0.0 else max(1.0 - self.line_width * pixel_scale, 0.0)

@@ -33,7 +33,7 @@ class _AddFiblets(Protocol):
         above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
         categories: bool = False, opacity: Any = None, transparency: str | int | None = "all",
         line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
-        pipeline: str = "auto", culling: str | None = "two-phase", fit: str | None = None, name: str | None = None,
+        pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, name: str | None = None,
         label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
         pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
         **options: Any,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from pvfiblets.plotting.settings import Argument, Setting
 
-__all__ = ["COLOURS", "LATER", "OPTIONS", "OWN", "PROPERTY", "Effect", "Own", "Place", "Switch", "Uniform"]
+__all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect", "Own", "Place", "Switch", "Uniform"]
 
 
 class Place:
@@ -67,6 +67,18 @@ class _Property(Place):
 
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
         setattr(actor.prop, setting.field, value)
+
+
+class _Mapper(Place):
+    """A property of the mapper's, which checks it; of actors that are there already."""
+
+    made_with = False
+
+    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+        return getattr(actor._mapper, setting.field)  # noqa: SLF001 - of the class that it is part of
+
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        setattr(actor._mapper, setting.field, value)  # noqa: SLF001
 
 
 class Own(Place):
@@ -163,4 +175,4 @@ class Uniform(Place):
         actor.mapper.set_effect(setting.field, effect)
 
 
-OPTIONS, COLOURS, PROPERTY, OWN, LATER = _Options(), _Colours(), _Property(), Own(), _Later()
+OPTIONS, COLOURS, PROPERTY, OWN, LATER, MAPPER = _Options(), _Colours(), _Property(), Own(), _Later(), _Mapper()

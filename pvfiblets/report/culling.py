@@ -42,7 +42,7 @@ FLIGHTS = (("far", STILL), ("far", SLOW), ("far", 10.0), ("far", 60.0), ("close"
 QUICK_FLIGHTS = (("far", SLOW), ("inside", SLOW))
 TOLERANCES = (0.25, 1.0, 2.0, 4.0)  # pixels, besides 0 and the default
 QUICK_TOLERANCES = (2.0,)
-DEFAULT_TOLERANCE = FibletStyle().tolerance
+HALF = 0.5  # pixels, as in the paper; the default draws every point
 SHARES = (2, 4)  # every second, every fourth streamline
 FINE = 3  # samples along a pixel's side of the finely sampled picture
 
@@ -68,7 +68,7 @@ class Variant:
     @property
     def default(self) -> bool:
         """Whether it is what the program does unasked."""
-        return self.of == 1 and self.culling == "two-phase" and self.tolerance == DEFAULT_TOLERANCE
+        return self.of == 1 and self.culling == "auto" and self.tolerance == FibletStyle.tolerance
 
 
 def detail(tolerance: float) -> str:
@@ -78,9 +78,9 @@ def detail(tolerance: float) -> str:
 
 def variants(quick: bool) -> list[Variant]:
     """Return all variants, the most important first: where time runs out, the last are left out."""
-    found = [Variant(culling, DEFAULT_TOLERANCE) for culling in (None, "two-phase", "coverage")]
-    found += [Variant(culling, 0.0) for culling in (None, "two-phase", "coverage")]
-    found += [Variant("two-phase", DEFAULT_TOLERANCE, of) for of in (SHARES[:1] if quick else SHARES)]
+    found = [Variant(culling, 0.0) for culling in ("auto", None, "two-phase", "coverage")]
+    found += [Variant(culling, HALF) for culling in (None, "two-phase", "coverage")]
+    found += [Variant("two-phase", HALF, of) for of in (SHARES[:1] if quick else SHARES)]
     return found + [Variant("two-phase", tolerance) for tolerance in (QUICK_TOLERANCES if quick else TOLERANCES)]
 
 

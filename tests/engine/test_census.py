@@ -49,7 +49,7 @@ def in_view(fiblets, view, slack):
 @pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", *MESH])
 @pytest.mark.parametrize("planes", [[], PLANES], ids=["no planes", "planes"])
 def test_counts_are_those_of_the_records(gl, brain, camera, name, planes):
-    made = FibletRenderer(gl, brain, pipeline=name)
+    made = FibletRenderer(gl, brain, pipeline=name, culling="two-phase")
     n = brain.n_fiblets
     assert made.explain()["fiblets"] == {"total": n, "in_frustum": None, "drawn": None, "visible": None}
     for eye, target in (((0, -260, 40), (0, -10, 20)), ((0, -60, 10), (30, 0, 30)), ((0, -60, 10), (0, -200, 10))):

@@ -279,7 +279,7 @@ def test_radius_is_between_the_thick_and_the_long(brain):
         ({}, {"size": (400, 300)}),
         ({"style": FibletStyle(line_width=5.0)}, {"style": FibletStyle()}),
         ({}, {"planes": [[0.0, 1.0, 0.0, 90.0]]}),
-        ({}, {"style": FibletStyle(tolerance=0.0)}),
+        ({}, {"style": FibletStyle(tolerance=0.5)}),
     ],
     ids=["size", "width", "planes", "tolerance"],
 )

@@ -74,16 +74,18 @@ def told(renderer, ran, draw):
 
 
 BOX = regions.Box((-30.0, 30.0, -30.0, 30.0, -30.0, 30.0))
+CULLED = {"culling": "two-phase"}
 CASES = {
-    "plain": ({}, FibletStyle(), {}, {"ONE_SEGMENT", "LEVEL_OF_DETAIL", "CULL_PYRAMID"}),
-    "every point": ({}, FibletStyle(tolerance=0.0), {}, {"CULL_PYRAMID"}),
-    "no culling": ({"culling": None}, FibletStyle(), {}, {"ONE_SEGMENT"}),
+    "plain": ({}, FibletStyle(), {}, set()),
+    "detail": (CULLED, FibletStyle(tolerance=0.5), {}, {"ONE_SEGMENT", "LEVEL_OF_DETAIL", "CULL_PYRAMID"}),
+    "two-phase": (CULLED, FibletStyle(), {}, {"CULL_PYRAMID"}),
+    "detail, no culling": ({"culling": None}, FibletStyle(tolerance=0.5), {}, {"ONE_SEGMENT"}),
     "planes": ({}, FibletStyle(3.0), {"clip_planes": [(1.0, 0.0, 0.0, 0.0)]}, {"CLIP_PLANES", "WIDE_LINES"}),
     "region": ({}, FibletStyle(), {"region": BOX}, {"CLIP_REGION"}),
     "values": ({}, FibletStyle(values="height"), {}, {"VALUES_STORED"}),
-    "geometry": ({"pipeline": "geometry"}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
+    "geometry": ({"pipeline": "geometry", **CULLED}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
     "geometry, no culling": ({"pipeline": "geometry", "culling": None}, FibletStyle(), {}, {"TEXTURE_DATA"}),
-    "tessellation": ({"pipeline": "tessellation"}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
+    "tessellation": ({"pipeline": "tessellation", **CULLED}, FibletStyle(), {}, {"TEXTURE_DATA", "SECOND_ROUND"}),
     "tubes": ({}, FibletStyle(radius=1.0), {}, {"TUBES", "WIDE_LINES"}),
 }
 

@@ -67,7 +67,11 @@ def test_all_pipelines_add_up_the_same(gl, fabricate, random_lines, camera):
                 assert wrong.mean() < 1e-4  # tangents are handed on in 32 bits: colours may be rounded the other way
 
 
-STYLES = {"thin": FibletStyle(), "wide": FibletStyle(7.0), "tube": FibletStyle(radius=1.5)}
+STYLES = {
+    "thin": FibletStyle(),
+    "wide": FibletStyle(7.0, tolerance=0.5),
+    "tube": FibletStyle(radius=1.5, tolerance=0.5),
+}
 
 
 @pytest.mark.parametrize("style", STYLES.values(), ids=STYLES)

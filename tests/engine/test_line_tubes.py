@@ -163,7 +163,7 @@ def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     wall = [np.array([[x, 0.0, -60.0], [x, 0.0, 60.0]]) for x in np.arange(-60.0, 61.0, 2.0)]
     behind = [np.array([[x, 60.0, -20.0], [x, 60.0, 20.0]]) for x in np.arange(-20.0, 21.0, 1.0)]
     fiblets = fabricate([*wall, *behind], kind=3)
-    renderer = FibletRenderer(gl, fiblets, pipeline="compute")
+    renderer = FibletRenderer(gl, fiblets, pipeline="compute", culling="two-phase")
     counts = []
     for k in range(2):
         renderer.render(View(SMALL, camera(SMALL, eye=(k, -160, 0))), FibletStyle(radius=1.5))
@@ -395,7 +395,7 @@ def test_software_opengl_draws_the_largest_tubes_whole(gl, fabricate, camera):
 def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camera):
     """Lines, tubes with values, lines again: pictures and counts are those of renderers of their own."""
     fiblets = fabricate(random_lines(60, seed=5), kind=2, per_fiblet=20)
-    renderer = FibletRenderer(gl, fiblets, pipeline="compute")
+    renderer = FibletRenderer(gl, fiblets, pipeline="compute", culling="two-phase")
     view = View(SIZE, camera(SIZE))
     styles = FibletStyle(radius=2.0, values="curvature"), FibletStyle(radius=1.0, values="arc_length")
     for style in (FibletStyle(), *styles, FibletStyle(3.0)):

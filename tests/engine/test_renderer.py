@@ -66,7 +66,7 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera):
     renderer.render(View(SIZE, camera(SIZE)))
     plain = renderer.explain()
     # some lines leave the screen
-    first = ["CLIPPING", "CLIPPING_DEPTH", "LATTICE", "LEVEL_OF_DETAIL", "ONE_SEGMENT"]
+    first = ["CLIPPING", "CLIPPING_DEPTH", "LATTICE"]
     assert plain["features"] == first
     assert [p["name"] for p in plain["passes"]] == PASSES
     assert all(p["ms"] >= 0 for p in plain["passes"])

@@ -12,21 +12,17 @@ MEASURING = "codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.sm
 # The hardware's rasteriser in place of compute shaders.
 HARDWARE = """
     -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
-    -fiblets/compute/depth.comp, -fiblets/compute/occlude.comp, -fiblets/compute/resolve_owner.comp,
-    -fiblets/compute/plan.comp, -fiblets/compute/refine.comp, -fiblets/compute/resolve_ties.comp,
-    fiblets/hardware_raster/between.frag, fiblets/hardware_raster/visible.frag, fiblets/hardware_raster/visible.vert,
-    fiblets/hardware_raster/survivors.vert
+    -fiblets/compute/depth.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
+    -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/survivors.vert
 """
-HARDWARE_PASSES = (
-    "-cull, -depth, -predicted, -occlusion, -resolve_owner, -refine, -resolve_ties, draw, visibility_bits"
-)
+HARDWARE_PASSES = "-cull, -depth, -resolve_owner, -resolve_ties, -visible, draw"
 
 TUBES = What(
     ran=f"{HARDWARE}, fiblets/geometry/capsules.geom, fiblets/hardware_raster/capsule.frag",
-    features="-ONE_SEGMENT, CROSS_LINE, SECOND_ROUND, TEXTURE_DATA, TUBES, WIDE_LINES",
+    features="CROSS_LINE, TEXTURE_DATA, TUBES, WIDE_LINES",
     resolve="-line_light, tube_normal",
     passes=HARDWARE_PASSES,
-    buffers="depth of tubes, visibility_bits of tubes, tubes",
+    buffers="depth of tubes, tubes",
     modules="engine.fiblets.pipelines.geometry",
 )
 
@@ -75,10 +71,10 @@ CHANGED = {
     "tubes, shaded": replace(
         TUBES,
         resolve="-line_light, tube_normal, tube_shading",
-        buffers="depth of tubes, fibletAcrossMap (blank), visibility_bits of tubes, tubes",
+        buffers="depth of tubes, fibletAcrossMap (blank), tubes",
     ),
     "opacity": What(
-        ran="fiblets/compute/gather.comp, fiblets/gather/slice_keys.frag",
+        ran="screen/triangle.vert, fiblets/compute/gather.comp, fiblets/gather/slice_keys.frag",
         features="GATHER_SLICES, PAINTED, PAINT_DIRECTION, PAINT_LIGHT",
         resolve="layers_covered, layers_geometry, slices, slices_colour, sums",
         passes="gather",
@@ -89,7 +85,7 @@ CHANGED = {
     ),
     "opacity, the nearest": What(),
     "density": What(
-        ran="fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
+        ran="screen/triangle.vert, fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
         features="GATHER_WORDS, PAINTED, PAINT_DIRECTION",
         resolve="-line_light, density, legend_colours, sums",
         passes="gather",
@@ -99,7 +95,7 @@ CHANGED = {
         """,
     ),
     "density, by a map": What(
-        ran="fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
+        ran="screen/triangle.vert, fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
         features="GATHER_WORDS",
         resolve="-line_light, -colour_orientation, colour_point_scalar, density_value, legend_colours, sums",
         passes="gather",
@@ -109,7 +105,7 @@ CHANGED = {
         """,
     ),
     "layers": What(
-        ran="fiblets/layers/copy.frag",
+        ran="screen/triangle.vert, fiblets/layers/copy.frag",
         features="PEEL",
         resolve="layers, layers_covered, layers_geometry",
         buffers="across (no layer), layers, normal (no layer)",
@@ -118,7 +114,7 @@ CHANGED = {
         resolve="-line_light, illuminated",
     ),
     "ambient occlusion": What(
-        ran="effects/ssao.frag, effects/ssao_blur.frag",
+        ran="screen/triangle.vert, effects/ssao.frag, effects/ssao_blur.frag",
         resolve="ambient_occlusion",
         passes="ssao (effect), ssao_blur (effect)",
         buffers="occlusion (effect), rough occlusion (effect)",
@@ -128,14 +124,14 @@ CHANGED = {
         resolve="depth_cue",
     ),
     "halos": What(
-        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
+        ran="screen/triangle.vert, effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules=f"{MEASURING}, engine.effects.halos",
     ),
     "ink": What(
-        ran="effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
+        ran="screen/triangle.vert, effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="-line_light, halo, ink",
         passes="halo (effect), linear_depth (effect), tile_min_distance (effect)",
         buffers="distances (effect), halos (effect), tiles (effect)",
@@ -156,19 +152,19 @@ CHANGED = {
         modules="engine.regions.clip_planes, regions",
     ),
     "clip: plane and ball": What(
-        ran="regions/combine.frag",
+        ran="screen/triangle.vert, regions/combine.frag",
         features="CLIP_PLANES, CLIP_REGION",
         buffers="clip_planes, region, region shapes",
         modules="engine.regions.ray_intervals, engine.regions.uniform_block, regions",
     ),
     "clip: outside a box": What(
-        ran="regions/combine.frag",
+        ran="screen/triangle.vert, regions/combine.frag",
         features="CLIP_REGION",
         buffers="region, region shapes",
         modules="engine.regions.ray_intervals, engine.regions.uniform_block, regions",
     ),
     "clip: mesh": What(
-        ran="regions/combine.frag, regions/inspect.frag, regions/peel.frag, regions/surface.vert",
+        ran="screen/triangle.vert, regions/combine.frag, regions/inspect.frag, regions/peel.frag, regions/surface.vert",
         features="CLIP_REGION, PEEL, REGION_FIELDS",
         buffers="region, region shapes",
         packages="numba",
@@ -210,37 +206,40 @@ CHANGED = {
         """,
     ),
     "selection outlined": What(
-        ran="effects/selection_mask.frag, effects/outline.frag",
+        ran="screen/triangle.vert, effects/selection_mask.frag, effects/outline.frag",
         resolve="highlight, silhouette",
         passes="selection_mask (effect), outline (effect)",
         buffers="chosen pixels (effect), chosen streamlines (effect), fibletChosenMap, outline (effect)",
         modules="engine.effects.halos, engine.effects.outline",
     ),
     "picking": What(),
-    "culling: none": What(
+    "detail": What(features="LEVEL_OF_DETAIL, ONE_SEGMENT"),
+    "culling: none": What(),
+    "culling: two-phase": What(
         ran="""
-            -fiblets/compute/occlude.comp, -fiblets/compute/refine.comp, -culling/pyramid_reduce.frag,
-            -screen/triangle.vert
+            fiblets/compute/occlude.comp, fiblets/compute/refine.comp, culling/pyramid_reduce.frag,
+            screen/triangle.vert
         """,
-        features="-CULL_PYRAMID",
-        passes="-predicted, -last picture, -occlusion, -pyramid, -refine",
-        buffers="-occlusion",
-        modules="-engine.culling.pyramid",
+        features="CULL_PYRAMID",
+        passes="predicted, last picture, occlusion, pyramid, refine",
+        buffers="occlusion",
+        modules="engine.culling.pyramid",
     ),
     "culling: coverage": What(
         ran="""
-            -fiblets/compute/refine.comp, culling/coverage_dilate.frag, culling/coverage_grid.frag,
-            culling/coverage_grid.vert
+            fiblets/compute/occlude.comp, culling/coverage_dilate.frag, culling/coverage_grid.frag,
+            culling/coverage_grid.vert, culling/pyramid_reduce.frag, screen/triangle.vert
         """,
-        features="-CULL_PYRAMID, CULL_COVERAGE",
-        passes="-predicted, -pyramid, -refine",
+        features="CULL_COVERAGE",
+        passes="last picture, occlusion",
+        buffers="occlusion",
         modules="engine.culling.coverage",
     ),
     "pipeline: geometry": What(
         ran=f"{HARDWARE}, fiblets/geometry/lines.geom, fiblets/hardware_raster/line.frag",
-        features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
+        features="TEXTURE_DATA",
         passes=HARDWARE_PASSES,
-        buffers="depth",
+        buffers="-visibility_bits, depth",
         modules="engine.fiblets.pipelines.geometry",
     ),
     "pipeline: tessellation": What(
@@ -248,15 +247,15 @@ CHANGED = {
             {HARDWARE}, fiblets/hardware_raster/line.frag, fiblets/tessellation/decode.tesc,
             fiblets/tessellation/lines.tese
         """,
-        features="-ONE_SEGMENT, SECOND_ROUND, TEXTURE_DATA",
+        features="TEXTURE_DATA",
         passes=HARDWARE_PASSES,
-        buffers="depth",
+        buffers="-visibility_bits, depth",
         modules="engine.fiblets.pipelines.tessellation",
     ),
     "picture: depth of field": What(
         ran="""
             effects/picture/blur.frag, effects/picture/copy.frag, effects/picture/gather.frag,
-            effects/picture/reach.frag, effects/picture/tiles.frag
+            effects/picture/reach.frag, effects/picture/tiles.frag, screen/triangle.vert
         """,
         features="PICTURE_DEPTH, PICTURE_SAMPLES",
         buffers="picture",
@@ -265,7 +264,8 @@ CHANGED = {
     "picture: refined": What(
         ran="""
             effects/picture/copy.frag, effects/picture/antialias_coverage.frag, effects/picture/line_tiles.frag,
-            effects/picture/line_tiles.vert, effects/picture/mean.frag, effects/picture/visible_edges.frag
+            effects/picture/line_tiles.vert, effects/picture/mean.frag, effects/picture/visible_edges.frag,
+            screen/triangle.vert
         """,
         features="EDGES, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
@@ -274,14 +274,14 @@ CHANGED = {
     "picture: refined, moving": What(
         ran="""
             effects/picture/antialias_coverage.frag, effects/picture/line_tiles.frag, effects/picture/line_tiles.vert,
-            effects/picture/visible_edges.frag
+            effects/picture/visible_edges.frag, screen/triangle.vert
         """,
         features="EDGES, PICTURE_SAMPLES",
         buffers="coverage",
         modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
     ),
     "picture: tone": What(
-        ran="effects/picture/copy.frag, effects/picture/tone.frag",
+        ran="screen/triangle.vert, effects/picture/copy.frag, effects/picture/tone.frag",
         features="PICTURE_SAMPLES, TONE_ACES",
         buffers="picture",
         modules="plotting.picture_component",

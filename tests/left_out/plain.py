@@ -8,22 +8,14 @@ PLAIN = {
     "plain": What(
         ran="""
             fiblets/compute/arguments.comp, fiblets/compute/clear.comp, fiblets/compute/cull.comp,
-            fiblets/compute/depth.comp,
-            fiblets/compute/occlude.comp, fiblets/compute/resolve_owner.comp, fiblets/compute/plan.comp,
-            fiblets/compute/refine.comp, fiblets/compute/resolve_ties.comp,
-            culling/pyramid_reduce.frag, screen/triangle.vert
+            fiblets/compute/depth.comp, fiblets/compute/resolve_owner.comp, fiblets/compute/plan.comp,
+            fiblets/compute/resolve_ties.comp
         """,
-        features="CLIPPING, CLIPPING_DEPTH, CULL_PYRAMID, DIRECTION, LEVEL_OF_DETAIL, ONE_SEGMENT",
+        features="CLIPPING, CLIPPING_DEPTH, DIRECTION",
         resolve="colour_orientation, gbuffer, line_light, normal",
-        passes="""
-            clear, cull, depth, last picture, occlusion, predicted, pyramid, refine, resolve_owner, resolve_ties,
-            visible
-        """,
-        buffers="""
-            anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, occlusion, pages,
-            rotations
-        """,
-        modules="codec.fiblets_file, engine.culling.pyramid, engine.fiblets.renderer, plotting.fiblets.actor",
+        passes="clear, cull, depth, resolve_owner, resolve_ties, visible",
+        buffers="anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, pages, rotations",
+        modules="codec.fiblets_file, engine.fiblets.renderer, plotting.fiblets.actor",
     ),
     "spline tubes": What(
         ran="screen/near.vert, tubes/attributes.frag, tubes/rectangles.vert, tubes/tube.frag",

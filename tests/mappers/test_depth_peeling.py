@@ -38,6 +38,7 @@ def scene(make_plotter, tools):
         if colours is not None:
             options["colouring"] = Colouring("streamline_rgba", values=np.resize(colours, (len(streamlines), 3)))
         mapper, actor = fibres.actor(lighting=lighting, **options)
+        mapper.detail = 0.5  # rows lie between two rows of pixels, where a thousandth of a pixel would decide
         actor.GetProperty().SetOpacity(opacity)
         if layers:
             mapper.set_effect("layers", Layers(layers))

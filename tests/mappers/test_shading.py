@@ -160,6 +160,7 @@ def scene(make_plotter, make_fibres, tools):
     def run(ends, effects, *, color=(1.0, 1.0, 0.0), parallel=True, prepare=None, lighting=False, **options):
         fibres = make_fibres(rods(tools, *ends))
         mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=color))
+        mapper.detail = 0.5  # rods lie between two rows of pixels, where a thousandth of a pixel would decide
         for name, effect in effects.items():
             mapper.set_effect(name, effect)
         plotter = make_plotter(**{"window_size": (120, 100)} | options)

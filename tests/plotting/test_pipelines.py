@@ -68,7 +68,7 @@ def test_a_bad_choice_is_refused_before_anything_is_read(plotter, bad):
 
 def test_choices_can_be_read_and_changed(plotter, three_lines):
     actor = plotter.add_fiblets(three_lines)
-    assert (actor.pipeline, actor.culling, actor.fit, actor.pipeline_in_use) == ("auto", "two-phase", None, None)
+    assert (actor.pipeline, actor.culling, actor.fit, actor.pipeline_in_use) == ("auto", "auto", None, None)
     actor.pipeline, actor.culling, actor.fit = "compute", "none", "sample"
     assert (actor.pipeline, actor.culling, actor.fit) == ("compute", None, "sample")
     for name in ("pipeline", "culling", "fit"):

@@ -9,9 +9,12 @@ import moderngl
 
 from ..capabilities import check_choices, choose
 from ..culling import Occlusion, make_occlusion
+from ..culling.choice import FEW_FIBLETS, CullingChoice
 from ..errors import EngineError
 from ..frame import local_frame
 from ..gbuffer import GBuffer
+from ..passes import is_software
+from ..picture_clock import CallClock, TimestampClock
 from ..view import Style, View
 from .census import Census, count_fiblets, no_counts
 from .chunks import Chunk
@@ -51,10 +54,11 @@ class FibletRenderer(LinesBehind):
         Copied to the GPU here; not kept in memory otherwise.
     pipeline : str
         ``'auto'`` takes the fastest that the context has; see :func:`pvfiblets.engine.capabilities.pipelines`.
-    culling : {'two-phase', 'coverage', None}
-        How fiblets behind others are found out. ``'two-phase'`` (also ``'auto'``) changes no pixel of the picture;
-        ``'coverage'`` is that of the paper (Schertzer et al. 2022, section 3.4), which may lose some for one frame
-        after the camera jumped; ``None`` draws all that is in the view volume.
+    culling : {'two-phase', 'auto', 'coverage', None}
+        How fiblets behind others are found out. ``'two-phase'`` changes no pixel of the picture; ``'auto'`` is
+        two-phase where pictures are measured to take less time by it, and none elsewhere
+        (:mod:`pvfiblets.engine.culling.choice`); ``'coverage'`` is that of the paper (Schertzer et al. 2022, section
+        3.4), which may lose some for one frame after the camera jumped; ``None`` draws all that is in the view volume.
     fit : {None, 'sample'}
         What to do where memory does not suffice: refuse, or draw an even share of the streamlines, always the same one
         (:mod:`pvfiblets.engine.fiblets.memory_fit`).
@@ -102,6 +106,7 @@ class FibletRenderer(LinesBehind):
         self._chunks: list[Chunk] = []
         self._last: tuple[View, FibletStyle] | None = None
         self._query: RegionQuery | None = None
+        self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
             whole = fiblets
@@ -111,9 +116,14 @@ class FibletRenderer(LinesBehind):
             self.share = fitted.share
             self._shared = self._keep(SharedBlocks(ctx, fiblets))
             self._kept = self._keep(Visibility(ctx, self._gl, self._programs, whole, fiblets, self._chunks))
-            self._occlusion = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
-            if self._occlusion is not None:
-                self._keep(self._occlusion, "occlusion")
+            if culling == "auto" and fiblets.n_fiblets < FEW_FIBLETS:
+                culling = None
+            self._culling = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
+            self._occlusion = self._culling
+            if self._culling is not None:
+                self._keep(self._culling, "occlusion")
+            if culling == "auto":
+                self._choice = self._make_choice()
             self._pipeline = self._keep(self._make_pipeline())
             self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
@@ -129,21 +139,31 @@ class FibletRenderer(LinesBehind):
         except EngineError:
             self._drop_target("gbuffer")  # its textures are given back
             raise
-        request = self._request(view, style, target)
-        if self._occlusion is not None:
-            self._occlusion.outside = outside
-            with self._passes.timed("last picture") if target.generation else nullcontext():
-                self._occlusion.before(target, view, style)
-        self._pipeline.draw(request)
-        if self._occlusion is not None:
-            self._occlusion.after(target, view, style)
+        if self._choice is not None:
+            key = view.size, style, len(view.clip_planes), view.region is None, outside is None
+            self._occlusion = self._culling if self._choice.next(key) else None
+        with nullcontext() if self._choice is None else self._choice.drawing():
+            request = self._request(view, style, target)
+            if self._occlusion is not None:
+                self._occlusion.outside = outside
+                with self._passes.timed("last picture") if target.generation else nullcontext():
+                    self._occlusion.before(target, view, style)
+            self._pipeline.draw(request)
+            if self._occlusion is not None:
+                self._occlusion.after(target, view, style)
         self._features_behind = frozenset()
         self._last = view, style
         return target
 
+    def _make_choice(self) -> CullingChoice:
+        # Compute work of software OpenGL is done when a call returns; timestamps tell nothing of it.
+        at_once = self.pipeline == "compute" and is_software(self._ctx)
+        clock = CallClock() if at_once else TimestampClock(self._gl)
+        return CullingChoice(clock)
+
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
         # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
-        culling = None if self._occlusion is None else "two-phase"
+        culling = None if self._culling is None else "two-phase"
         occlusion = make_occlusion(culling, self._ctx, self._gl, self._programs, self._fiblets)
         return self._make_pipeline(), occlusion
 
@@ -293,5 +313,7 @@ class FibletRenderer(LinesBehind):
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
         release_chunks(self._chunks)
+        if self._choice is not None:
+            self._choice.release()
         super().release()
         self._query = None

@@ -46,7 +46,7 @@ class FibletStyle(Style):
     """
 
     line_width: float = 1.0
-    tolerance: float = 0.5
+    tolerance: float = 0.0
     across: bool = False
     radius: float | None = None
     min_width: float = 1.0
