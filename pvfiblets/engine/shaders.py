@@ -101,6 +101,8 @@ FEATURES: dict[str, str] = {
     "VOLUME_SURFACE": "surfaces in a volume",
     "VOLUME_COMPOSITE": "light through a volume",
     "VOLUME_LOCAL": "the first peak in a volume, not the greatest",
+    "VOLUME_MINIMUM": "the least value in a volume",
+    "VOLUME_AVERAGE": "the mean value in a volume",
     "VOLUME_NEAREST": "the field of the nearest voxel",
     "VOLUME_TRICUBIC": "the field of cubics between voxels",
     "VOLUME_UNREFINED": "surfaces at the sample behind them",

@@ -149,7 +149,9 @@ class VolumeMapper(CutMapper[Options]):
         volume = self._taken[1]
         if not self._follows:
             return volume, self._colouring
-        peaks = self._casting.mode in ("mip", "local-mip")
+        from pvfiblets.volumes.raycast_options import PROJECTIONS
+
+        peaks = self._casting.mode in PROJECTIONS
         paint = paint_of(self, data) if peaks else None
         if paint is not None and paint.numbers is not None:
             return volume, paint.mapped(volume.name)

@@ -105,8 +105,9 @@ class _AddRaycastVolume(Protocol):
     def __call__(
         self, source: RaycastVolumesSource, *, scalars: str | np.ndarray | None = None, spacing: Any = None,
         origin: Any = None, direction: Any = None, affine: Any = None, shape: Any = None, dtype: Any = None,
-        mode: str = "composite", values: float | Any = None, color: Any = None, cmap: Any = None, clim: Any = None,
-        n_colors: int = 256, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        blending: str | None = None, resolution: Any = None, mode: str = "composite", values: float | Any = None,
+        color: Any = None, cmap: Any = None, clim: Any = None, n_colors: int = 256,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
         opacity: str | float | Any = "linear", opacity_unit_distance: float | None = None, thresholds: Any = None,
         peak: float | None = None, smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear",
         refine: str = "regula-falsi", iterations: int = 5, integrator: str = "adaptive", jitter: bool = False,

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 __all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "PROJECTIONS", "REFINEMENTS", "RaycastOptions"]
 
-MODES = ("composite", "isosurface", "mip", "local-mip")
-"""What a ray shows: all that it passes through, a surface, the greatest value, or the first peak above a threshold."""
+MODES = ("composite", "isosurface", "mip", "local-mip", "minimum", "average")
+"""What a ray shows: all that it passes through, a surface, the greatest value, the first peak above a threshold,
+the least value, or the mean one."""
 
-PROJECTIONS = ("mip", "local-mip")
+PROJECTIONS = ("mip", "local-mip", "minimum", "average")
 """Modes that show one value of a ray."""
 
 REFINEMENTS = ("regula-falsi", "newton", "none")

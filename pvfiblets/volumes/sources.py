@@ -49,6 +49,8 @@ def as_raycast_volume(
     source : object
         - :class:`pyvista.ImageData` or another ``vtkImageData``: origin, spacing and direction matrix place it. Cell
           data become the mean of the cells around each point, as in ``Plotter.add_volume``.
+        - :class:`pyvista.RectilinearGrid`: along axes whose planes are uneven, values are interpolated at the least
+          distance of two, at four times as many places at most.
         - ``(nx, ny, nz)`` numbers, masked arrays (masked voxels are missing) and memory maps; or ``(array, affine)``.
         - An image of nibabel.
         - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.nrrd``, ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD
@@ -237,7 +239,10 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
     """An image's scalars where they lie."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    if not image.IsA("vtkImageData"):
+    uneven = image.IsA("vtkRectilinearGrid")
+    if image.IsA("vtkMultiBlockDataSet"):
+        raise TypeError("a MultiBlock is no grid; add each of its blocks by itself, or choose one: blocks[0]")
+    if not (uneven or image.IsA("vtkImageData")):
         raise TypeError(
             f"rays cannot be cast through a {type(image).__name__}; sample it on a grid first: "
             "pyvista.ImageData(...).sample(mesh)"
@@ -267,6 +272,12 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
         values = _at_points(values.reshape([max(n - 1, 1) for n in dims], order="F"), dims)
     else:
         values = values.reshape(dims, order="F")
+    if uneven:
+        from .rectilinear import evenly
+
+        axes = (image.GetXCoordinates(), image.GetYCoordinates(), image.GetZCoordinates())
+        x, y, z = (np.array(vtk_to_numpy(one), np.float64) for one in axes)
+        return *evenly(values, (x, y, z)), name
     matrix = image.GetIndexToPhysicalMatrix()
     place = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
     place[:3, 3] += place[:3, :3] @ np.array(image.GetExtent()[0::2], np.float64)

@@ -1,5 +1,26 @@
-// What a ray shows of peaks: the greatest value, or the first peak, and where it lies.
+// What a ray shows of values: the greatest or least, the first peak, or their mean, and where that lies.
 
+#if FEATURE_VOLUME_AVERAGE
+#include "volumes/mean_projection.glsl"
+
+void clear_shown() {}
+
+bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out float value) {
+    float sum = 0.0, count = 0.0;
+    hit = start;
+#if FEATURE_CLIP_REGION
+    Ray part = ray;
+    float begin;
+    for (int number = 0; next_part(pixel, ray, number, begin, part.last);) {
+        add_up(part, step, begin + start - ray.first, hit, sum, count);
+    }
+#else
+    add_up(ray, step, start, hit, sum, count);
+#endif
+    value = sum / max(count, 1.0);
+    return count > 0.0;
+}
+#else
 #include "volumes/intensity_projection.glsl"
 #if FEATURE_CLIP_REGION
 bool find_peak_in_parts(ivec2 pixel, Ray whole, float step, float late, out float hit, out float value) {
@@ -24,8 +45,13 @@ void clear_shown() {}
 
 bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out float value) {
 #if FEATURE_CLIP_REGION
-    return find_peak_in_parts(pixel, ray, step, start - ray.first, hit, value);
+    bool found = find_peak_in_parts(pixel, ray, step, start - ray.first, hit, value);
 #else
-    return find_peak(ray, step, start, hit, value);
+    bool found = find_peak(ray, step, start, hit, value);
 #endif
+#if FEATURE_VOLUME_MINIMUM
+    value = -value;
+#endif
+    return found;
 }
+#endif

@@ -22,7 +22,11 @@ bool find_peak(Ray ray, float step, float start, out float hit, out float value)
         bool over = false;
         do {
             float v = value_at(at(ray, t));
-            if (is_there(v) && v > best) {
+            bool there = is_there(v);
+#if FEATURE_VOLUME_MINIMUM
+            v = -v;      // the greatest of these; nodes have the greatest of them, too
+#endif
+            if (there && v > best) {
                 best = v;
                 if (v > found + peak_rounding) {
                     found = v;

@@ -367,6 +367,12 @@ CHANGED = {
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels, engine.volumes.shading",
     ),
+    "volume: minimum": What(
+        features="VOLUME_MINIMUM",
+    ),
+    "volume: average": What(
+        features="VOLUME_AVERAGE",
+    ),
     "volume: nearest": What(
         features="VOLUME_NEAREST",
     ),

@@ -226,6 +226,8 @@ SCENES = {
     "volume: light": made("volume", mode="composite", opacity=[0, 0.5]),
     "volume: dense light": made("volume", mode="composite"),
     "volume: shaded light": made("volume", mode="composite", shade=True),
+    "volume: minimum": made("volume", mode="minimum"),
+    "volume: average": made("volume", mode="average"),
     "volume: nearest": made("volume", filter="nearest"),
     "volume: tricubic": made("volume", filter="tricubic"),
     "volume: jitter": made("volume", jitter=True),

@@ -80,8 +80,8 @@ def test_active_cells_are_taken_before_points():
         (lambda: pv.ImageData(dimensions=SHAPE), ValueError, r"no active scalars among its arrays \[\]"),
         (lambda: pv.ImageData(dimensions=(4, 4, 1)), ValueError, "no active scalars"),
         (pv.Sphere, TypeError, "cannot be cast through a PolyData; sample it on a grid first"),
-        (lambda: pv.RectilinearGrid([0, 1], [0, 1], [0, 3]), TypeError, "cast through a RectilinearGrid"),
-        (lambda: pv.MultiBlock([image()]), TypeError, "cast through a MultiBlock"),
+        (lambda: pv.StructuredGrid(np.eye(3), np.eye(3), np.eye(3)), TypeError, "cast through a StructuredGrid"),
+        (lambda: pv.MultiBlock([image()]), TypeError, "a MultiBlock is no grid"),
     ],
 )  # fmt: skip
 def test_images_that_are_no_volumes(make, error, message):

@@ -119,11 +119,16 @@ class NodeList:
 
 
 def _numbers(octree: Octree, casting: RaycastOptions) -> list[npt.NDArray[Any]]:
-    """Return a number for each node: 0 where there is nothing to see, of peaks the greatest value."""
+    """Return a number for each node: 0 where nothing is seen, of peaks the greatest value or minus the least."""
     low, high = casting.low, casting.high
     if _peaks(casting):
+        down = casting.mode == "minimum"
         return [
-            np.where((level.greatest >= low) & (level.least <= high), level.greatest.astype(np.float64), -np.inf)
+            np.where(
+                (level.greatest >= low) & (level.least <= high),
+                -level.least.astype(np.float64) if down else level.greatest.astype(np.float64),
+                -np.inf,
+            )
             for level in octree.levels
         ]
 

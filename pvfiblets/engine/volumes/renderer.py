@@ -31,6 +31,8 @@ _OF_MODE = {
     "composite": ["VOLUME_COMPOSITE"],
     "mip": [],
     "local-mip": ["VOLUME_LOCAL"],
+    "minimum": ["VOLUME_MINIMUM"],
+    "average": ["VOLUME_AVERAGE"],
 }
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
 _OF_REFINEMENT = {"none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     Source: TypeAlias = str | PathLike[str] | pv.ImageData | np.ndarray | tuple[Any, Any] | RaycastVolume
 
 
+BLENDING = {"composite": "composite", "maximum": "mip", "minimum": "minimum", "average": "average"}
+"""Modes by the words of ``Plotter.add_volume``."""
+
+
 @pv.register_plotter_component("raycast_volumes")
 class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
     """The volumes of one plotter that rays are cast through.
@@ -60,6 +64,8 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         affine: Any = None,
         shape: Any = None,
         dtype: Any = None,
+        blending: str | None = None,
+        resolution: Any = None,
     ) -> VolumeActor:
         """Add a volume to the scene, through which a ray is cast for each pixel.
 
@@ -78,6 +84,11 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             Where the voxels lie, mm, in place of what the source says.
         shape, dtype : optional
             Of bare numbers in a file.
+        blending : str, optional
+            ``add_volume``'s word for ``mode``: ``"composite"``, ``"maximum"``, ``"minimum"`` or
+            ``"average"``.
+        resolution : array_like, optional
+            ``add_volume``'s word for ``spacing``.
 
         Returns
         -------
@@ -122,6 +133,12 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         from pvfiblets.volumes.raycast_options import MODES
         from pvfiblets.volumes.sources import as_raycast_volume
 
+        if blending is not None:
+            settings["mode"] = _mode_of(blending, settings)
+        if resolution is not None:
+            if spacing is not None:
+                raise ValueError("resolution is add_volume's word for spacing: give one of the two")
+            spacing = resolution
         if settings["mode"] not in MODES:  # before the slow part
             raise ValueError(f"mode is {settings['mode']!r}; choose one of {MODES}")
         volume = as_raycast_volume(
@@ -135,6 +152,19 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             dtype=dtype,
         )
         return VolumeActor(volume, settings=settings, theme=self._plotter.theme)
+
+
+def _mode_of(blending: str, settings: Given) -> str:
+    """Return the mode of a word of ``add_volume``'s."""
+    if "mode" in settings.named:
+        raise ValueError("blending is add_volume's word for mode: give one of the two")
+    if blending == "additive":
+        raise ValueError(
+            "blending='additive' adds up values times opacities, which depends on the step; mode 'average' does not"
+        )
+    if blending not in BLENDING:
+        raise ValueError(f"blending is {blending!r}; choose one of {tuple(BLENDING)}")
+    return BLENDING[blending]
 
 
 AddRaycastVolume = plotter_method(RaycastVolumesComponent)

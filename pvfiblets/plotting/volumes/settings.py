@@ -12,6 +12,7 @@ from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Setti
 from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
 from pvfiblets.volumes.volume import FILTERS
 
+_MODES_SHOWN = ("light", "surface", "greatest value", "first peak", "least value", "mean value")
 _MISSING = "volumes that rays are cast through have no {name}: "
 _CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigmoid_5", "sigmoid_7", "sigmoid_10",
            "sigmoid_20", "foreground")  # fmt: skip
@@ -88,12 +89,13 @@ class VolumeSettings(Settings):
         "What a ray shows.\n\n"
         '``"isosurface"``: the first of the surfaces of ``values``. ``"composite"``: the light of all\n'
         'that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
-        "least ``peak``, or the greatest value where there is none.",
+        'least ``peak``, or the greatest value where there is none. ``"minimum"``: the least value.\n'
+        '``"average"``: the mean of all. ``add_volume`` calls them ``blending``.',
         kind="str",
         choices=MODES,
         where=CASTING,
         row=Row("Mode", "What a ray through the volume shows.", default="isosurface",
-                choices=list(zip(MODES, ("light", "surface", "greatest value", "first peak"), strict=True))),
+                choices=list(zip(MODES, _MODES_SHOWN, strict=True))),
     )  # fmt: skip
     values: Setting[Any] = Setting(
         None,

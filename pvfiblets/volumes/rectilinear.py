@@ -1,0 +1,69 @@
+"""Grids whose planes lie at uneven distances, on the even ones that rays are cast through."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["MOST_TIMES", "evenly"]
+
+MOST_TIMES = 4
+"""Planes of the even grid along an axis, in those of the uneven one, at most."""
+
+EVEN = 1e-6
+"""Part of the mean distance by which planes may be off and still count as even."""
+
+Array = npt.NDArray[np.float64]
+
+
+def evenly(values: npt.NDArray[Any], axes: tuple[Array, Array, Array]) -> tuple[npt.NDArray[Any], Array]:
+    """Return the values at even distances, and their affine.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        ``(nx, ny, nz)``.
+    axes : tuple of 3 numpy.ndarray
+        Coordinates of the planes along each axis, increasing, mm.
+
+    Returns
+    -------
+    values : numpy.ndarray
+        As they are along axes that are even. Along others linear between planes, at the least distance of two, but at
+        most `MOST_TIMES` as many: float32, then.
+    affine : numpy.ndarray
+        ``(4, 4)`` float64.
+
+    Raises
+    ------
+    ValueError
+        If coordinates do not increase.
+    """
+    affine = np.eye(4)
+    for axis, at in enumerate(axes):
+        apart = np.diff(at)
+        if not (np.isfinite(at).all() and (apart > 0.0).all()):
+            raise ValueError(f"the grid's {'xyz'[axis]} coordinates do not increase; sort them, and leave doubles out")
+        affine[axis, 3] = at[0]
+        if not len(apart):
+            continue
+        span = float(at[-1] - at[0])
+        if (np.abs(apart - apart.mean()) > EVEN * apart.mean()).any():
+            count = min(int(np.ceil(span / apart.min())) + 1, MOST_TIMES * len(at))
+            values = _along(values, axis, at, np.linspace(at[0], at[-1], count))
+            affine[axis, axis] = span / (count - 1)
+        else:
+            affine[axis, axis] = span / len(apart)
+    return values, affine
+
+
+def _along(values: npt.NDArray[Any], axis: int, at: Array, wanted: Array) -> npt.NDArray[np.float32]:
+    """Values at places along an axis, linear between those that are known."""
+    below = np.clip(np.searchsorted(at, wanted, side="right") - 1, 0, len(at) - 2)
+    share = ((wanted - at[below]) / (at[below + 1] - at[below])).astype(np.float32)
+    shape = [-1 if k == axis else 1 for k in range(3)]
+    low, high = (np.take(values, below + k, axis).astype(np.float32) for k in (0, 1))
+    made: npt.NDArray[np.float32] = low + share.reshape(shape) * (high - low)
+    return made
