@@ -19,6 +19,7 @@ _HOME = {
     "Streamlines": "streamlines",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
+    "connectome": "query.connectome",
     "density": "query.density",
     "iter_chunks": "formats",
     "end_parcels": "query.parcels",
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot
     from .plotting.read_volume import read_volume as read_volume
+    from .query.connectome import connectome as connectome
     from .query.density import density as density
     from .query.density_map import DensityMap
     from .query.parcels import end_parcels as end_parcels

@@ -147,6 +147,32 @@ def make_parser() -> argparse.ArgumentParser:
 
     _density(commands.add_parser("density", help="write a volume of how many streamlines pass each voxel, or of more"))
 
+    matrix = commands.add_parser(
+        "connectome",
+        help="write a matrix of how strongly the parcels of an atlas are connected",
+        description="Write a symmetric matrix of parcels by parcels: streamlines of IN whose ends lie in both, or the "
+        "mean of their numbers. It holds the labels that LABELS has, rising.",
+    )
+    matrix.add_argument("source", metavar="IN", help="a tractogram of any format")
+    matrix.add_argument("labels", metavar="LABELS", help="a NIfTI image of whole numbers, 0 for no parcel")
+    matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file")
+    matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
+    matrix.add_argument(
+        "--contrast", default="count", metavar="NAME|FILE",
+        help="'count' (default), 'length', or numbers by the name of an array or a file",
+    )  # fmt: skip
+    matrix.add_argument(
+        "--radius", type=float, default=4.0, metavar="MM",
+        help="about an end in which its parcel is looked for; 0: the voxel it lies in (default: %(default)s)",
+    )  # fmt: skip
+    matrix.add_argument(
+        "--statistic",
+        choices=("sum", "mean", "min", "max"),
+        help="of a pair's numbers (default: sum of counts, else mean)",
+    )
+    _json(matrix)
+    matrix.set_defaults(run="pvfiblets.cli_connectome:connectome")
+
     table = commands.add_parser(
         "table",
         help="write a row for each streamline: length, ends, groups, values",

@@ -40,8 +40,8 @@ def density(
             source,
             None if voxel is None else voxel if len(voxel) == 3 else voxel[0],
             like=_image(like),
-            weights=_numbers(weights),
-            contrast=contrast if contrast in CONTRASTS else _numbers(contrast),
+            weights=numbers(weights),
+            contrast=contrast if contrast in CONTRASTS else numbers(contrast),
             ends_only=ends_only,
             progress=show_progress(quiet, json),
         )
@@ -106,7 +106,7 @@ def _image(path: str | None) -> Any:
     return as_raycast_volume(path)
 
 
-def _numbers(given: str | None) -> Any:
+def numbers(given: str | None) -> Any:
     """Return the numbers of a file; a text that names none is the name of an array."""
     from pvfiblets.formats import attachments
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from ..query.connectome import Connectome
     from ..query.density_map import DensityMap
     from ..query.table import Table
     from .fibletset import FibletSet
@@ -66,6 +67,23 @@ class SetQueries:
         from .. import density  # by the package's own name for it: this room knows nothing of questions
 
         return density(self, voxel_size, **options)
+
+    def connectome(self: Any, labels: Any, **options: Any) -> Connectome:
+        """Put a number to every pair of parcels of an atlas; see :func:`pvfiblets.connectome`.
+
+        Parameters
+        ----------
+        labels : nibabel image, path of one, or (array, affine)
+        **options
+            ``weights, contrast, radius, statistic, names`` of that function.
+
+        Returns
+        -------
+        Connectome
+        """
+        from .. import connectome
+
+        return connectome(self, labels, **options)
 
     def table(self: Any, ids: npt.ArrayLike | slice | None = None) -> Table:
         """Return a row for each streamline; see :func:`pvfiblets.table`.

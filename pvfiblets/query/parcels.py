@@ -15,7 +15,7 @@ from .endpoints import end_points
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
-__all__ = ["end_parcels"]
+__all__ = ["end_parcels", "read_atlas"]
 
 
 def end_parcels(
@@ -46,7 +46,7 @@ def end_parcels(
     ValueError
         If it has other than three axes, or fractions, or an affine that flattens space.
     """
-    labels, affine = _atlas(atlas)
+    labels, affine = read_atlas(atlas)
     inverse = np.linalg.inv(affine)
     ends = end_points(fiblets).reshape(-1, 3)
     at = np.rint(ends @ inverse[:3, :3].T + inverse[:3, 3])  # NaN of streamlines without points stays
@@ -61,7 +61,14 @@ def end_parcels(
     return texts[which.ravel()] if len(texts) else np.zeros(0, dtype=str)
 
 
-def _atlas(given: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.float64]]:
+def read_atlas(given: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.float64]]:
+    """Return labels ``(i, j, k)`` and the ``(4, 4)`` matrix from their indices to mm.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As of :func:`end_parcels`.
+    """
     if isinstance(given, (str, os.PathLike)):
         import nibabel
 
