@@ -48,7 +48,7 @@ _WATCHED: dict[str, tuple[Any, ...]] = {
     "glFenceSync": (_P, _U, _U),
     "glClientWaitSync": (_U, _P, _U, _U64),
 }
-_ROOM = 1 << 16
+_ROOM = 1 << 17
 
 
 def possible() -> bool:
@@ -67,6 +67,7 @@ class Calls:
 
     def __init__(self) -> None:
         self.waits: list[str] = []
+        self._silent = ctypes.c_uint8(0)
         self._code = mmap.mmap(-1, _ROOM, prot=mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC)
         self._base = ctypes.addressof(ctypes.c_char.from_buffer(self._code))
         self._used = 0
@@ -91,8 +92,12 @@ class Calls:
 
     def _thunk(self, name: str, target: int) -> int:
         number = self._numbers.setdefault(name, ctypes.c_uint64(0))
-        # mov r11, number; inc qword [r11]; mov r11, target; jmp r11
+        # mov r11, number; inc qword [r11]
         code = b"\x49\xbb" + struct.pack("<Q", ctypes.addressof(number)) + b"\x49\xff\x03"
+        # mov r11, silent; cmp byte [r11], 0; je past the next three; xor eax, eax; ret
+        code += b"\x49\xbb" + struct.pack("<Q", ctypes.addressof(self._silent)) + b"\x41\x80\x3b\x00"
+        code += b"\x74\x03\x31\xc0\xc3"
+        # mov r11, target; jmp r11
         code += b"\x49\xbb" + struct.pack("<Q", target) + b"\x41\xff\xe3"
         at = self._used
         self._used += -(-len(code) // 16) * 16
@@ -146,6 +151,15 @@ class Calls:
         filled = self._filled.get(self._bound.get(target, 0))
         if filled is None or filled > self._done:
             self.waits.append(name)
+
+    @property
+    def silent(self) -> bool:
+        """Whether calls are counted, and nothing comes of them: what is left of a frame is the program's own time."""
+        return bool(self._silent.value)
+
+    @silent.setter
+    def silent(self, silent: bool) -> None:
+        self._silent.value = silent
 
     def forget(self) -> None:
         """Begin to count anew."""

@@ -55,6 +55,7 @@ _TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
 _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
 _COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
+_COPY_WRITE_BUFFER = 0x8F37
 _COLOR, _DEPTH = 0x1800, 0x1801
 _COMMANDS_COMPLETE, _FLUSH = 0x9117, 0x1
 _PASSED = (0x911A, 0x911C)  # already, or within the time that was given
@@ -370,6 +371,23 @@ class GLExtras:
         with self.framebuffers_kept():
             framebuffer.use()  # with its draw buffers, colour mask and scissor, whatever was in force
             self.function("glClearBufferuiv")(_COLOR, attachment, padded)
+
+    def clear_words(self, buffer: moderngl.Buffer, offset: int = 0, size: int | None = None) -> None:
+        """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3).
+
+        moderngl's ``clear`` maps the buffer, and so waits until nobody draws with it any more.
+
+        Parameters
+        ----------
+        buffer : moderngl.Buffer
+            What shaders have written to it comes before, if there was a barrier for updates of buffers.
+        offset, size : int
+            Bytes, multiples of four; all that comes after `offset` by default.
+        """
+        size = buffer.size - offset if size is None else size
+        internal, pixels, number = _LEVEL_FORMATS["u4", 1]
+        self.function("glBindBuffer")(_COPY_WRITE_BUFFER, buffer.glo)
+        self.function("glClearBufferSubData")(_COPY_WRITE_BUFFER, internal, offset, size, pixels, number, None)
 
     def fill(self, framebuffer: moderngl.Framebuffer, attachment: int, values: Sequence[float]) -> None:
         """Fill one attachment of floats, inside the framebuffer's scissor, and leave it in use.

@@ -119,6 +119,11 @@ class RaycastVolume:
         return np.linalg.norm(self.affine[:3, :3], axis=0)
 
     @cached_property
+    def diagonal(self) -> float:
+        """The longest way through the volume, mm, or a little more."""
+        return float(np.linalg.norm(np.abs(self.affine[:3, :3]) @ np.array(self.shape, np.float64)))
+
+    @cached_property
     def bounds(self) -> tuple[float, float, float, float, float, float]:
         """(xmin, xmax, ymin, ymax, zmin, zmax) of the outermost voxels' centres, mm."""
         ends = np.stack(np.meshgrid(*[(0.0, n - 1.0) for n in self.shape], indexing="ij"), axis=-1).reshape(-1, 3)

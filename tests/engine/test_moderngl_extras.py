@@ -232,3 +232,14 @@ def test_without_a_context_nothing_is_looked_up():
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert result.returncode == 1
     assert "EngineError: no OpenGL context is current; make it so" in result.stderr
+
+
+def test_parts_of_buffers_are_cleared(gl):
+    extras, buffer = GLExtras(gl), gl.buffer(np.arange(1, 9, dtype="<u4").tobytes())
+    extras.clear_words(buffer, 8, 12)
+    assert np.frombuffer(buffer.read(), "<u4").tolist() == [1, 2, 0, 0, 0, 6, 7, 8]
+    extras.clear_words(buffer, 24)
+    assert np.frombuffer(buffer.read(), "<u4").tolist() == [1, 2, 0, 0, 0, 6, 0, 0]
+    extras.clear_words(buffer)
+    assert not any(buffer.read())
+    buffer.release()

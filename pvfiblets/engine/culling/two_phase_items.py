@@ -100,7 +100,7 @@ class Listing:
             Its texture with the number of the quad that each pixel shows, EMPTY where there is none.
         """
         seen = self.buffers["seen"]
-        seen.clear()
+        self._gl.clear_words(seen)
         if not target.buffer.generation:
             return
         program = self._programs.compute("culling/visible_items.comp")
@@ -141,7 +141,7 @@ class Listing:
 
     def _list(self, prepare: Callable[[moderngl.ComputeShader], None], *, second: bool) -> None:
         ctx = self._ctx
-        self.buffers["counts"].write(bytes(16))
+        self._gl.clear_words(self.buffers["counts"])
         for name, binding in ITEM_STORAGE.items():
             self.buffers[name].bind_to_storage_buffer(binding)
         cull = self._programs.compute(self._cull, self.features)

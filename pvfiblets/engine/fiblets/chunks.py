@@ -15,6 +15,7 @@ Python's or 64-bit integers.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -107,7 +108,7 @@ class Chunk:
         self.buffers.clear()
 
 
-def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int) -> list[ChunkPlan]:
+def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | None = None) -> list[ChunkPlan]:
     """Group pages so that no buffer of a group is larger than a limit.
 
     Parameters
@@ -115,6 +116,8 @@ def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int) -> list[ChunkPlan]:
     fiblets : FibletSet
     max_buffer_bytes : int
         The driver's limit for one storage block.
+    max_fiblets : int, optional
+        Of a group of several pages.
 
     Returns
     -------
@@ -138,7 +141,7 @@ def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int) -> list[ChunkPlan]:
             )
         while plan.pages[1] < n_pages:
             longer = _plan(fiblets, begin, plan.pages[1] + 1)
-            if _largest(longer) > max_buffer_bytes:
+            if _largest(longer) > max_buffer_bytes or longer.fiblets[1] - longer.fiblets[0] > (max_fiblets or math.inf):
                 break
             plan = longer
         plans.append(plan)

@@ -134,7 +134,7 @@ class MemoryBudget:
         EngineError
             If one page is too large, or there are more fiblets than the pipeline can mark.
         """
-        plans = plan_chunks(fiblets, self.limits.buffer_bytes)
+        plans = plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)
         if most >= 1.0 and (refusal := self._refusal(fiblets, plans)) is None:
             return Fitted(fiblets, plans, 1.0)
         if fit != "sample":
@@ -146,7 +146,7 @@ class MemoryBudget:
             fraction = _fraction_of(part, fiblets)
             if fraction <= limit:
                 taken = part.make()
-                plans = plan_chunks(taken, self.limits.buffer_bytes)
+                plans = plan_chunks(taken, self.limits.buffer_bytes, self.limits.fiblets)
                 if (refusal := self._refusal(taken, plans)) is not None:
                     raise refusal
                 return Fitted(taken, plans, part.n_ranks / fiblets.n_ranks)

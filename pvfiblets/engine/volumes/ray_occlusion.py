@@ -14,6 +14,7 @@ from ...volumes.octree import LEAF
 from ..bindings import VOLUME_OCCLUSION
 from ..effects.screen import ScreenEffect
 from ..errors import EngineError
+from ..work_limits import WorkLimits
 from .renderer import FEATURES_OF_FILTER, VolumeRenderer
 from .uniform_blocks import CONSTANTS
 
@@ -118,7 +119,8 @@ class RayOcclusionPass(ScreenEffect):
             "radius": float(radius),
             "seed": int(seed) & 0xFFFFFFFF,
         }
-        portion = max(1, min(samples, MOST_TURNS // turns_of_ray(renderer.volume, casting, turn, radius)))
+        turns = turns_of_ray(renderer.volume, casting, turn, radius)
+        portion = max(1, min(samples, MOST_TURNS // turns))
         texture = self._target(_NAME, buffer.size, "f2")
         if smooth:
             texture = self._target(_MEAN, buffer.size, "f2")
@@ -161,15 +163,16 @@ class RayOcclusionPass(ScreenEffect):
             if _NAME not in self._queries:
                 self._queries[_NAME] = self._ctx.query(time=True)
             with self._queries[_NAME]:
-                self._targets[_NAME][1].use()
-                self._targets[_NAME][1].clear()
+                target, limits = self._targets[_NAME][1], WorkLimits.of(self._ctx)
+                target.use()
+                target.clear()
                 self._ctx.enable(moderngl.BLEND)
                 self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
                 self._ctx.blend_func = moderngl.ONE, moderngl.ONE
                 for first in range(0, samples, portion):
                     program["first_sample"] = first
                     program["samples"] = min(portion, samples - first)
-                    array.render(moderngl.TRIANGLES, vertices=3)
+                    limits.draw(target, portion * turns, lambda: array.render(moderngl.TRIANGLES, vertices=3))
                 self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
                 self._ctx.disable(moderngl.BLEND)
             if smooth:
@@ -185,8 +188,7 @@ def turns_of_ray(
     """Return how often the loops of a ray may turn: once a step, and for each leaf once a level of the octree."""
     size = np.array(volume.shape, np.float64)
     along = float(np.linalg.norm(to_data, 2))
-    diagonal = float(np.linalg.norm(np.abs(volume.affine[:3, :3]) @ size))
-    mm = min(radius * along, diagonal)
+    mm = min(radius * along, volume.diagonal)
     steps = mm / casting.step_mm(volume.spacing, volume.shape)
     leaves = min(float(np.linalg.norm(volume.inverse[:3, :3], 2)) * mm, float(size.sum())) * 3.0 / LEAF + 4.0
     return math.ceil(steps + leaves * (2.0 + math.log2(max(size.max() / LEAF, 1.0) + 1.0)))

@@ -11,6 +11,7 @@ from ..bindings import BLOCKS, VOLUME_COARSE, VOLUMES
 from ..drawable import Drawable
 from ..gbuffer import GBuffer
 from ..view import Style, View
+from ..work_limits import WorkLimits
 from .nodes import NodeList, takes_means
 from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
@@ -35,6 +36,8 @@ _OF_MODE = {
     "average": ["VOLUME_AVERAGE"],
 }
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
+_TAPS = {"tricubic": 8}
+"""Look-ups of a sample, where there are several."""
 _OF_REFINEMENT = {"none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
 _OF_INTEGRATOR = {
     "adaptive": ["VOLUME_PREINTEGRATED"],  # and more where that does not do
@@ -113,13 +116,16 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             self._block = self._keep(RayBlock(ctx, volume, (self._voxels.scale, self._voxels.shift)))
             self._nodes = self._keep(NodeList(ctx, self._gl, volume))
             self._tables = self._keep(TransferTextures(ctx, volume))
+            self._work = WorkLimits.of(ctx)
             self._cuts = self._keep(VolumeRegionIntervals(ctx, self._gl, self._programs, volume))
 
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
         casting = style.casting
         self._nodes.make(casting)
         self._clim = None if casting.transfer is None else casting.transfer.clim
-        self._tables.make(casting, self._block.step_mm(casting))
+        step = self._block.step_mm(casting)
+        self._tables.make(casting, step)
+        self._samples = self._volume.diagonal / step * _TAPS.get(casting.filter, 1)
         target = self._ray_target("gbuffer", view.size, style, marked=casting.sparse > 1)
         shaded = casting.mode == "composite" and style.shading is not None
         features = [*self._features_of(casting, outside is not None), *self._cuts.update(view)]
@@ -199,9 +205,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         if self._shading is not None and self._clim is not None:
             self._shading.set_uniforms(program, self._volume, self._clim)
         self._place(program, stride, size)
-        target.framebuffer.use()
         self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
-        array.render(moderngl.TRIANGLES, vertices=3)
+        self._work.draw(target.framebuffer, self._samples, lambda: array.render(moderngl.TRIANGLES, vertices=3))
 
     @property
     def volume(self) -> RaycastVolume:

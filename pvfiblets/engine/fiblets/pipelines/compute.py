@@ -211,8 +211,8 @@ class ComputePipeline:
         request.gather.bind_images()
         with request.passes.timed("gather"):
             request.gather.target.clear(self._gl)
-            empty = bytes(ROUNDS * self._round_arguments * ARGUMENT_BYTES)
-            self._own["visibility_bits"].write(empty, 4 * self._argument_base)
+            size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
+            self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
             features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
             self._run("cull", features, request)
             self._barrier()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import moderngl
 
 from ...moderngl_extras import GLExtras
+from ...work_limits import WorkLimits
 from .compute import CLASSES
 from .constants import VISIBILITY_WORDS
 
@@ -37,12 +38,15 @@ class Limits:
         Fiblets of which the pipeline can remember what became of them.
     marked_by : str
         What holds them.
+    fiblets : int
+        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.work_limits`).
     """
 
     buffer_bytes: int
     groups: int
     marks: int
     marked_by: str
+    fiblets: int
 
     def visibility_bytes(self, n_fiblets: int) -> int:
         """Bytes of those marks."""
@@ -62,15 +66,16 @@ class Limits:
         buffer_bytes, groups : int, optional
             Of the user's.
         """
+        work = WorkLimits.of(ctx).fiblets
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:
             # Of the buffers that decide how many fiblets a chunk holds, every texel has four bytes.
             most = min(4 * gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE"), LARGEST)
-            return cls(min(most, buffer_bytes or most), 0, side * side, "texture")
+            return cls(min(most, buffer_bytes or most), 0, side * side, "texture", work)
         most = gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
         axis = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
         most = min(most, LARGEST)
         groups, records = min(axis, groups or axis), min(most, buffer_bytes or most)
         if pipeline in MESH:
-            return cls(records, groups, side * side, "texture")
-        return cls(records, groups, 32 * (most // _VISIBILITY_BYTES["buffer"]), "buffer")
+            return cls(records, groups, side * side, "texture", work)
+        return cls(records, groups, 32 * (most // _VISIBILITY_BYTES["buffer"]), "buffer", work)
