@@ -9,12 +9,13 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..streamlines import Streamlines
-from .encode import Effort, Encoder, FibletChunk
+from .encode import Effort, Encoder
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
 from .parameters import DEFAULT_ANGLE, Parameters, Survey, survey
 from .quantised import QuantisedPoints, quantise_values
+from .record_writer import FibletChunk
 
 __all__ = ["CHUNK_POINTS", "LARGEST_FIT", "PerPoint", "choose_per_point", "compress", "not_kept", "split_chunks"]
 

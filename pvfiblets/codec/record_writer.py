@@ -1,0 +1,144 @@
+"""Fiblets that are coded, laid out as records in pages (:mod:`.layout`), chunk by chunk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .capsules import capsule_ends
+from .layout import PAGE, PAGE_BITS, pack, unpack_ends
+from .parameters import Parameters
+
+__all__ = ["FibletChunk", "RecordWriter"]
+
+
+@dataclass
+class FibletChunk:
+    """Records of consecutive fiblets of whole streamlines, as the arrays of :mod:`.layout`."""
+
+    anchors: npt.NDArray[np.uint32]
+    anchors_low: npt.NDArray[np.uint16] | None
+    decoding: npt.NDArray[np.uint32]
+    reach: npt.NDArray[np.uint16]
+    codes: npt.NDArray[np.uint8]
+    ends: npt.NDArray[np.uint32]
+
+
+@dataclass
+class RecordWriter:
+    """Lays out records, keeping count across chunks.
+
+    Attributes
+    ----------
+    parameters : Parameters
+        Shared numbers of the file; ``largest_radius`` grows as chunks are added.
+    pages : list of tuple of int
+        Rank, code byte and point at which each page begun so far starts.
+    empty : list of numpy.ndarray
+        Streamlines without points.
+    n_fiblets, n_ranks, n_codes, n_points, n_streamlines : int
+        Totals so far; ranks count the streamlines that have points.
+    """
+
+    parameters: Parameters
+    pages: list[tuple[int, int, int]] = field(default_factory=list, kw_only=True)
+    empty: list[npt.NDArray[np.int64]] = field(default_factory=list, kw_only=True)
+    n_fiblets: int = field(default=0, kw_only=True)
+    n_ranks: int = field(default=0, kw_only=True)
+    n_codes: int = field(default=0, kw_only=True)
+    n_points: int = field(default=0, kw_only=True)
+    n_streamlines: int = field(default=0, kw_only=True)
+
+    @property
+    def top(self) -> float:
+        """Largest anchor number."""
+        return 2.0**self.parameters.anchor_bits - 1.0
+
+    def lay_out(
+        self,
+        points: npt.NDArray[np.floating],
+        offsets: npt.NDArray[np.int64],
+        rows: dict[str, npt.NDArray[Any]],
+        counts: npt.NDArray[np.int64],
+        point_start: npt.NDArray[np.int64],
+        code_start: npt.NDArray[np.int64],
+        radii: npt.NDArray[np.float64],
+        ranks: npt.NDArray[np.int64],
+        codes: npt.NDArray[np.uint8],
+    ) -> FibletChunk:
+        """Write the records of a chunk, with indices relative to their pages.
+
+        Parameters
+        ----------
+        points, offsets : numpy.ndarray
+            ``(n_points, 3)`` mm, and where each streamline begins among them; some may have no points.
+        rows : dict of str to numpy.ndarray
+            Of each fiblet ``shape``, ``step``, ``cap``, ``kind``, and ``end_words``, of those that end a streamline.
+        counts, point_start, code_start, radii, ranks : numpy.ndarray
+            Of each fiblet: its points, its first point and code byte in the chunk, the radius of its capsule (mm), and
+            its streamline, counted from the chunk's first that has points.
+        codes : numpy.ndarray
+            Of all of them.
+        """
+        p = self.parameters
+        empty = np.flatnonzero(np.diff(offsets) == 0)
+        if empty.size:
+            self.empty.append(empty + self.n_streamlines)
+        total = len(counts)
+        begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
+        ends = np.append(begins[1:], True) if total else begins
+        absolute = np.stack([ranks + self.n_ranks, code_start + self.n_codes, point_start + self.n_points], axis=1)
+        page = (np.arange(total) + self.n_fiblets) >> PAGE_BITS
+        opened = np.arange(-self.n_fiblets % PAGE, total, PAGE)
+        self.pages += [(int(r), int(c), int(q)) for r, c, q in absolute[opened]]
+        first = self.n_fiblets >> PAGE_BITS
+        if total:
+            bases = np.array(self.pages[first : int(page[-1]) + 1], np.int64)
+            absolute -= bases[page - first]
+        scale = np.array(p.anchor_scale)
+        relative = points[point_start].astype(np.float64) - np.array(p.origin)
+        grid = np.divide(relative, scale, out=np.zeros_like(relative), where=scale > 0.0)
+        grid = np.clip(np.rint(grid), 0.0, self.top)
+        decoded = grid * scale
+        grid = grid.astype(np.uint64)
+        low = None
+        if p.anchor_bits == 32:
+            low = (grid & np.uint64(0xFFFF)).astype(np.uint16)
+            grid >>= np.uint64(16)
+        anchors = pack(
+            "anchors", anchor_x=grid[:, 0], anchor_y=grid[:, 1], anchor_z=grid[:, 2],
+            rank=absolute[:, 0], begin=begins, end=ends,
+        )  # fmt: skip
+        decoding = pack(
+            "decoding", shape=rows["shape"], code=absolute[:, 1], step=rows["step"], point=absolute[:, 2],
+            last=counts - 1, cap=rows["cap"], kind=rows["kind"],
+        )  # fmt: skip
+        reach = np.zeros(total)
+        if p.reach_scale > 0.0:
+            reach = np.minimum(np.ceil(radii / p.reach_scale * (1.0 + 1e-12)), 65535.0)
+        end_words = rows["end_words"][ends]
+        if total:
+            chords = capsule_ends(decoded, ends, unpack_ends(end_words) * p.end_scale, None) - decoded
+            radius = float((0.5 * np.sqrt((chords**2).sum(1)) + reach * p.reach_scale).max())
+            self.parameters = replace(p, largest_radius=max(p.largest_radius, radius * (1.0 + 1e-12)))
+        self.n_fiblets += total
+        self.n_ranks += int(ranks[-1]) + 1 if total else 0
+        self.n_codes += len(codes)
+        self.n_points += len(points)
+        self.n_streamlines += len(offsets) - 1
+        return FibletChunk(anchors, low, decoding, reach.astype(np.uint16), codes, end_words)
+
+    def page_table(self) -> npt.NDArray[np.int64]:
+        """``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page starts; last row: the totals."""
+        return np.array([*self.pages, (self.n_ranks, self.n_codes, self.n_points)], np.int64).reshape(-1, 3)
+
+    def rank_to_id(self) -> npt.NDArray[np.int64] | None:
+        """Streamline of each rank, or None where every streamline has points and the two are the same."""
+        if not self.empty:
+            return None
+        keep = np.ones(self.n_streamlines, bool)
+        keep[np.concatenate(self.empty)] = False
+        return np.flatnonzero(keep)
