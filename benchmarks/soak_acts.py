@@ -23,7 +23,7 @@ class Data:
     def __init__(self, seed: int) -> None:
         rng = np.random.default_rng(seed)
         self.lines = [_lines(rng, 60, 90), _lines(rng, 25, 40)]
-        self.fiblets = [compress(lines, per_point=("fa",)) for lines in self.lines]
+        self.fiblets = [compress(lines, per_point=("fa",), exact=False) for lines in self.lines]
         self.few = _lines(rng, 4, 12)
         grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, n) for n in (14, 12, 10)], indexing="ij"))
         self.values = (100.0 * np.exp(-3.0 * (grid**2).sum(0)) + rng.normal(size=grid.shape[1:])).astype(np.float32)

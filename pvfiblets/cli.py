@@ -113,6 +113,13 @@ def make_parser() -> argparse.ArgumentParser:
     convert.add_argument(
         "--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)"
     )
+    convert.add_argument(
+        "--exact",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="keep every bit of the points, or code them in any case (default: exact if less than a megabyte, unless "
+        "an option of coding is given, or if coding would take more bytes)",
+    )
     _quiet_and_json(convert)
     convert.set_defaults(run="pvfiblets.cli_files:convert")
 

@@ -36,6 +36,7 @@ def convert(
     effort: Literal["fast", "high"],
     per_point: list[str],
     per_point_bits: int,
+    exact: bool | None,
     quiet: bool,
     json: bool,
 ) -> None:
@@ -55,12 +56,14 @@ def convert(
             effort=effort,
             per_point=which_per_point(per_point),
             per_point_bits=per_point_bits,
+            exact=exact,
             progress=show_progress(quiet, json),
         )
     else:
-        if step is not None or max_error is not None or max_angle != DEFAULT_ANGLE or per_point:
+        if step is not None or max_error is not None or max_angle != DEFAULT_ANGLE or per_point or exact is not None:
             raise ValueError(
-                f"--step, --max-error, --max-angle and --per-point are for {COMPRESSED} files; {target} is none"
+                f"--step, --max-error, --max-angle, --exact and --per-point are for {COMPRESSED} files; {target} is of "
+                "another format"
             )
         result = rewrite(source, target)
     if json:
@@ -145,6 +148,7 @@ def verify(path: str, original: str | None, *, max_angle: float | None, quiet: b
         "checksums": "good",
         "streamlines": fiblets.n_streamlines,
         "points": fiblets.n_points,
+        "exact": fiblets.exact is not None,
         "promise_mm": fiblets.promise,
     }
     if original is not None:
@@ -178,7 +182,9 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
         f"size     {after:,} bytes, {result['bytes_per_point']:.2f} per point; "
         f"{100.0 * after / max(before, 1):.1f} % of {Path(source).name}",
     ]
-    if result.get("error_mm"):
+    if result.get("exact"):
+        lines.append("error    none: exact, every bit of the points is kept")
+    elif result.get("error_mm"):
         lines += [
             "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
             "         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()),

@@ -21,7 +21,14 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+from pvfiblets.codec import parameters as limits
 from tests.debug_log import DebugLog
+
+USUAL_LIMITS = {name: getattr(limits, name) for name in ("EXACT_BELOW", "EXACT_UP_TO")}
+
+# Sets of tests are small, and coded all the same: they are to show what coding does. What small sets are by default is
+# asked by tests that take the fixture `usual_limits`.
+limits.EXACT_BELOW = limits.EXACT_UP_TO = 0
 
 # Pictures of tests are exact, and drawn once: of one sample a pixel, in processes that they start, too.
 os.environ["PVFIBLETS_ANTIALIAS"] = "off"
@@ -78,6 +85,13 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"{NO_DATA}: no folder {folder} (set PVFIBLETS_DATA)")
     return folder
+
+
+@pytest.fixture
+def usual_limits(monkeypatch):
+    """Keep small sets exactly, as users have it."""
+    for name, value in USUAL_LIMITS.items():
+        monkeypatch.setattr(limits, name, value)
 
 
 class _Headless:

@@ -66,8 +66,12 @@ def array_member(array: npt.NDArray[Any]) -> Member:
     return Member(array.dtype, array.shape, pieces)
 
 
-def write_archive(path: str | os.PathLike[str], header: Mapping[str, Any], members: Mapping[str, Member]) -> None:
+def write_archive(
+    path: str | os.PathLike[str], header: Mapping[str, Any], members: Mapping[str, Member], *, small: bool = False
+) -> None:
     """Write a container; the file appears under its name only when it is whole.
+
+    Where it is `small`, nothing is spent on a header that people can read, or on places where members can be mapped.
 
     Raises
     ------
@@ -75,9 +79,10 @@ def write_archive(path: str | os.PathLike[str], header: Mapping[str, Any], membe
         If it cannot be written; it names the path, and says what to do.
     """
     with replacing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        _write(archive, HEADER, [json.dumps(header, indent=1, allow_nan=False).encode()])
+        layout: dict[str, Any] = {"separators": (",", ":")} if small else {"indent": 1}
+        _write(archive, HEADER, [json.dumps(header, allow_nan=False, **layout).encode()], aligned=not small)
         for name, member in members.items():
-            _write(archive, name, _with_npy_header(member))
+            _write(archive, name, _with_npy_header(member), aligned=not small)
 
 
 def _with_npy_header(member: Member) -> Iterator[bytes | memoryview]:
@@ -88,12 +93,13 @@ def _with_npy_header(member: Member) -> Iterator[bytes | memoryview]:
     yield from member.pieces()
 
 
-def _write(archive: zipfile.ZipFile, name: str, pieces: Iterable[bytes | memoryview]) -> None:
+def _write(archive: zipfile.ZipFile, name: str, pieces: Iterable[bytes | memoryview], *, aligned: bool) -> None:
     info = zipfile.ZipInfo(name, _DATE)
     assert archive.fp is not None
-    start = archive.fp.tell() + _LOCAL_HEADER + len(name.encode()) + _ZIP64_EXTRA
-    padding = -(start + 4) % ALIGNMENT
-    info.extra = struct.pack("<HH", _PADDING_ID, padding) + bytes(padding)
+    if aligned:
+        start = archive.fp.tell() + _LOCAL_HEADER + len(name.encode()) + _ZIP64_EXTRA
+        padding = -(start + 4) % ALIGNMENT
+        info.extra = struct.pack("<HH", _PADDING_ID, padding) + bytes(padding)
     with archive.open(info, "w", force_zip64=True) as stream:
         for piece in pieces:
             stream.write(piece)

@@ -10,7 +10,18 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 from .capsules import capsule_ends
-from .layout import DIRECTION, END_BITS, LATTICE8, MAX_POINTS, PAGE, WIDE, WIDE_HEADER, unpack, unpack_ends
+from .layout import (
+    DIRECTION,
+    END_BITS,
+    LATTICE8,
+    MAX_POINTS,
+    PAGE,
+    PLAIN_BYTES,
+    WIDE,
+    WIDE_HEADER,
+    unpack,
+    unpack_ends,
+)
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
@@ -22,8 +33,10 @@ def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
     """Bytes of codes of each fiblet, ``(n,)``, from its ``decoding`` words ``(n, 3)``."""
     kind = unpack("kind", decoding)
     last = unpack("last", decoding).astype(np.int64)
-    width = np.where(kind == WIDE, unpack("step", decoding) & 7, np.where(kind == LATTICE8, 1, 2)).astype(np.int64)
-    size = last * width + np.where(kind == WIDE, WIDE_HEADER, 0)
+    wide = np.where(kind == WIDE, unpack("step", decoding) & 7, 0).astype(np.int64)
+    plain = (kind == WIDE) & (wide == 0)
+    width = np.select([plain, wide > 0, kind == LATTICE8], [PLAIN_BYTES, wide, 1], 2)
+    size = last * width + np.where(wide > 0, WIDE_HEADER, 0)
     return np.where(kind == DIRECTION, np.maximum(last - 1, 0), size)
 
 
@@ -62,7 +75,7 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
             (starts != table[page, 1] + np.concatenate([[0], np.cumsum(sizes[:-1])]), "codes that do not follow on"),
             (points != expected_points, "points that do not follow on"),
             (ranks != expected_ranks, "a streamline that does not follow on"),
-            ((unpack("kind", decoding) == WIDE) & ((width < 1) | (width > 4)), "codes of impossible width"),
+            ((unpack("kind", decoding) == WIDE) & (width > 4), "codes of impossible width"),
             (np.append(False, begins[1:] != ends[:-1]), "begin and end marks that do not alternate"),
         ):
             _refuse(path, rows.start, bad, what)

@@ -4,20 +4,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
 from ..streamlines import Streamlines
-from .encode import Effort, Encoder
+from . import parameters as limits
+from .exact import plain_records, raw_bytes
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
-from .parameters import DEFAULT_ANGLE, Parameters, Survey, survey
+from .parameters import DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey
 from .quantised import QuantisedPoints, quantise_values
-from .record_writer import FibletChunk
+from .record_writer import RecordWriter, join
 
-__all__ = ["CHUNK_POINTS", "LARGEST_FIT", "PerPoint", "choose_per_point", "compress", "not_kept", "split_chunks"]
+if TYPE_CHECKING:
+    from .encode import Effort
+
+__all__ = [
+    "CHUNK_POINTS",
+    "LARGEST_FIT",
+    "PerPoint",
+    "check_exact",
+    "choose_per_point",
+    "compress",
+    "grows",
+    "is_plain",
+    "not_kept",
+    "quantise_chosen",
+    "split_chunks",
+]
 
 CHUNK_POINTS = 2_000_000
 LARGEST_FIT = 16
@@ -37,6 +53,7 @@ def compress(
     order: Order = "input",
     per_point: PerPoint = (),
     per_point_bits: int = 8,
+    exact: bool | None = None,
     progress: bool = False,
 ) -> FibletSet:
     """Compress streamlines into fiblets.
@@ -44,6 +61,9 @@ def compress(
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
     error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
     point. Which of the two is decided for every 60 points, so that the promise always holds.
+
+    Sets of less than a megabyte keep every bit of their points, and so do those that would take more bytes coded, such
+    as lines of two points (:mod:`pvfiblets.codec.exact`).
 
     Parameters
     ----------
@@ -73,6 +93,10 @@ def compress(
         fits into 16 bytes a point. None by default: what is not asked for costs nothing. ``dropped`` names the others.
     per_point_bits : {8, 16}
         Bits for each of those values.
+    exact : bool, optional
+        Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
+        `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
+        a gigabyte of them. False codes in any case.
     progress : bool
         Show a progress bar.
 
@@ -100,12 +124,18 @@ def compress(
         )
     per_point = choose_per_point(streamlines, per_point, per_point_bits)
     check_order(order)
+    plain = is_plain(step, max_error, max_angle, effort, order)
+    check_exact(exact, step, order)
+    if exact or (exact is None and plain and raw_bytes(streamlines) < limits.EXACT_BELOW):
+        return _kept_exactly(streamlines, survey([streamlines], per_point), per_point, per_point_bits)
     if step != "auto":
         from .resample import resample  # compiled code: most sets need none
 
         streamlines = resample(streamlines, step)
     found = survey([streamlines], per_point)
     parameters = Parameters.choose(found, max_error)
+    from .encode import Encoder  # which needs a compiler
+
     encoder = Encoder(parameters, effort, max_angle)
     coded, ids = streamlines, None
     if order == "hilbert":
@@ -119,38 +149,58 @@ def compress(
         for chunk in split_chunks(coded):
             chunks.append(encoder.add(chunk))
             bar.update(chunk.n_points)
+    if exact is None and step == "auto" and grows(encoder, raw_bytes(streamlines)):
+        return _kept_exactly(streamlines, found, per_point, per_point_bits)
     return FibletSet(
         parameters=encoder.parameters,
         pages=encoder.page_table(),
         rank_to_id=encoder.rank_to_id() if ids is None else ids,
         bounds=bounds_of(found),
-        n_streamlines=len(streamlines),
         per_point=quantise_chosen(coded, found, per_point, per_point_bits),
-        per_streamline={k: np.asarray(v) for k, v in streamlines.per_streamline.items()},
-        groups={k: np.asarray(v) for k, v in streamlines.groups.items()},
-        per_group={k: dict(v) for k, v in streamlines.per_group.items()},
-        affine=np.asarray(streamlines.affine, np.float64),
-        space=dict(streamlines.space or {}),
-        dropped={**streamlines.dropped, **not_kept(streamlines, per_point)},
+        **_rest(streamlines, per_point),
         **join(chunks),
     )
 
 
-def join(chunks: list[FibletChunk]) -> dict[str, Any]:
-    """Arrays of consecutive chunks, end to end."""
-    if not chunks:
-        return {
-            "anchors": np.empty((0, WORDS["anchors"]), np.uint32),
-            "decoding": np.empty((0, WORDS["decoding"]), np.uint32),
-            "reach": np.empty(0, np.uint16),
-            "codes": np.empty(0, np.uint8),
-            "ends": np.empty(0, np.uint32),
-        }
-    names = ("anchors", "decoding", "reach", "codes", "ends")
-    arrays: dict[str, Any] = {name: np.concatenate([getattr(c, name) for c in chunks]) for name in names}
-    if chunks[0].anchors_low is not None:
-        arrays["anchors_low"] = np.concatenate([c.anchors_low for c in chunks if c.anchors_low is not None])
-    return arrays
+def grows(coded: RecordWriter, raw: int) -> bool:
+    """Whether streamlines took more bytes to code than they have, so few that they can be kept as they are."""
+    anchor = WORDS["anchors"] * 4 + (6 if coded.parameters.anchor_bits == 32 else 0)
+    record = anchor + WORDS["decoding"] * 4 + 2
+    return coded.n_fiblets * record + coded.n_codes + 4 * coded.n_ranks >= raw and 0 < raw <= limits.EXACT_UP_TO
+
+
+def is_plain(*choices: Any) -> bool:
+    """Whether ``step, max_error, max_angle, effort, order`` are as nobody chose them."""
+    return choices == ("auto", None, DEFAULT_ANGLE, "fast", "input")
+
+
+def check_exact(exact: bool | None, step: float | str, order: str) -> None:
+    """Refuse what would change points that are to be kept as they are."""
+    if exact and (step != "auto" or order != "input"):
+        what = f"step={step!r}" if step != "auto" else f"order={order!r}"
+        raise ValueError(f"exact=True keeps the points as they are, and {what} would change them or their order")
+
+
+def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[str], bits: int) -> FibletSet:
+    return FibletSet(
+        bounds=bounds_of(found),
+        per_point=quantise_chosen(streamlines, found, per_point, bits),
+        **_rest(streamlines, per_point),
+        **plain_records(streamlines, Parameters.of_exact(found)),
+    )
+
+
+def _rest(streamlines: Streamlines, per_point: Sequence[str]) -> dict[str, Any]:
+    """What is kept whole, as fields of a FibletSet."""
+    return {
+        "n_streamlines": len(streamlines),
+        "per_streamline": {k: np.asarray(v) for k, v in streamlines.per_streamline.items()},
+        "groups": {k: np.asarray(v) for k, v in streamlines.groups.items()},
+        "per_group": {k: dict(v) for k, v in streamlines.per_group.items()},
+        "affine": np.asarray(streamlines.affine, np.float64),
+        "space": dict(streamlines.space or {}),
+        "dropped": {**streamlines.dropped, **not_kept(streamlines, per_point)},
+    }
 
 
 def split_chunks(streamlines: Streamlines, max_points: int = CHUNK_POINTS) -> Iterator[Streamlines]:
@@ -216,11 +266,3 @@ def quantise_chosen(
             for k in range(column.shape[1]):
                 kept[f"{name}[{k}]"] = quantise_values(column[:, k], lo, hi, bits)
     return kept
-
-
-def bounds_of(found: Survey) -> tuple[float, float, float, float, float, float]:
-    """Bounds in VTK's order; zeros where there are no points."""
-    if found.n_points == 0:
-        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    pairs = np.stack([found.lower, found.upper], axis=1).ravel().tolist()
-    return (pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5])

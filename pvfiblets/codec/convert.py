@@ -8,27 +8,41 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from os import PathLike
 from pathlib import Path
-from typing import IO, Any, Literal
+from typing import IO, TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import formats
+from ..errors import FormatError
 from ..streamlines import Streamlines
 from ..whole_files import naming_target
+from . import parameters as limits
 from .archive import Member, write_archive
-from .compress import CHUNK_POINTS, PerPoint, bounds_of, choose_per_point, not_kept, quantise_chosen
+from .compress import (
+    CHUNK_POINTS,
+    PerPoint,
+    check_exact,
+    choose_per_point,
+    compress,
+    grows,
+    is_plain,
+    not_kept,
+    quantise_chosen,
+)
 from .decompress import iter_chunks
-from .encode import Effort, Encoder
-from .error import CodingError, ErrorTally
+from .exact import raw_bytes
 from .fiblets_file import make_header
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import DEFAULT_ANGLE, Parameters, Survey
+from .parameters import DEFAULT_ANGLE, Parameters, Survey, bounds_of
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
-from .resample import resample
+
+if TYPE_CHECKING:
+    from .encode import Effort
+    from .error import CodingError
 
 __all__ = ["compress_file", "measure_file_error"]
 
@@ -44,6 +58,7 @@ def compress_file(
     order: Order = "input",
     per_point: PerPoint = "fit",
     per_point_bits: int = 8,
+    exact: bool | None = None,
     progress: Progress = False,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a ``.fiblets`` file.
@@ -56,7 +71,7 @@ def compress_file(
         Any format that :func:`pvfiblets.iter_chunks` reads.
     target : str or PathLike
         A name ending in ``.fiblets``; it appears when it is whole.
-    step, max_error, max_angle, effort, per_point_bits
+    step, max_error, max_angle, effort, per_point_bits, exact
         As in :func:`pvfiblets.compress`.
     per_point : sequence of str, or {'all', 'fit', 'none'}
         As in :func:`pvfiblets.compress`, but for the default: per-point arrays are kept in their order, each that still
@@ -72,7 +87,8 @@ def compress_file(
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
         error_steps{...}, error_degrees{max, mean, p99}, promise_mm, seconds`` (to read and code), ``points_per_second,
-        seconds_to_measure, dropped, per_point`` (names of the arrays kept).
+        seconds_to_measure, dropped, per_point`` (names of the arrays kept), and ``exact`` (whether every bit of the
+        points is).
 
     Raises
     ------
@@ -91,9 +107,16 @@ def compress_file(
 
     def chunks() -> Iterator[Streamlines]:
         for chunk in formats.iter_chunks(source, CHUNK_POINTS):
-            yield chunk if step == "auto" else resample(chunk, step)
+            if step == "auto":
+                yield chunk
+                continue
+            from .resample import resample
 
+            yield resample(chunk, step)
+
+    check_exact(exact, step, order)
     found = Survey()
+    raw, small = 0, []  # all chunks, while they are few enough to be kept exactly
     names: tuple[str, ...] = ()
     behind: dict[str, int] = {}
     for n, chunk in enumerate(shown(chunks(), None, "surveying", progress)):
@@ -101,6 +124,16 @@ def compress_file(
             names = choose_per_point(chunk, per_point, per_point_bits)
             behind = not_kept(chunk, names)
         found.add(chunk, names)
+        raw += raw_bytes(chunk)
+        small.append(chunk)
+        if not exact and raw >= limits.EXACT_BELOW:
+            small.clear()
+    plain = is_plain(step, max_error, max_angle, effort, order)
+    if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
+        return _keep_exactly(small, target, names, per_point_bits, started)
+    small.clear()
+    from .encode import Encoder  # which needs a compiler
+
     encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
     folder = Path(target).resolve().parent
     with (
@@ -119,6 +152,8 @@ def compress_file(
                 whole.add_values(name, values)
             whole.add(chunk)
         spool.close()
+        if exact is None and step == "auto" and grows(encoder, raw):
+            return _keep_exactly(chunks(), target, names, per_point_bits, started)
         if not encoder.n_fiblets:
             spool.add_empty(names, per_point_bits, whole)
         pages, ids = encoder.page_table(), encoder.rank_to_id()
@@ -163,6 +198,40 @@ def compress_file(
         "seconds_to_measure": time.perf_counter() - started - seconds,
         "dropped": whole.dropped,
         "per_point": list(whole.per_point),
+        "exact": False,
+    }
+
+
+def _keep_exactly(
+    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], bits: int, started: float
+) -> dict[str, Any]:
+    """Write a file that keeps every bit of the points, and say what :func:`compress_file` says."""
+    whole = Streamlines.concatenate(chunks)
+    fiblets = compress(whole, exact=True, per_point=names, per_point_bits=bits)
+    with naming_target(target):
+        fiblets.save(target)
+    seconds = time.perf_counter() - started
+    back = FibletSet.open(target)
+    if not (np.array_equal(back.decompress().points, whole.points) and np.array_equal(back.offsets(), whole.offsets)):
+        raise FormatError(target, None, "other points than were written", "the same: is the disk damaged?")
+    none = {"max": 0.0, "mean": 0.0}
+    size = Path(target).stat().st_size
+    return {
+        "streamlines": len(whole),
+        "points": whole.n_points,
+        "fiblets": fiblets.n_fiblets,
+        "bytes": size,
+        "bytes_per_point": size / max(whole.n_points, 1),
+        "error_mm": {**none, "p999": 0.0},
+        "error_steps": {**none, "p999": 0.0},
+        "error_degrees": {**none, "p99": 0.0},
+        "promise_mm": fiblets.promise,
+        "seconds": seconds,
+        "points_per_second": whole.n_points / seconds,
+        "seconds_to_measure": time.perf_counter() - started - seconds,
+        "dropped": fiblets.dropped,
+        "per_point": list(fiblets.per_point),
+        "exact": True,
     }
 
 
@@ -189,6 +258,8 @@ def _compare(
     progress: Progress,
 ) -> CodingError:
     """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
+    from .error import ErrorTally
+
     coded = FibletSet.open(target)
     tally = ErrorTally(coded, by_streamline=False)
     decoded = iter_chunks(coded, CHUNK_POINTS, np.float64)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .frame_arrays import first_frames, turn, turned_x
-from .layout import DIRECTION, PAGE_BITS, STEP_LEVELS, WIDE, WIDE_HEADER, unpack
+from .layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER, unpack
 
 __all__ = ["decode"]
 
@@ -64,8 +64,11 @@ def _decode_batch(
         for name, more in (("last", 1), ("step", 0), ("cap", 0), ("kind", 0), ("shape", 0))
     )
     at = code_base[which >> PAGE_BITS] + unpack("code", records).astype(np.int64)
-    size = np.where(
-        kind == DIRECTION, n - 2, np.where(kind == WIDE, WIDE_HEADER + (n - 1) * (step & 7), (n - 1) * kind)
+    plain = (kind == WIDE) & (step & 7 == 0)
+    size = np.select(
+        [kind == DIRECTION, plain, kind == WIDE],
+        [n - 2, (n - 1) * PLAIN_BYTES, WIDE_HEADER + (n - 1) * (step & 7)],
+        (n - 1) * kind,
     )
     # A record read from a damaged file must not reach beyond the arrays.
     bad = (at < 0) | (at + size > len(codes)) | (to < 0) | (to + n > len(out))
@@ -77,7 +80,11 @@ def _decode_batch(
         d = directed[np.argsort(-n[directed], kind="stable")]
         length = lo + step[d] * (hi - lo) / STEP_LEVELS if hi > lo else np.full(len(d), lo)
         _decode_directions(anchor[:, d], shape[d], length, cap[d], tables, codes, at[d], n[d], origin, to[d], out)
-    others = np.flatnonzero(~bad & (kind != DIRECTION) & (n > 1))
+    whole = np.flatnonzero(~bad & plain & (n > 1))
+    if whole.size:
+        edges = steps[2] * np.ldexp(1.0, -cap[whole])
+        _decode_plain(anchor[:, whole], edges, codes, at[whole], n[whole], origin, to[whole], out)
+    others = np.flatnonzero(~bad & ~plain & (kind != DIRECTION) & (n > 1))
     if others.size:
         o = others
         edges = steps[2] * np.ldexp(1.0, -cap[o])
@@ -102,6 +109,31 @@ def _decode_directions(
         out[to[:m] + i] = p.T + origin
 
 
+def _decode_plain(
+    anchor: Array, edge: Array, codes: Any, at: Ints, n: Ints, origin: Array, to: Ints, out: Any
+) -> None:
+    """Fiblets of three whole numbers a point, of sets whose points are kept exactly."""
+    owner, begin, place = _runs(n - 1)
+    start = at[owner] + PLAIN_BYTES * place
+    four = np.full(len(owner), 4)
+    moves = np.stack([_signed(_take(codes, start + 4 * axis, four), 32) for axis in range(3)])
+    out[to[owner] + 1 + place] = (anchor[:, owner] + edge[owner] * _summed(moves, owner, begin)).T + origin
+
+
+def _runs(sizes: Ints) -> tuple[Ints, Ints, Ints]:
+    """Of each item of runs laid end to end: its run, where each run begins, and its place in it."""
+    owner = np.repeat(np.arange(len(sizes)), sizes)
+    begin = np.cumsum(sizes) - sizes
+    return owner, begin, np.arange(len(owner)) - begin[owner]
+
+
+def _summed(moves: Ints, owner: Ints, begin: Ints) -> Ints:
+    """Running sums ``(3, m)`` within runs."""
+    sums = np.concatenate([np.zeros((3, 1), np.int64), np.cumsum(moves, axis=1)], axis=1)
+    summed: Ints = sums[:, 1:] - sums[:, begin][:, owner]
+    return summed
+
+
 def _decode_lattices(
     anchor: Array, kind: Ints, shape: Ints, step: Ints, edge: Array, codes: Any, at: Ints, n: Ints, origin: Array,
     to: Ints, out: Any,
@@ -117,15 +149,11 @@ def _decode_lattices(
     nx[wide], ny[wide] = np.maximum(heads[3], 1), np.maximum(heads[4], 1)
     start = at + np.where(kind == WIDE, WIDE_HEADER, 0)
 
-    owner = np.repeat(np.arange(k), n - 1)
-    begin = np.cumsum(n - 1) - (n - 1)
-    place = np.arange(len(owner)) - begin[owner]
+    owner, begin, place = _runs(n - 1)
     value = _take(codes, start[owner] + place * width[owner], width[owner])
     rows = value // nx[owner]
     moves = np.stack([value - rows * nx[owner], rows % ny[owner], rows // ny[owner]]) + lo[:, owner]
-    sums = np.concatenate([np.zeros((3, 1), np.int64), np.cumsum(moves, axis=1)], axis=1)
-    levels = sums[:, 1:] - sums[:, begin][:, owner]
-    out[to[owner] + 1 + place] = ((anchor[:, owner] + edge[owner] * levels).T) + origin
+    out[to[owner] + 1 + place] = ((anchor[:, owner] + edge[owner] * _summed(moves, owner, begin)).T) + origin
 
 
 def _take(codes: Any, at: Ints, width: Ints) -> Ints:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .direction_kernels import first_frame, turn
 from .jit import kernel, parallel_kernel
-from .layout import DIRECTION, PAGE_BITS, STEP_LEVELS, WIDE, WIDE_HEADER
+from .layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
 
 __all__ = ["decode"]
 
@@ -77,6 +77,19 @@ def _decode_lattice(
         p[i, 2] = a[2] + h * k2 + origin[2]
 
 
+@kernel
+def _decode_plain(a: Any, h: float, codes: Any, at: int, n: int, origin: Any, p: Any) -> None:
+    k0, k1, k2 = 0, 0, 0
+    for i in range(1, n):
+        k0 += _signed(_take(codes, at, 4), 32)
+        k1 += _signed(_take(codes, at + 4, 4), 32)
+        k2 += _signed(_take(codes, at + 8, 4), 32)
+        at += PLAIN_BYTES
+        p[i, 0] = a[0] + h * k0 + origin[0]
+        p[i, 1] = a[1] + h * k1 + origin[1]
+        p[i, 2] = a[2] + h * k2 + origin[2]
+
+
 @parallel_kernel
 def decode(
     fiblets: Any,
@@ -130,8 +143,10 @@ def decode(
             n = (w4 >> 20 & 0x3F) + 1
             step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
             at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
-            size = n - 2
-            if kind == WIDE:
+            size, plain = n - 2, kind == WIDE and step & 7 == 0
+            if plain:
+                size = (n - 1) * PLAIN_BYTES
+            elif kind == WIDE:
                 size = WIDE_HEADER + (n - 1) * (step & 7)
             elif kind != DIRECTION:
                 size = (n - 1) * kind
@@ -146,6 +161,8 @@ def decode(
             if kind == DIRECTION:
                 length = lo if hi <= lo else lo + step * (hi - lo) / STEP_LEVELS
                 _decode_direction(a, shape, length, tables[cap], codes, at, n, origin, p)
+            elif plain:
+                _decode_plain(a, lattice * 0.5**cap, codes, at, n, origin, p)
             else:
                 _decode_lattice(a, kind, shape, step, lattice * 0.5**cap, codes, at, n, origin, p)
     return int(missed.sum())

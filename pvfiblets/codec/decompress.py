@@ -120,8 +120,11 @@ def _decompress(fiblets: FibletSet, chosen: npt.NDArray[np.int64] | None, kind: 
     if chosen is None and not fiblets.in_order:
         chosen = np.arange(fiblets.n_streamlines)
     if chosen is None:
-        points = np.empty((fiblets.n_points, 3), kind)
-        decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), fiblets.fiblet_points(), points)
+        if fiblets.exact is not None:
+            points = fiblets.exact.astype(kind)
+        else:
+            points = np.empty((fiblets.n_points, 3), kind)
+            decode_fiblets(fiblets, np.arange(fiblets.n_fiblets), fiblets.fiblet_points(), points)
         return Streamlines(
             points,
             fiblets.offsets(),
@@ -144,13 +147,16 @@ def _take(
     """Decode chosen streamlines, in the order given; ``places`` are theirs."""
     lengths = places.points
     fresh = np.concatenate([[0], np.cumsum(lengths)])
-    # Fiblets of the chosen streamlines, in their order: ranges of consecutive fiblets, laid end to end.
-    n = places.fiblets
-    which = np.arange(n.sum()) + np.repeat(places.fiblet - (np.cumsum(n) - n), n)
-    counts = unpack("last", fiblets.decoding[which]).astype(np.int64) + 1
-    points = np.empty((int(fresh[-1]), 3), kind)
-    decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
     rows = np.arange(int(fresh[-1])) + np.repeat(places.point - fresh[:-1], lengths)
+    if fiblets.exact is not None:
+        points = fiblets.exact[rows].astype(kind, copy=False)
+    else:
+        # Fiblets of the chosen streamlines, in their order: ranges of consecutive fiblets, laid end to end.
+        n = places.fiblets
+        which = np.arange(n.sum()) + np.repeat(places.fiblet - (np.cumsum(n) - n), n)
+        counts = unpack("last", fiblets.decoding[which]).astype(np.int64) + 1
+        points = np.empty((int(fresh[-1]), 3), kind)
+        decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
     groups = {}
     if fiblets.groups:
         place = np.full(fiblets.n_streamlines, -1, np.int64)
@@ -242,9 +248,12 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
             raise IndexError(f"streamlines {first_id} to {stop}, in a set of {fiblets.n_streamlines}")
         lengths = np.zeros(stop - first_id, np.int64)
         lengths[np.asarray(ids) - first_id] = per_rank
-        points = np.empty((int(counts.sum()), 3), kind)
-        decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
-        rows = slice(first_point, first_point + len(points))
+        rows = slice(first_point, first_point + int(counts.sum()))
+        if fiblets.exact is not None:
+            points = fiblets.exact[rows].astype(kind)
+        else:
+            points = np.empty((rows.stop - rows.start, 3), kind)
+            decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
         groups = {}
         for name, members in fiblets.groups.items():
             inside = np.asarray(members, np.int64)

@@ -4,6 +4,9 @@ The file is a stored zip (:mod:`.archive`): ``header.json``, then ``anchors.npy`
 ``codes.npy``, ``ends.npy``, ``pages.npy`` as :mod:`.layout` states them, then what else the set holds. ``header.json``
 names the members of arrays whose names are free text. Opening maps the arrays: constant time and memory whatever the
 file's size.
+
+The file of an exact set (:mod:`.exact`) has its points in the place of all of these (:mod:`.exact_file`). They are
+read, and records made of them, when it is opened.
 """
 
 from __future__ import annotations
@@ -16,9 +19,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
+from ..streamlines import Streamlines, offsets_from_counts
 from .archive import Member, array_member, open_archive, write_archive
+from .exact import plain_records
+from .exact_file import pack_points, unpack_points
 from .layout import PAGE, WORDS
-from .parameters import Parameters
+from .parameters import Parameters, bounds_of, survey
 from .quantised import QuantisedPoints
 
 if TYPE_CHECKING:
@@ -26,7 +32,10 @@ if TYPE_CHECKING:
 
 __all__ = ["VERSION", "make_header", "open_fiblets", "save"]
 
-VERSION = 2
+VERSION = 3
+OF_CODES = 2
+"""Version of files that hold records and codes, which older programs read too; that of exact sets is `VERSION`."""
+
 _CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 _OPTIONAL = ("anchors_low", "rank_to_id")
 _SHAPES: dict[str, tuple[str, int]] = {
@@ -54,12 +63,31 @@ def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
     ValueError
         If the header holds something that JSON cannot.
     """
+    if fiblets.exact is not None:
+        _save_exact(fiblets, path)
+        return
     members = {f"{name}.npy": array_member(np.asarray(getattr(fiblets, name))) for name in _CORE}
     for name in _OPTIONAL:
         if getattr(fiblets, name) is not None:
             members[f"{name}.npy"] = array_member(np.asarray(getattr(fiblets, name)))
     header, more = make_header(fiblets, {k: array_member(np.asarray(v.codes)) for k, v in fiblets.per_point.items()})
     write_archive(path, header, members | more)
+
+
+def _save_exact(fiblets: FibletSet, path: str | PathLike[str]) -> None:
+    """Points and their values stand in the file in the order of the streamlines."""
+    points, per_point = np.asarray(fiblets.exact), {k: v.codes for k, v in fiblets.per_point.items()}
+    if not fiblets.in_order:
+        from .streamline_ranges import coded_rows
+
+        places = np.argsort(coded_rows(fiblets))
+        points, per_point = points[places], {k: codes[places] for k, codes in per_point.items()}
+    header, members = make_header(fiblets, {k: array_member(np.asarray(codes)) for k, codes in per_point.items()})
+    for name in ("parameters", "bounds", "n_fiblets", *(k for k, v in header.items() if v in ({}, []))):
+        del header[name]
+    facts, packed = pack_points(points, np.diff(fiblets.offsets()))
+    header |= {"version": VERSION, "exact": {"member": "exact.npy", **facts}}
+    write_archive(path, header, {"exact.npy": array_member(packed)} | members, small=not members)
 
 
 def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[str, Any], dict[str, Member]]:
@@ -75,7 +103,7 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
 
     header = {
         "format": "fiblets",
-        "version": VERSION,
+        "version": OF_CODES,
         "parameters": asdict(fiblets.parameters),
         "bounds": list(fiblets.bounds),
         "n_streamlines": fiblets.n_streamlines,
@@ -129,21 +157,53 @@ def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
         raise FormatError(
             path, 0, f"version {version} in header.json", f"at most {VERSION}: update pvfiblets to read this file"
         )
-    if version < VERSION:
+    if version < OF_CODES:
         raise FormatError(
             path,
             0,
             f"version {version} in header.json, written by an older pvfiblets",
-            f"version {VERSION}: compress the original again",
+            f"version {OF_CODES} or {VERSION}: compress the original again",
         )
+    exact = version == VERSION
     try:
-        fiblets = _assemble(kind, header, arrays)
+        fiblets = _assemble_exact(path, kind, header, arrays) if exact else _assemble(kind, header, arrays)
+    except FormatError:
+        raise
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise FormatError(
             path, 0, f"a header.json that does not fit its members ({error!r})", "a whole .fiblets file"
         ) from error
-    _check_shapes(path, fiblets, header)
+    _check_shapes(path, fiblets, fiblets.n_fiblets if exact else int(header["n_fiblets"]), int(header["n_points"]))
     return fiblets
+
+
+def _assemble_exact(
+    path: str | PathLike[str], kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]
+) -> FibletSet:
+    n_streamlines, n_points = int(header["n_streamlines"]), int(header["n_points"])
+    facts = header["exact"]
+    points, counts = unpack_points(path, facts, np.asarray(arrays[facts["member"]]), n_streamlines, n_points)
+    streamlines = Streamlines(points, offsets_from_counts(counts))
+    found = survey([streamlines])
+    made = plain_records(streamlines, Parameters.of_exact(found))
+    return kind(bounds=bounds_of(found), n_streamlines=n_streamlines, **made, **_data(header, arrays))
+
+
+def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[str, Any]:
+    """What is kept beside the points, as fields of a FibletSet; a key of the header that is not there means none."""
+    found = {name: header.get(name, {}) for name in ("per_point", "per_streamline", "groups", "per_group")}
+    return {
+        "per_point": {
+            k: QuantisedPoints(arrays[v["member"]], float(v["lo"]), float(v["hi"]), float(v["max_error"]))
+            for k, v in found["per_point"].items()
+        },
+        "per_streamline": {k: arrays[v] for k, v in found["per_streamline"].items()},
+        "groups": {k: arrays[v] for k, v in found["groups"].items()},
+        "per_group": {g: {k: arrays[v] for k, v in values.items()} for g, values in found["per_group"].items()},
+        "affine": np.array(header["affine"], float).reshape(4, 4),
+        "space": dict(header.get("space", {})),
+        "dropped": {k: int(v) for k, v in header.get("dropped", {}).items()},
+    }
 
 
 def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
@@ -166,23 +226,13 @@ def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, n
         parameters=parameters,
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
         n_streamlines=int(header["n_streamlines"]),
-        per_point={
-            k: QuantisedPoints(arrays[v["member"]], float(v["lo"]), float(v["hi"]), float(v["max_error"]))
-            for k, v in header["per_point"].items()
-        },
-        per_streamline={k: arrays[v] for k, v in header["per_streamline"].items()},
-        groups={k: arrays[v] for k, v in header["groups"].items()},
-        per_group={g: {k: arrays[v] for k, v in values.items()} for g, values in header["per_group"].items()},
-        affine=np.array(header["affine"], float).reshape(4, 4),
-        space=dict(header["space"]),
-        dropped={k: int(v) for k, v in header["dropped"].items()},
         **plain,
+        **_data(header, arrays),
     )
 
 
-def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any]) -> None:
-    """Everything that can be checked without reading the arrays."""
-    n = int(header["n_fiblets"])
+def _check_shapes(path: str | PathLike[str], f: FibletSet, n: int, n_points: int) -> None:
+    """Everything that can be checked without reading the arrays, of so many fiblets and points."""
 
     def expect(true: bool, found: str, expected: str) -> None:
         if not true:
@@ -203,7 +253,7 @@ def _check_shapes(path: str | PathLike[str], f: FibletSet, header: dict[str, Any
     expect(rising, "a page table that does not rise", "one that does")
     last = table[-1]
     expect(int(last[1]) == len(f.codes), f"{len(f.codes)} code bytes", f"the {last[1]} of the page table")
-    expect(int(last[2]) == header["n_points"], f"{header['n_points']} points", f"the {last[2]} of the page table")
+    expect(int(last[2]) == n_points, f"{n_points} points", f"the {last[2]} of the page table")
     ranks = int(last[0])
     expect(f.ends.dtype == "<u4" and f.ends.shape == (ranks,), f"ends {f.ends.dtype}{f.ends.shape}", f"<u4({ranks},)")
     if f.rank_to_id is None:

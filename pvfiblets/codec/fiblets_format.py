@@ -45,6 +45,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "fiblets": f.n_fiblets,
         "bytes": f.nbytes,
         "step_mm": f.step,
+        "exact": f.exact is not None,
         "promise_mm": f.promise,
         "bounds_mm": list(f.bounds),
         "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},

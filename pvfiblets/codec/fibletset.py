@@ -53,6 +53,9 @@ class FibletSet(SetQueries):
     rank_to_id : numpy.ndarray or None
         ``(n_ranks,)`` int64: streamline of each rank where some streamlines have no points, or are coded in another
         order than their own; else None, and both are the same.
+    exact : numpy.ndarray or None
+        ``(n_points, 3)`` float32 or float64, mm, in the order of ranks: the points themselves, of a set that keeps
+        every bit of them (:mod:`pvfiblets.codec.exact`). Its records are what is drawn, and stand in no file.
     per_point : dict of str to QuantisedPoints
         Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
@@ -76,6 +79,7 @@ class FibletSet(SetQueries):
     n_streamlines: int
     anchors_low: npt.NDArray[np.uint16] | None = None
     rank_to_id: npt.NDArray[np.int64] | None = None
+    exact: npt.NDArray[Any] | None = None
     per_point: dict[str, QuantisedPoints] = field(default_factory=dict)
     per_streamline: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
     groups: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
@@ -90,15 +94,17 @@ class FibletSet(SetQueries):
         return self.n_streamlines
 
     def __repr__(self) -> str:
+        kept = "exact" if self.exact is not None else f"promise {self.promise:g} mm"
         return (
             f"FibletSet({self.n_streamlines} streamlines, {self.n_points} points, {self.n_fiblets} fiblets, "
-            f"{self.nbytes} bytes, promise {self.promise:g} mm)"
+            f"{self.nbytes} bytes, {kept})"
         )
 
     def _repr_html_(self) -> str:
         from ..summary import summary_html
 
-        more = {"Bytes": f"{self.nbytes:,}", "Greatest error": f"{self.promise:.3g} mm"}
+        error = "none: exact" if self.exact is not None else f"{self.promise:.3g} mm"
+        more = {"Bytes": f"{self.nbytes:,}", "Greatest error": error}
         return summary_html("FibletSet", self, more)
 
     @property
@@ -163,12 +169,12 @@ class FibletSet(SetQueries):
 
     @property
     def promise(self) -> float:
-        """No decoded point is farther than this from its original, mm."""
+        """No decoded point is farther than this from its original, mm; of an exact set, no drawn one."""
         return self.parameters.promise
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Bytes of every array."""
+        """Bytes of every array; of an exact set's points, not of the records that are made of them."""
         arrays: dict[str, Any] = {
             "anchors": self.anchors,
             "anchors_low": self.anchors_low,
@@ -179,6 +185,8 @@ class FibletSet(SetQueries):
             "pages": self.pages,
             "rank_to_id": self.rank_to_id,
         }
+        if self.exact is not None:
+            arrays = {"points": self.exact, "counts": np.empty(self.n_streamlines, np.uint32)}
         arrays |= {f"per_point/{k}": v.codes for k, v in self.per_point.items()}
         arrays |= {f"per_streamline/{k}": v for k, v in self.per_streamline.items()}
         arrays |= {f"groups/{k}": v for k, v in self.groups.items()}
@@ -327,7 +335,12 @@ class FibletSet(SetQueries):
         return decompress(self, ids, dtype)
 
     def point_dtype(self) -> npt.DTypeLike:
-        """Type of decoded points: float32 where its rounding at these bounds stays below 2 % of the promise."""
+        """Type of decoded points: float32 where its rounding at these bounds stays below 2 % of the promise.
+
+        Of an exact set, that of the originals.
+        """
+        if self.exact is not None:
+            return self.exact.dtype
         largest = np.float32(np.abs(self.bounds).max() if self.n_points else 0.0)
         return np.float32 if float(np.spacing(largest)) <= 0.02 * self.promise else np.float64
 

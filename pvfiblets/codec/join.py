@@ -36,7 +36,8 @@ def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
     FibletSet
         In memory. Groups of the same name are joined, the affine and space are the first set's, ``dropped`` is summed.
         Sets of equal parameters, such as parts of one, keep every bit of their points. Others are coded again, with the
-        coarsest of their promises, and the promise of the result is twice that: what was lost may add up.
+        coarsest of their promises, and the promise of the result is twice that: what was lost may add up. Exact sets
+        stay exact.
 
     Raises
     ------
@@ -49,8 +50,11 @@ def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
     if len(all_sets) == 1:
         return all_sets[0]
     full = [one for one in all_sets if one.n_points] or all_sets[:1]
-    if all(one.parameters == full[0].parameters for one in full):
+    alike = {(one.parameters, None if one.exact is None else one.exact.dtype) for one in full}
+    if len(alike) == 1:
         return _copied(all_sets, full)
+    if all(one.exact is not None for one in full):
+        return _exactly(all_sets)
     return _coded_again(all_sets, max(one.promise for one in full))
 
 
@@ -69,8 +73,9 @@ def _copied(sets: list[FibletSet], full: list[FibletSet]) -> FibletSet:
     """Join sets of the same parameters, record by record."""
     first, rest = full[0], _rest(sets)
     bare = replace(first, per_point={})
+    n_exact = 0 if first.exact is None else sum(one.n_points for one in full)
     n_fiblets, n_codes = sum(one.n_fiblets for one in full), sum(int(one.pages[-1, 1]) for one in full)
-    out = Records.empty(bare, n_fiblets, n_codes, 0)
+    out = Records.empty(bare, n_fiblets, n_codes, n_exact)
     for one in full:
         for part in parts_of(one, np.ones(one.n_ranks, bool)):
             out.take(replace(one, per_point={}), part)
@@ -91,6 +96,7 @@ def _copied(sets: list[FibletSet], full: list[FibletSet]) -> FibletSet:
         ends=np.concatenate([one.ends for one in full]),
         pages=out.pages,
         rank_to_id=None if plain else ids,
+        exact=out.exact,
         n_streamlines=len(rest),
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
         per_point=_values(full),
@@ -131,11 +137,23 @@ def _refuse_gaps(names: list[set[str]]) -> None:
         )
 
 
+def _whole(sets: list[FibletSet], dtype: npt.DTypeLike | None = None) -> tuple[Streamlines, Any]:
+    """All streamlines, decoded, and the bits of their values."""
+    whole = Streamlines.concatenate(one.decompress(dtype=dtype) for one in sets)
+    return whole, 8 * max((v.codes.dtype.itemsize for one in sets for v in one.per_point.values()), default=1)
+
+
+def _exactly(sets: list[FibletSet]) -> FibletSet:
+    """Join sets that keep every bit of their points."""
+    from .. import compress
+
+    whole, bits = _whole(sets)
+    return compress(whole, exact=True, per_point=tuple(whole.per_point), per_point_bits=bits)
+
+
 def _coded_again(sets: list[FibletSet], promise: float) -> FibletSet:
     from .. import compress  # by the package's own name for it: that module makes sets, of which this one is a part
 
-    decoded: list[Any] = [one.decompress(dtype=np.float64) for one in sets]
-    whole = Streamlines.concatenate(decoded)
-    bits: Any = 8 * max((v.codes.dtype.itemsize for one in sets for v in one.per_point.values()), default=1)
-    made = compress(whole, max_error=promise, per_point=tuple(whole.per_point), per_point_bits=bits)
+    whole, bits = _whole(sets, np.float64)
+    made = compress(whole, exact=False, max_error=promise, per_point=tuple(whole.per_point), per_point_bits=bits)
     return replace(made, parameters=replace(made.parameters, promise=2.0 * promise))

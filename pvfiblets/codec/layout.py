@@ -24,6 +24,10 @@ for two of them) are 80 bytes, 1.33 bytes per point; each streamline adds the 4 
 Indices in a record are relative to its *page* of ``PAGE`` consecutive fiblets. The largest stretch of codes that one
 fiblet can have is ``WIDE_HEADER + 59 * 4 = 256`` bytes, so a page holds at most 2**22 bytes of codes and 60 * 2**14 <
 2**20 points: the widths of ``code`` and ``point`` below follow from that.
+
+Sets that keep their points exactly (:mod:`.exact`) have fiblets of at most ``PLAIN_POINTS`` points, of the kind WIDE
+with 0 for the bytes of a code: three int32 a point, ``PLAIN_BYTES``, and no box. They are drawn to a few billionths of
+the extent.
 """
 
 from __future__ import annotations
@@ -44,6 +48,8 @@ __all__ = [
     "MAX_POINTS",
     "PAGE",
     "PAGE_BITS",
+    "PLAIN_BYTES",
+    "PLAIN_POINTS",
     "WIDE",
     "WORDS",
     "Field",
@@ -62,6 +68,8 @@ CAPS = 16
 DIRECTION_SCALE = 32767.0
 STEP_LEVELS = 1023
 WIDE_HEADER = 20
+PLAIN_BYTES = 12
+PLAIN_POINTS = 22
 END_BITS = 10
 END_LEVELS = (1 << (END_BITS - 1)) - 1
 
@@ -77,7 +85,7 @@ class Kind:
     DIRECTION = DIRECTION  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2, 3.3)
     LATTICE8 = LATTICE8  # one byte: step between points of an integer lattice, mixed radix
     LATTICE16 = LATTICE16  # the same in two bytes
-    WIDE = WIDE  # the same in 1-4 bytes, with its 20-byte box in the code stream
+    WIDE = WIDE  # the same in 1-4 bytes, with its 20-byte box in the code stream; or plain, without: 12 bytes
 
 
 @dataclass(frozen=True)
@@ -234,6 +242,7 @@ def glsl_source() -> str:
         f"const float FIBLET_DIRECTION_SCALE = {DIRECTION_SCALE};",
         f"const float FIBLET_STEP_LEVELS = {float(STEP_LEVELS)};",
         f"const uint FIBLET_WIDE_HEADER = {WIDE_HEADER}u;",
+        f"const uint FIBLET_PLAIN_BYTES = {PLAIN_BYTES}u;",
     ]
     lines += [f"const uint FIBLET_{name.upper()}_WORDS = {words}u;" for name, words in WORDS.items()]
     lines += [f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()]

@@ -14,7 +14,17 @@ from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
 from .small_sets import without_kernels
 
-__all__ = ["DEFAULT_ANGLE", "DEFAULT_PROMISE_EXTENT", "DEFAULT_PROMISE_STEPS", "Parameters", "Survey", "survey"]
+__all__ = [
+    "DEFAULT_ANGLE",
+    "DEFAULT_PROMISE_EXTENT",
+    "DEFAULT_PROMISE_STEPS",
+    "EXACT_BELOW",
+    "EXACT_UP_TO",
+    "Parameters",
+    "Survey",
+    "bounds_of",
+    "survey",
+]
 
 DEFAULT_ANGLE = 10.0  # degrees between true and drawn tangents
 DEFAULT_PROMISE_STEPS = 0.1
@@ -26,6 +36,8 @@ STEP_BAND = 0.06  # steps within this of the median can be coded by direction; o
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 LARGEST = 1e35  # mm
 BLOCK_POINTS = 2_000_000
+EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
+EXACT_UP_TO = 1 << 30  # bytes of points up to which a set that coding would enlarge keeps every bit; opening reads all
 BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
@@ -123,7 +135,8 @@ def _scan(
     joins = np.zeros(len(points), bool)
     joins[offsets[1:-1][offsets[1:-1] < len(points)]] = True  # a segment into the next streamline is none
     delta = (wide[1:] - wide[:-1])[~joins[1:]]
-    squares = delta[:, 0] ** 2 + delta[:, 1] ** 2 + delta[:, 2] ** 2
+    with np.errstate(over="ignore"):  # of coordinates that are refused
+        squares = delta[:, 0] ** 2 + delta[:, 1] ** 2 + delta[:, 2] ** 2
     filled = offsets[1:] > offsets[:-1]
     first, last = offsets[:-1][filled], offsets[1:][filled] - 1
     widest = 0.0
@@ -153,6 +166,14 @@ def survey(chunks: Iterable[Streamlines], per_point: Iterable[str] = ()) -> Surv
     for chunk in chunks:
         found.add(chunk, names)
     return found
+
+
+def bounds_of(found: Survey) -> tuple[float, float, float, float, float, float]:
+    """Bounds in VTK's order; zeros where there are no points."""
+    if found.n_points == 0:
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    pairs = np.stack([found.lower, found.upper], axis=1).ravel().tolist()
+    return (pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5])
 
 
 @dataclass(frozen=True)
@@ -217,8 +238,7 @@ class Parameters:
         lengths = np.concatenate(found.sample) if found.sample else np.empty(0)
         moving = lengths[lengths > 0.0]
         step = float(np.median(moving)) if moving.size else found.longest
-        finest = _anchor_error(extent, 32) * 2.0 + float(np.spacing(np.abs(lower) + extent).max()) * 4.0
-        finest = max(finest, np.finfo(np.float64).tiny * 2.0**60)
+        finest = _finest(found)
         if max_error is None:
             promise = max(_default_promise(moving, step, float(np.sqrt((extent**2).sum()))), finest)
             if step == 0.0:  # no segment has a length: as fine as 16-bit anchors are
@@ -247,10 +267,26 @@ class Parameters:
             promise=promise,
         )
 
+    @classmethod
+    def of_exact(cls, found: Survey) -> Parameters:
+        """Choose parameters of a set that keeps its points exactly; what is drawn is as fine as int32 can count."""
+        empty = found.n_points == 0
+        diagonal = 0.0 if empty else float(np.sqrt(((found.upper - found.lower) ** 2).sum()))
+        return cls.choose(found, max(_finest(found), diagonal * 2.0**-28))
+
     @property
     def budget(self) -> float:
         """Largest error that coding may cause, mm: the promise less what rounding decoded points may add."""
         return self.promise * BUDGET
+
+
+def _finest(found: Survey) -> float:
+    """Least error that 32-bit anchors over the bounds can promise, mm."""
+    if found.n_points == 0:
+        return float(np.finfo(np.float64).tiny) * 2.0**60
+    extent = found.upper - found.lower
+    finest = _anchor_error(extent, 32) * 2.0 + float(np.spacing(np.abs(found.lower) + extent).max()) * 4.0
+    return max(finest, float(np.finfo(np.float64).tiny) * 2.0**60)
 
 
 def _anchor_error(extent: Vector, bits: int) -> float:

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .capsules import capsule_ends
-from .layout import PAGE, PAGE_BITS, pack, unpack_ends
+from .layout import PAGE, PAGE_BITS, WORDS, pack, unpack_ends
 from .parameters import Parameters
 
-__all__ = ["FibletChunk", "RecordWriter"]
+__all__ = ["FibletChunk", "RecordWriter", "join"]
 
 
 @dataclass
@@ -142,3 +142,20 @@ class RecordWriter:
         keep = np.ones(self.n_streamlines, bool)
         keep[np.concatenate(self.empty)] = False
         return np.flatnonzero(keep)
+
+
+def join(chunks: list[FibletChunk]) -> dict[str, Any]:
+    """Arrays of consecutive chunks, end to end."""
+    if not chunks:
+        return {
+            "anchors": np.empty((0, WORDS["anchors"]), np.uint32),
+            "decoding": np.empty((0, WORDS["decoding"]), np.uint32),
+            "reach": np.empty(0, np.uint16),
+            "codes": np.empty(0, np.uint8),
+            "ends": np.empty(0, np.uint32),
+        }
+    names = ("anchors", "decoding", "reach", "codes", "ends")
+    arrays: dict[str, Any] = {name: np.concatenate([getattr(c, name) for c in chunks]) for name in names}
+    if chunks[0].anchors_low is not None:
+        arrays["anchors_low"] = np.concatenate([c.anchors_low for c in chunks if c.anchors_low is not None])
+    return arrays

@@ -129,6 +129,7 @@ class Restriction:
         """Bytes of memory that :meth:`make` takes."""
         record = 8 + 12 + 2 + (0 if self._whole.anchors_low is None else 6)
         point = sum(values.codes.dtype.itemsize for values in self._whole.per_point.values())
+        point += 0 if self._whole.exact is None else 3 * self._whole.exact.dtype.itemsize
         return self.n_fiblets * record + self.n_codes + self.n_points * point + self.n_ranks * (4 + 8)
 
     def make(self) -> FibletSet:
@@ -157,6 +158,7 @@ class Restriction:
             ends=np.concatenate(ends) if ends else np.empty(0, np.uint32),
             pages=out.pages,
             rank_to_id=None if everything else numbers,
+            exact=out.exact,
             per_point={k: replace(v, codes=out.per_point[k]) for k, v in whole.per_point.items()},
         )
 
@@ -263,6 +265,7 @@ class Records:
     reach: npt.NDArray[np.uint16]
     codes: npt.NDArray[np.uint8]
     pages: Ints
+    exact: npt.NDArray[Any] | None
     per_point: dict[str, npt.NDArray[Any]]
     at: Ints
     n: int = 0
@@ -277,6 +280,7 @@ class Records:
             reach=np.empty(n, np.uint16),
             codes=np.empty(n_codes, np.uint8),
             pages=np.zeros((-(-n // PAGE) + 1, 3), np.int64),
+            exact=None if fiblets.exact is None else np.empty((n_points, 3), fiblets.exact.dtype),
             per_point={k: np.empty(n_points, v.codes.dtype) for k, v in fiblets.per_point.items()},
             at=np.zeros(3, np.int64),
         )
@@ -303,6 +307,8 @@ class Records:
         end = int(codes[-1] + part.sizes[-1])
         self.codes[self.at[1] : end] = _gathered(fiblets.codes, part.codes, part.sizes)
         last = int(points[-1] + part.counts[-1])
+        if self.exact is not None and fiblets.exact is not None:
+            self.exact[self.at[2] : last] = _gathered(fiblets.exact, part.points, part.counts)
         for name, values in fiblets.per_point.items():
             self.per_point[name][self.at[2] : last] = _gathered(values.codes, part.points, part.counts)
         self.at = np.array([ranks[-1] + 1, end, last])

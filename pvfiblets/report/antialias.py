@@ -91,7 +91,7 @@ def subjects(options: Options) -> list[Subject]:
     """Return the scenes: lines, tubes, lines with a surface, lines that VTK draws itself, and files, each whole."""
     import pyvista as pv
 
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.report.coded import compress
     from pvfiblets.synthetic import brain_streamlines
 
     quick = options.quick

@@ -58,8 +58,8 @@ class _Fiblets:
 
 def _fiblets(error_bound: float | None, effort: Any, record: int | None = None) -> Callable[[float], Any]:
     def make(step: float) -> Callable[[Points, Offsets], _Fiblets]:
-        from pvfiblets.codec.compress import compress
         from pvfiblets.codec.parameters import DEFAULT_ANGLE
+        from pvfiblets.report.coded import compress
 
         def pack(points: Points, offsets: Offsets) -> _Fiblets:
             cut = offsets if record is None else recut(offsets, record)

@@ -212,7 +212,7 @@ def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
         path = views(brain.bounds, kind, degrees, frames + 1, size)
         yield Scene(f"brain, {kind}, {turn}", "brain", brain, path)
     del brain
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.report.coded import compress
 
     limit = QUICK_FILE_POINTS if options.quick else FILE_POINTS
     for number, data in enumerate(file_sets(options, limit, left_out)):

@@ -123,7 +123,7 @@ def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dic
 
 def brain(options: Options) -> FibletSet:
     """Make fiblets of a synthetic brain, with a per-point array ``'height'``."""
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.report.coded import compress
     from pvfiblets.synthetic import brain_streamlines
 
     segments = QUICK_SEGMENTS if options.quick else SEGMENTS

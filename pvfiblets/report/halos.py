@@ -67,7 +67,7 @@ class Variant:
     def drawing(self, ctx: Any, scene: Scene) -> Drawing:
         """Make what draws."""
         if self.name == FIBLETS:
-            from pvfiblets.codec.compress import compress
+            from pvfiblets.report.coded import compress
 
             assert scene.tractogram is not None
             return FibletHalos(ctx, compress(scene.tractogram.streamlines), self.times)

@@ -56,7 +56,7 @@ class TranslucencyStudy:
 
 
 def _subjects(options: Options, pv: Any) -> list[Subject]:
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.report.coded import compress
     from pvfiblets.synthetic import brain_streamlines
 
     n = max(round((QUICK_SEGMENTS if options.quick else SEGMENTS) * STEP / LENGTH), 1)

@@ -110,11 +110,11 @@ def _pool(
     """Code all variants, on a grid with room for moves; the box of each, ``(n, 6)`` mm; their order on the curve."""
     from tqdm import tqdm
 
-    from pvfiblets.codec.compress import bounds_of, join
     from pvfiblets.codec.encode import Encoder
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.ordering import ends_order
-    from pvfiblets.codec.parameters import Parameters, survey
+    from pvfiblets.codec.parameters import Parameters, bounds_of, survey
+    from pvfiblets.codec.record_writer import join
 
     found = survey(_variants(tracked, turns, seed))
     bounds = bounds_of(found)

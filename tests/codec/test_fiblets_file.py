@@ -123,7 +123,7 @@ def test_numpy_alone_reads_a_file(tmp_path: Path) -> None:
         np.testing.assert_array_equal(plain["codes"], fiblets.codes)
         np.testing.assert_array_equal(plain["anchors"], fiblets.anchors)
         header = json.loads(bytes(plain["header.json"]))
-    assert header["version"] == fiblets_file.VERSION
+    assert header["version"] == fiblets_file.OF_CODES
     assert header["n_points"] == fiblets.n_points
 
 
@@ -322,7 +322,7 @@ def test_a_newer_version_is_refused(tmp_path: Path) -> None:
     archive.write_archive(
         tmp_path / "b.fiblets", header, {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
     )
-    with pytest.raises(FormatError, match=r"version 3 in header.json, expected at most 2: update pvfiblets"):
+    with pytest.raises(FormatError, match=r"version 4 in header.json, expected at most 3: update pvfiblets"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
 
 
@@ -333,7 +333,7 @@ def test_an_older_version_is_refused(tmp_path: Path) -> None:
     del header["parameters"]["end_scale"], header["parameters"]["largest_radius"]
     members = {k: archive.array_member(np.array(v)) for k, v in arrays.items() if k != "ends.npy"}
     archive.write_archive(tmp_path / "b.fiblets", header, members)
-    with pytest.raises(FormatError, match="written by an older pvfiblets, expected version 2: compress the original"):
+    with pytest.raises(FormatError, match="written by an older pvfiblets, expected version 2 or 3: compress the original"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
 
 

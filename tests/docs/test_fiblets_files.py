@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +56,34 @@ def test_the_printed_reader_decodes_every_point(reader, name, tmp_path):
     if lines:
         ours = np.asarray(fiblets.decompress().points, np.float64)
         np.testing.assert_allclose(np.concatenate(lines), ours, atol=1e-3 * fiblets.promise + 1e-6 * abs(ours).max())
+
+
+def repeated(n: int) -> Streamlines:
+    """Return lines of two points of which every coordinate stands there often."""
+    ends = np.random.default_rng(0).normal(size=(4, 3))[np.random.default_rng(1).integers(0, 4, 2 * n)]
+    return Streamlines(ends, 2 * np.arange(n + 1))
+
+
+EXACT = {
+    0: lambda: repeated(50),
+    1: lambda: Streamlines(np.random.default_rng(0).normal(size=(300, 3)).astype(np.float32), [0, 0, 120, 121, 300]),
+    2: lambda: brain_streamlines(12, seed=3),
+    None: lambda: Streamlines.from_list([]),
+}
+
+
+@pytest.mark.parametrize("form", EXACT)
+def test_the_printed_reader_reads_exact_points(reader, form, tmp_path):
+    original = EXACT[form]()
+    compress(original, exact=True).save(tmp_path / "x.fiblets")
+    if form is not None:
+        with zipfile.ZipFile(tmp_path / "x.fiblets") as archive:
+            assert json.loads(archive.read("header.json"))["exact"]["form"] == form
+    lines = reader(tmp_path / "x.fiblets")
+    assert len(lines) == len(original)
+    for line, wanted in zip(lines, original, strict=True):
+        assert line.dtype == wanted.dtype
+        np.testing.assert_array_equal(line, wanted)
 
 
 def test_all_kinds_of_records_are_read():

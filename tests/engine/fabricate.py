@@ -17,11 +17,14 @@ def distances(points, a, b):
 
 
 def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=None, rank_to_id=None):
-    """Code polylines as lattice fiblets.
+    """Code polylines as lattice fiblets; kind 4 are plain ones, of the kind WIDE without a box.
 
     Returns the set as the engine reads it; ``.lines`` are the float64 points it decodes to, ``.starts`` the index
     within its streamline of each fiblet's first point.
     """
+    plain = kind == 4
+    if plain:
+        per_fiblet, kind = min(per_fiblet, layout.PLAIN_POINTS), 3
     lines = [np.asarray(line, float).reshape(-1, 3) for line in lines]
     every = np.concatenate(lines)
     lo, hi = every.min(0), every.max(0)
@@ -30,7 +33,7 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
     steps = np.concatenate([np.diff(line, axis=0) for line in lines])
     if lattice is None:
         extent = np.abs(steps).max() if steps.size else 1.0
-        lattice = max(extent, 1e-12) / {1: 2.5, 2: 15.0, 3: 900.0}[kind]
+        lattice = max(extent, 1e-12) / (2.0**20 if plain else {1: 2.5, 2: 15.0, 3: 900.0}[kind])
     lattice = lattice * 2.0**halvings
     edge = lattice * 0.5**halvings
     anchors, decodings, lows, codes, pages, starts = [], [], [], [], [], []
@@ -55,9 +58,11 @@ def fabricate(lines, *, per_fiblet=60, kind=1, halvings=0, low=False, lattice=No
         cells = delta - box_lo
         value = cells[:, 0] + size[0] * (cells[:, 1] + size[1] * cells[:, 2])
         width = kind if kind < 3 else 4
-        assert value.size == 0 or value.max() < 256**width, "the steps do not fit this kind"
+        assert plain or value.size == 0 or value.max() < 256**width, "the steps do not fit this kind"
         body = value.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :width].ravel()
-        if kind == 3 and len(points) > 1:
+        if plain:
+            body, shape, step = delta.astype("<i4").view(np.uint8).ravel(), 0, 0
+        elif kind == 3 and len(points) > 1:
             body = np.concatenate([box_lo.astype("<i4").view(np.uint8), size[:2].astype("<u4").view(np.uint8), body])
             shape, step = 0, width
         elif kind == 3:

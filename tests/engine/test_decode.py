@@ -137,7 +137,7 @@ def test_direction_codes_decode_like_the_reference(gl, source, threads):
     assert_points_agree(fiblets, decoded_by_shader(gl, fiblets, source, threads))
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
 @pytest.mark.parametrize(("source", "threads"), [(SEQUENTIAL, 64), (PARALLEL, 1)], ids=["sequential", "parallel"])
 def test_lattice_codes_decode_like_the_reference(gl, random_lines, fabricate, kind, low, source, threads):

@@ -119,7 +119,7 @@ def assert_alike(picture, expected):
             id=f"{name}-{where}-{('thin', 'wide')[(kind + i) % 2]}",
             marks=[] if (kind + i) % 3 == 0 else [pytest.mark.exhaustive],
         )
-        for kind, name in ((1, "lattice8"), (2, "lattice16"), (3, "wide-lattice"))
+        for kind, name in ((1, "lattice8"), (2, "lattice16"), (3, "wide-lattice"), (4, "plain"))
         for i, where in enumerate(("outside", "inside", "parallel", "planes", "far"))
     ],
 )

@@ -56,7 +56,7 @@ def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name
 
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
-@pytest.mark.parametrize("kind", [1, 2, 3])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("low", [False, True])
 def test_lattice_kinds_and_fine_anchors(gl, fabricate, random_lines, camera, kind, low, pipeline):
     ids = np.arange(40) * 3 + 5

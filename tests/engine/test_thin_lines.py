@@ -21,7 +21,7 @@ VIEWS = {
 
 
 @pytest.mark.every("value")
-@pytest.mark.parametrize("kind", [1, 2, 3])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("view", VIEWS)
 def test_pixels_are_those_of_the_rule(gl, fabricate, random_lines, camera, view, kind):
     """Every pixel, and what it shows to the last bits of float32, but where rounding decides which pixel it is."""

@@ -213,7 +213,7 @@ def test_data_swapped(both, brain, onion, camera):
 @pytest.mark.every("value")
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
-@pytest.mark.parametrize("kind", [1, 2, 3])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, low):
     """Every line five times: exact ties in every pixel, with copies that were seen last time and some that were not."""
     lines = random_lines(60, seed=5, spread=25.0)

@@ -96,6 +96,7 @@ def volumes(scene):
     scene.view("coronal")
 
 
+@pytest.mark.usefixtures("usual_limits")  # which the script has
 @pytest.mark.parametrize("fill", [tracts, anatomy, volumes])
 def test_a_script_makes_the_same_picture(scene, folder, fill):
     scene.plotter.window_size = 420, 360

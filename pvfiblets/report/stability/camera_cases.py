@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.capabilities import pipelines
+from pvfiblets.report.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.layout import unpack, unpack_ends
 from pvfiblets.engine import FibletStyle, View
+from pvfiblets.report.coded import compress
 
 from .case import Cases, Outcome, Setting, refused, worst
 from .codec_cases import EFFORTS

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.encode import Effort
 from pvfiblets.codec.quantised import quantise_values
 from pvfiblets.codec.resample import resample
+from pvfiblets.report.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from pvfiblets.codec import reference
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, FIELDS, PAGE_BITS, STEP_LEVELS, unpack
 from pvfiblets.engine import FibletStyle, View
 from pvfiblets.query.measures import measure
+from pvfiblets.report.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .. import decoders

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from pvfiblets import formats
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.errors import FibletsError
+from pvfiblets.report.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst

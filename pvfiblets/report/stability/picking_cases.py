@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from pvfiblets import regions
-from pvfiblets.codec.compress import compress
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine import View
 from pvfiblets.query.screen import under_polygon
+from pvfiblets.report.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst

@@ -78,15 +78,23 @@ void lattice_box(uvec3 words, inout uint byte, out ivec3 lo, out uvec2 n, out ui
     width = fiblet_kind(words);
 #if FEATURE_WIDE_LATTICE
     if (fiblet_kind(words) == KIND_WIDE && fiblet_last(words) > 0u) {
+        width = fiblet_step(words) & 7u;
+        if (width == 0u) {  // plain: no box, three whole numbers a code
+            lo = ivec3(0);
+            width = FIBLET_PLAIN_BYTES;
+            return;
+        }
         lo = ivec3(codes_at(byte), codes_at(byte + 4u), codes_at(byte + 8u));
         n = uvec2(codes_at(byte + 12u), codes_at(byte + 16u));
-        width = fiblet_step(words) & 7u;
         byte += FIBLET_WIDE_HEADER;
     }
 #endif
 }
 
 ivec3 lattice_cell(uint byte, uint width, ivec3 lo, uvec2 n) {
+#if FEATURE_WIDE_LATTICE
+    if (width == FIBLET_PLAIN_BYTES) return lo + ivec3(codes_at(byte), codes_at(byte + 4u), codes_at(byte + 8u));
+#endif
     uint code = codes_at(byte) & (0xFFFFFFFFu >> (32u - 8u * width));
     uint row = code / n.x;
     return lo + ivec3(code - row * n.x, row % n.y, row / n.y);

@@ -1,0 +1,10 @@
+"""Compression for studies: they are of coding, and small sets are coded for them too."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from pvfiblets.codec.compress import compress as _compress
+
+compress = partial(_compress, exact=False)
+"""As :func:`pvfiblets.compress`, without what it does by default of small sets."""
