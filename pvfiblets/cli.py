@@ -82,7 +82,7 @@ def make_parser() -> argparse.ArgumentParser:
     convert.add_argument("source", metavar="IN", help="a tractogram of any format")
     convert.add_argument("target", metavar="OUT", help="what to write: .fiblets, .tck, .trk, .trx, .vtk or .vtp")
     convert.add_argument(
-        "--step", type=positive, metavar="MM", help="resample to this distance between points (default: keep points)"
+        "--step", type=positive, metavar="MM", help="resample to this distance, and keep corners (default: keep points)"
     )
     convert.add_argument(
         "--max-error",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -14,7 +15,7 @@ from .exact import plain_records, raw_bytes
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
-from .parameters import DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey
+from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey
 from .quantised import QuantisedPoints, quantise_values
 from .record_writer import RecordWriter, join
 
@@ -71,9 +72,11 @@ def compress(
         Points in mm, RAS+. Anything with a ``Streamlines`` constructor goes through that first.
     step : float or 'auto'
         'auto' keeps every point. A number resamples each streamline to points that lie this far apart along it, mm, its
-        two ends kept.
+        two ends kept, and points between them where the line would otherwise be farther away than a quarter of the
+        promise.
     max_error : float, optional
-        Promise in mm: no decoded point is farther from its original. Default: a tenth of the median step. Where steps
+        Promise in mm: no decoded point is farther from its original; of lines that are resampled, no point of one line
+        from the other. Default: a tenth of the median step. Where steps
         vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal:
         half a pixel of a full-screen view.
     max_angle : float, optional
@@ -128,12 +131,17 @@ def compress(
     check_exact(exact, step, order)
     if exact or (exact is None and plain and raw_bytes(streamlines) < limits.EXACT_BELOW):
         return _kept_exactly(streamlines, survey([streamlines], per_point), per_point, per_point_bits)
+    promise = None
     if step != "auto":
         from .resample import resample  # compiled code: most sets need none
 
-        streamlines = resample(streamlines, step)
+        promise = Parameters.choose(survey([resample(streamlines, step)]), max_error).promise
+        streamlines = resample(streamlines, step, CUT_SHARE * promise)
     found = survey([streamlines], per_point)
-    parameters = Parameters.choose(found, max_error)
+    if promise is None:
+        parameters = Parameters.choose(found, max_error)
+    else:
+        parameters = Parameters.of_resampled(found, promise, float(step))
     from .encode import Encoder  # which needs a compiler
 
     encoder = Encoder(parameters, effort, max_angle)
@@ -152,7 +160,7 @@ def compress(
     if exact is None and step == "auto" and grows(encoder, raw_bytes(streamlines)):
         return _kept_exactly(streamlines, found, per_point, per_point_bits)
     return FibletSet(
-        parameters=encoder.parameters,
+        parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
         pages=encoder.page_table(),
         rank_to_id=encoder.rank_to_id() if ids is None else ids,
         bounds=bounds_of(found),

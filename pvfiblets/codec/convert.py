@@ -6,6 +6,7 @@ import tempfile
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal
@@ -36,7 +37,7 @@ from .fiblets_file import make_header
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import DEFAULT_ANGLE, Parameters, Survey, bounds_of
+from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 
@@ -64,6 +65,7 @@ def compress_file(
     """Compress a tractogram file into a ``.fiblets`` file.
 
     The source is read three times: for its bounds and steps, for coding, and to compare the finished file with it.
+    Where it is resampled it is read once more, to know the promise before corners are cut.
 
     Parameters
     ----------
@@ -105,16 +107,20 @@ def compress_file(
             f"pvfiblets.compress(pvfiblets.read(source), order={order!r}).save(target) does it where memory suffices"
         )
 
+    check_exact(exact, step, order)
+    promise = None
+    if step != "auto":
+        from .resample import resample
+
+        coarse = Survey()
+        for chunk in shown(formats.iter_chunks(source, CHUNK_POINTS), None, "surveying", progress):
+            coarse.add(resample(chunk, step))
+        promise = Parameters.choose(coarse, max_error).promise
+
     def chunks() -> Iterator[Streamlines]:
         for chunk in formats.iter_chunks(source, CHUNK_POINTS):
-            if step == "auto":
-                yield chunk
-                continue
-            from .resample import resample
+            yield chunk if promise is None or step == "auto" else resample(chunk, step, CUT_SHARE * promise)
 
-            yield resample(chunk, step)
-
-    check_exact(exact, step, order)
     found = Survey()
     raw, small = 0, []  # all chunks, while they are few enough to be kept exactly
     names: tuple[str, ...] = ()
@@ -134,7 +140,11 @@ def compress_file(
     small.clear()
     from .encode import Encoder  # which needs a compiler
 
-    encoder = Encoder(Parameters.choose(found, max_error), effort, max_angle)
+    if promise is None or step == "auto":
+        parameters = Parameters.choose(found, max_error)
+    else:
+        parameters = Parameters.of_resampled(found, promise, step)
+    encoder = Encoder(parameters, effort, max_angle)
     folder = Path(target).resolve().parent
     with (
         naming_target(target),
@@ -162,7 +172,7 @@ def compress_file(
             spool.add("rank_to_id.npy", ids)
         spool.close()
         header_set = FibletSet(
-            parameters=encoder.parameters,
+            parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
             anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
             decoding=np.empty((0, WORDS["decoding"]), np.uint32),
             reach=np.empty(0, np.uint16),
@@ -183,7 +193,8 @@ def compress_file(
         header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
         write_archive(target, header, members | more)
     seconds = time.perf_counter() - started
-    error = _compare(chunks(), found.n_points, target, progress)
+    originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
+    error = _compare(originals, found.n_points, target, progress)
     size = Path(target).stat().st_size
     return {
         "streamlines": encoder.n_streamlines,
@@ -192,7 +203,7 @@ def compress_file(
         "bytes": size,
         "bytes_per_point": size / max(encoder.n_points, 1),
         **error.summary(),
-        "promise_mm": encoder.parameters.promise,
+        "promise_mm": header_set.promise,
         "seconds": seconds,
         "points_per_second": encoder.n_points / seconds,
         "seconds_to_measure": time.perf_counter() - started - seconds,
@@ -274,13 +285,13 @@ def _compare(
                     raise ValueError(f"the original has more streamlines than the {coded.n_streamlines} of the fiblets")
             n = min(len(rest), len(chunk) - done)
             a, b = _plain(chunk, done, done + n), _plain(rest, 0, n)
-            if not np.array_equal(a.offsets, b.offsets):
+            if not tally.resampled and not np.array_equal(a.offsets, b.offsets):
                 differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
                 raise ValueError(
                     f"streamline {seen + differs} has {a.counts[differs]} points in the original, {b.counts[differs]} "
                     "in the fiblets: errors can be measured only against what was compressed"
                 )
-            tally.add(a, np.asarray(b.points, np.float64))
+            tally.add(a, b)
             rest = _plain(rest, n, len(rest))
             done += n
             seen += n

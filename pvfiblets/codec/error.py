@@ -60,10 +60,16 @@ class CodingError:
 
 
 class ErrorTally:
-    """Gathers errors of a set chunk by chunk; in bounded memory, unless they are wanted by streamline."""
+    """Gathers errors of a set chunk by chunk; in bounded memory, unless they are wanted by streamline.
+
+    Of a set that was resampled, whose points are others than the original's, errors are distances of the points of each
+    line from the other line, of both together; directions are not compared.
+    """
 
     def __init__(self, fiblets: FibletSet, *, by_streamline: bool = True) -> None:
+        self.resampled = fiblets.parameters.resampled > 0.0
         self._step = fiblets.step
+        self._promise = fiblets.promise
         self._dtype = fiblets.point_dtype()
         self._pixel = pixel(fiblets.bounds)
         self._firsts = _FirstPoints(fiblets)
@@ -79,13 +85,27 @@ class ErrorTally:
         self._angle_sum = 0.0
         self._largest_angle = 0.0
 
-    def add(self, original: Streamlines, decoded: npt.NDArray[np.float64]) -> None:
-        """Take in streamlines and their decoded points, ``(n, 3)`` float64, in the same order."""
+    def add(self, original: Streamlines, decoded: Streamlines) -> None:
+        """Take in streamlines, and the same as decoded to float64."""
         offsets = np.asarray(original.offsets, np.int64)
-        self._add_angles(original.points, decoded, offsets)
         # Points come in the set's own type by default, and its rounding is part of their error.
-        delta = original.points.astype(np.float64) - decoded.astype(self._dtype).astype(np.float64)
-        distance = np.sqrt((delta**2).sum(1))
+        drawn = decoded.points.astype(self._dtype).astype(np.float64)
+        if self.resampled:
+            from .line_distance import line_distances
+
+            others = np.asarray(decoded.offsets, np.int64)
+            away = line_distances(original.points, offsets, drawn, others, self._promise)
+            back = line_distances(drawn, others, original.points, offsets, self._promise)
+            owners = [np.repeat(np.arange(len(lines)), lines.counts) for lines in (original, decoded)]
+            order = np.argsort(np.concatenate(owners), kind="stable")
+            self._add_distances(np.concatenate([away, back])[order], offsets + others)
+            return
+        self._add_angles(original.points, np.asarray(decoded.points, np.float64), offsets)
+        delta = original.points.astype(np.float64) - drawn
+        self._add_distances(np.sqrt((delta**2).sum(1)), offsets)
+
+    def _add_distances(self, distance: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]) -> None:
+        """Take in distances, of streamlines whose own begin at these offsets."""
         bins = np.minimum(distance * (_BINS / self._edge), _BINS).astype(np.int64)
         self._histogram += np.bincount(bins, minlength=_BINS + 1)
         self._sum += float(distance.sum())
@@ -173,7 +193,7 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     streamlines : Streamlines
         The original points, mm.
     fiblets : FibletSet
-        The same streamlines compressed.
+        The same streamlines compressed; where they were resampled, lines are compared rather than points.
 
     Returns
     -------
@@ -185,20 +205,21 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     ValueError
         If the two do not have the same streamlines and points.
     """
-    if len(streamlines) != fiblets.n_streamlines or streamlines.n_points != fiblets.n_points:
+    resampled = fiblets.parameters.resampled > 0.0
+    if len(streamlines) != fiblets.n_streamlines or (streamlines.n_points != fiblets.n_points and not resampled):
         raise ValueError(
             f"the fiblets hold {fiblets.n_streamlines} streamlines of {fiblets.n_points} points, the original "
             f"{len(streamlines)} of {streamlines.n_points}: errors can be measured only against what was compressed"
         )
-    offsets = fiblets.offsets()
-    if not np.array_equal(offsets, streamlines.offsets):
-        first = int(np.flatnonzero(offsets != np.asarray(streamlines.offsets))[0]) - 1
+    offsets = np.asarray(streamlines.offsets, np.int64)
+    if not resampled and not np.array_equal(offsets, fiblets.offsets()):
+        first = int(np.flatnonzero(offsets != fiblets.offsets())[0]) - 1
         raise ValueError(f"streamline {first} has another number of points in the fiblets than in the original")
     tally = ErrorTally(fiblets)
     done = 0
     for decoded in iter_chunks(fiblets, dtype=np.float64):
         a, b = offsets[done], offsets[done + len(decoded)]
         part = Streamlines(streamlines.points[a:b], offsets[done : done + len(decoded) + 1] - a)
-        tally.add(part, np.asarray(decoded.points, np.float64))
+        tally.add(part, decoded)
         done += len(decoded)
     return tally.result()

@@ -208,6 +208,7 @@ def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[s
 
 def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
     values = header["parameters"]
+    values = {"resampled": 0.0, **values}  # which older files do not say
     chosen: dict[str, Any] = {
         f.name: tuple(values[f.name]) if isinstance(values[f.name], list) else values[f.name]
         for f in fields(Parameters)
@@ -215,7 +216,7 @@ def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, n
     parameters = Parameters(**chosen)
     numbers = [*parameters.origin, *parameters.anchor_scale, *header["bounds"]]
     numbers += [v for k, v in asdict(parameters).items() if k not in ("origin", "anchor_scale", "anchor_bits")]
-    if len(numbers) != 20 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
+    if len(numbers) != 21 or not np.isfinite(np.array(numbers, float)).all() or parameters.anchor_bits not in (16, 32):
         raise ValueError("parameters out of range")
     if not (parameters.end_scale > 0.0 and parameters.largest_radius >= 0.0):
         raise ValueError(f"end_scale {parameters.end_scale}, largest_radius {parameters.largest_radius}")

@@ -169,7 +169,10 @@ class FibletSet(SetQueries):
 
     @property
     def promise(self) -> float:
-        """No decoded point is farther than this from its original, mm; of an exact set, no drawn one."""
+        """No decoded point is farther than this from its original, mm; of an exact set, no drawn one.
+
+        Of a set that was resampled (``parameters.resampled``), no decoded line from its original.
+        """
         return self.parameters.promise
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +38,7 @@ LARGEST = 1e35  # mm
 BLOCK_POINTS = 2_000_000
 EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
 EXACT_UP_TO = 1 << 30  # bytes of points up to which a set that coding would enlarge keeps every bit; opening reads all
+CUT_SHARE = 0.25  # of the promise that resampling may use up, and so leave to coding less
 BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
@@ -199,6 +200,9 @@ class Parameters:
     largest_radius : float
         Half the chord and the capsule's radius together are no larger for any fiblet: each lies within a sphere of this
         radius about the middle of its chord.
+    resampled : float
+        Distance that lines were resampled to, and 0 where the points are the source's. The promise is then about lines:
+        no point of the one that is decoded is farther from the source's, and none of the source's from the decoded one.
     """
 
     origin: tuple[float, float, float]
@@ -212,6 +216,7 @@ class Parameters:
     end_scale: float
     promise: float
     largest_radius: float = 0.0
+    resampled: float = 0.0
 
     @classmethod
     def choose(cls, found: Survey, max_error: float | None = None) -> Parameters:
@@ -266,6 +271,12 @@ class Parameters:
             end_scale=(found.widest_end + 2.0 * promise) / END_LEVELS * (1.0 + 1e-9),
             promise=promise,
         )
+
+    @classmethod
+    def of_resampled(cls, found: Survey, promise: float, step: float) -> Parameters:
+        """Choose parameters to code lines that were resampled within ``CUT_SHARE`` of the promise."""
+        coding = max((1.0 - CUT_SHARE) * promise, _finest(found))
+        return replace(cls.choose(found, coding), resampled=step)
 
     @classmethod
     def of_exact(cls, found: Survey) -> Parameters:

@@ -9,13 +9,13 @@ import numba
 import numpy as np
 
 from ..streamlines import Streamlines
-from .jit import parallel_kernel
+from .jit import kernel, parallel_kernel
 
 __all__ = ["resample"]
 
 
-def resample(streamlines: Streamlines, step: float) -> Streamlines:
-    """Resample streamlines at equal arc length.
+def resample(streamlines: Streamlines, step: float, within: float = math.inf) -> Streamlines:
+    """Resample streamlines at equal arc length, and where that would cut corners keep points of these.
 
     Parameters
     ----------
@@ -24,6 +24,10 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     step : float
         Distance between new points along each streamline, mm. Both ends stay where they are, so the last step is
         shorter unless the length is a whole number of steps.
+    within : float, optional
+        Largest distance of the given line from the new one, and of the new one from the given, mm: between two new
+        points those given points stay that it takes (the farthest from the chord, then the same of its two parts: Ramer
+        1972, Douglas and Peucker 1973). Any by default.
 
     Returns
     -------
@@ -51,6 +55,17 @@ def resample(streamlines: Streamlines, step: float) -> Streamlines:
     fresh = np.concatenate([[0], np.cumsum(count)])
     low, weight = np.zeros(int(fresh[-1]), np.int64), np.zeros(int(fresh[-1]))
     _locate(arc, offsets, fresh, step, low, weight)
+    if within < math.inf:
+        kept = np.zeros(len(points), np.bool_)
+        _keep_corners(points, offsets, fresh, low, weight, float(within), kept)
+        corners = np.flatnonzero(kept)
+        # New points and corners in the order in which they stand along the lines; places are those of given points.
+        place = np.concatenate([low + weight, corners.astype(np.float64)])
+        owner = np.concatenate([np.repeat(np.arange(len(lengths)), count), _owners(offsets, corners)])
+        order = np.lexsort([place, owner])
+        low = np.concatenate([low, corners])[order]
+        weight = np.concatenate([weight, np.zeros(len(corners))])[order]
+        fresh = fresh + np.concatenate([[0], np.cumsum(kept)])[offsets]
     high = np.minimum(low + 1, max(len(points) - 1, 0))
 
     def mix(values: Any) -> Any:
@@ -83,6 +98,74 @@ def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
                 squares += (np.float64(points[i, axis]) - np.float64(points[i - 1, axis])) ** 2
             sum_ += math.sqrt(squares)
             arc[i] = sum_
+
+
+def _owners(offsets: Any, points: Any) -> Any:
+    """Streamlines that points belong to."""
+    return np.searchsorted(offsets, points, side="right") - 1
+
+
+@kernel
+def _at(points: Any, i: int, weight: float, found: Any) -> None:
+    for axis in range(3):
+        found[axis] = np.float64(points[i, axis])
+        if weight > 0.0:
+            found[axis] += weight * (np.float64(points[i + 1, axis]) - found[axis])
+
+
+@kernel
+def _away(points: Any, i: int, a: Any, b: Any) -> float:
+    """Squared distance of a given point from the segment ``ab``."""
+    squares = along = 0.0
+    for axis in range(3):
+        squares += (b[axis] - a[axis]) ** 2
+        along += (np.float64(points[i, axis]) - a[axis]) * (b[axis] - a[axis])
+    t = min(max(along / squares, 0.0), 1.0) if squares > 0.0 else 0.0
+    away = 0.0
+    for axis in range(3):
+        away += (np.float64(points[i, axis]) - a[axis] - t * (b[axis] - a[axis])) ** 2
+    return away
+
+
+@kernel
+def _keep_between(points: Any, low: Any, weight: Any, m: int, within: float, stack: Any, kept: Any) -> None:
+    """Mark the given points between new points ``m`` and ``m + 1`` that chords pass farther away than that."""
+    first = low[m] + 1
+    last = low[m + 1] - 1 if weight[m + 1] == 0.0 else low[m + 1]
+    a, b = np.empty(3), np.empty(3)
+    depth, begin, end = 0, first - 1, last + 1  # what lies between these, which stand for the new points at either end
+    while last >= first:
+        if begin < first:
+            _at(points, low[m], weight[m], a)
+        else:
+            _at(points, begin, 0.0, a)
+        if end > last:
+            _at(points, low[m + 1], weight[m + 1], b)
+        else:
+            _at(points, end, 0.0, b)
+        farthest, most = -1, within * within
+        for i in range(begin + 1, end):
+            away = _away(points, i, a, b)
+            if away > most:
+                farthest, most = i, away
+        if farthest >= 0:
+            kept[farthest] = True
+            stack[depth, 0], stack[depth, 1] = farthest, end
+            depth += 1
+            end = farthest
+        elif depth > 0:
+            depth -= 1
+            begin, end = stack[depth, 0], stack[depth, 1]
+        else:
+            break
+
+
+@parallel_kernel
+def _keep_corners(points: Any, offsets: Any, fresh: Any, low: Any, weight: Any, within: float, kept: Any) -> None:
+    for s in numba.prange(len(fresh) - 1):
+        stack = np.empty((offsets[s + 1] - offsets[s], 2), np.int64)
+        for m in range(fresh[s], fresh[s + 1] - 1):
+            _keep_between(points, low, weight, m, within, stack, kept)
 
 
 @parallel_kernel
