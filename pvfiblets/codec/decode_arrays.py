@@ -139,7 +139,6 @@ def _decode_lattices(
     to: Ints, out: Any,
 ) -> None:  # fmt: skip
     """Fiblets of lattice codes."""
-    k = len(n)
     wide = np.flatnonzero(kind == WIDE)
     lo = np.stack([_signed(shape >> shift & 0xFF, 8) for shift in (0, 8, 16)])
     nx, ny = (shape >> 24 & 0xFF) + 1, (step & 0xFF) + 1
