@@ -72,7 +72,7 @@ bool gather(Ray ray, float step, float start, out float hit, out vec4 light) {
         }
 #if FEATURE_VOLUME_HOMOGENEOUS
         else if (number > 1.5 && end - t >= step) {
-            float mm = floor((end - t) / step) * step;
+            float mm = floor((min(end, ray.last) - t) / step) * step;
             vec4 m = medium_at(mean_of_node);
             float a = 1.0 - exp(-m.a * mm);
             if (a > 0.0 && hit < 0.0) hit = t;

@@ -355,3 +355,20 @@ def test_a_step_is_no_longer_than_a_voxel_is_short_unless_it_is_asked_to_be():
     assert four.step_mm((3.0, 3.0, 3.0), cube) == 12.0
     assert half.step_mm((1.0, 1000.0, 1.0), (20, 90, 20)) == pytest.approx(3.0, rel=1e-3)  # no more than 30,000 steps
     assert half.step_mm((1.0, 1.0, 1.0), (2, 2, 60_000)) == 0.5
+
+
+@pytest.mark.parametrize("integrator", ["adaptive", "exponential"])
+@pytest.mark.parametrize("option", [{"recon": True}, {"homogeneous": 0.01}])
+def test_even_parts_end_where_rays_do(gl, camera, integrator, option):
+    """Nodes reach beyond the volume, and beyond planes: what is beyond gives no light."""
+    values = np.digitize(field("ball", 30).values, [0.1, 0.5]) / 2.0
+    volume = RaycastVolume(values.astype(np.float32), np.eye(4))
+    middle = (np.array(volume.shape) - 1) / 2
+    matrix = camera(SIZE, eye=middle + [35, -47, 25], target=middle, near=3, far=160)
+    transfer = Transfer(np.array([[1.0, 0.6, 0.1, 0.02], [0.3, 0.6, 0.1, 0.03], [0.1, 0.3, 1.0, 0.05]]), (0.0, 1.0))
+    right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume)).reshape(*SIZE[::-1], 4)
+    renderer = VolumeRenderer(gl, volume)
+    found = light(renderer, matrix, RaycastOptions("composite", transfer=transfer, integrator=integrator, **option))
+    assert "VOLUME_HOMOGENEOUS" in renderer.explain()["features"]
+    assert np.abs(found - right).max() < 1e-2
+    renderer.release()
