@@ -60,6 +60,9 @@ EFFECTS = {
 }
 """The last one is not in the table: rays from each hit, section III.G, equation 10."""
 
+WITHOUT = {"recon": _of_actor("recon", False)}
+"""Of effects that are there unless they are taken away."""
+
 OWN_MODE = {"recon": "composite"}
 """Of effects that other modes do not have."""
 
@@ -89,6 +92,8 @@ def effects(name: str, mode: str, wanted: list[str], options: Any) -> Iterator[d
             methods = [Plotter("", volume, look, options.step, size) for _ in range(2)]
             try:
                 EFFECTS[effect](methods[0])
+                if effect in WITHOUT:
+                    WITHOUT[effect](methods[1])
                 yield {**common, **turns(methods, cameras, options.seconds)}
             except AbsentError as error:
                 yield {**common, "unmeasured": str(error)}

@@ -111,7 +111,7 @@ class _AddRaycastVolume(Protocol):
         opacity: str | float | Any = "linear", opacity_unit_distance: float | None = None, thresholds: Any = None,
         peak: float | None = None, smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear",
         refine: str = "regula-falsi", iterations: int = 5, integrator: str = "adaptive", jitter: bool = False,
-        octree: bool = True, homogeneous: float = 0.0, recon: bool = False, sparse: int = 1,
+        octree: bool = True, homogeneous: float = 0.0, recon: bool = True, sparse: int = 1,
         sparse_threshold: float = 0.05, stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5,
         box: Any = None, lighting: bool | None = None, shade: bool = False, ambient: float | None = None,
         diffuse: float | None = None, specular: float | None = None, specular_power: float | None = None,

@@ -61,7 +61,7 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
         yield from (("early end", f"opacity {stop:g}", {"stop": stop}) for stop in (0.9, 1.0))
         for part in (0.01,) if quick else (0.002, 0.01, 0.05):
             yield "homogeneous nodes", f"{100.0 * part:g} % of the range", {"homogeneous": part * spread}
-        yield "nodes as one", "", {"recon": True}
+        yield "even nodes not as one", "", {"recon": False}
     yield "jitter", "", {"jitter": True}
     yield "no octree", "", {"octree": False}
     for stride in (2, 4):

@@ -79,7 +79,8 @@ class RaycastOptions:
         Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
     recon : bool
         Whether nodes in which neither colour nor opacity changes with the value, as their bounds say, are not
-        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does.
+        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does. Of these and
+        of homogeneous ones there must be as many as of all others that rays look into, or none is: asking costs more.
     sparse : int
         A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where
         what the first ones found differs (section III.D). Things thinner than that may be missed.
@@ -115,7 +116,7 @@ class RaycastOptions:
     integrator: str = "adaptive"
     octree: bool = True
     homogeneous: float = 0.0
-    recon: bool = False
+    recon: bool = True
     sparse: int = 1
     sparse_threshold: float = 0.05
     stop: float = 0.999

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import View
-from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
+from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
 from pvfiblets.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.steepness import OFF, UNTRUSTED, allowed_bends, largest_bend
@@ -318,7 +318,7 @@ def test_between_which_values_anything_is_opaque():
 
 
 @pytest.mark.parametrize("integrator", ["adaptive", "exponential"])
-def test_parts_of_one_colour_and_opacity_need_no_reconstruction(gl, camera, integrator):
+def test_parts_of_one_colour_and_opacity_need_no_reconstruction(gl, camera, integrator, monkeypatch):
     """A ball whose inside is even for the eye, though its values are not; with a thin sheet of another colour in it."""
     volume = field("ball", 40)
     values = volume.values.copy()
@@ -327,9 +327,12 @@ def test_parts_of_one_colour_and_opacity_need_no_reconstruction(gl, camera, inte
     matrix = camera(SIZE, eye=[45, -40, 60], target=[19.5] * 3, near=10, far=300)
     rgba = table(np.where(X[:, None] < 0.9, ORANGE, BLUE), np.select([X < 0.3, X < 0.9], [0.0, 0.02], 0.9))
     renderer = VolumeRenderer(gl, volume)
-    plain = RaycastOptions("composite", transfer=Transfer(rgba, (0.0, 1.0)), integrator=integrator, step=0.25)
+    transfer = Transfer(rgba, (0.0, 1.0))
+    plain = RaycastOptions("composite", transfer=transfer, integrator=integrator, step=0.25, recon=False)
     before = light(renderer, matrix, plain)
-    marked = RaycastOptions("composite", transfer=plain.transfer, integrator=integrator, step=0.25, recon=True)
+    assert "VOLUME_HOMOGENEOUS" not in renderer.explain()["features"]
+    monkeypatch.setattr(nodes, "WORTH", 0.0)
+    marked = RaycastOptions("composite", transfer=transfer, integrator=integrator, step=0.25)
     after = light(renderer, matrix, marked)
     assert "VOLUME_HOMOGENEOUS" in renderer.explain()["features"]
     assert np.abs(after - before).max() < (6e-3 if integrator == "adaptive" else 3e-2)  # rays are cut at other places
@@ -359,8 +362,9 @@ def test_a_step_is_no_longer_than_a_voxel_is_short_unless_it_is_asked_to_be():
 
 @pytest.mark.parametrize("integrator", ["adaptive", "exponential"])
 @pytest.mark.parametrize("option", [{"recon": True}, {"homogeneous": 0.01}])
-def test_even_parts_end_where_rays_do(gl, camera, integrator, option):
+def test_even_parts_end_where_rays_do(gl, camera, integrator, option, monkeypatch):
     """Nodes reach beyond the volume, and beyond planes: what is beyond gives no light."""
+    monkeypatch.setattr(nodes, "WORTH", 0.0)
     values = np.digitize(field("ball", 30).values, [0.1, 0.5]) / 2.0
     volume = RaycastVolume(values.astype(np.float32), np.eye(4))
     middle = (np.array(volume.shape) - 1) / 2
@@ -372,3 +376,14 @@ def test_even_parts_end_where_rays_do(gl, camera, integrator, option):
     assert "VOLUME_HOMOGENEOUS" in renderer.explain()["features"]
     assert np.abs(found - right).max() < 1e-2
     renderer.release()
+
+
+def test_even_parts_count_only_where_there_are_enough(gl, camera):
+    """Rays that ask every node, and find few even ones, would be slower."""
+    transfer = Transfer(np.array([[1.0, 0.6, 0.1, 0.02], [1.0, 0.6, 0.1, 0.02], [0.1, 0.3, 1.0, 0.5]]), (0.0, 1.0))
+    for values, expected in ((np.zeros((32, 32, 32)), True), (field("noise", 32).values, False)):
+        volume = RaycastVolume(np.asarray(values, np.float32), np.eye(4))
+        renderer = VolumeRenderer(gl, volume)
+        light(renderer, matrix_of(camera, volume), RaycastOptions("composite", transfer=transfer))
+        assert ("VOLUME_HOMOGENEOUS" in renderer.explain()["features"]) == expected
+        renderer.release()

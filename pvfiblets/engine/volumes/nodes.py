@@ -16,7 +16,11 @@ from ..bindings import VOLUMES
 from ..errors import EngineError
 from ..moderngl_extras import BufferTexture, GLExtras
 
-__all__ = ["NodeList", "takes_means"]
+__all__ = ["NodeList"]
+
+WORTH = 0.5
+"""Part of the leaves that are looked into which must be even for rays to ask of each: fewer, and asking costs more than
+it saves. Measured on two cores: 1.5 times as fast from 0.5 on, 1.08 at 0.4, 0.9 where there are none."""
 
 
 
@@ -35,6 +39,8 @@ class NodeList:
         (n_levels, 4) int64: nodes along each axis, and place of the first.
     skipped : float
         Share of the leaves in which there is nothing to see; 0 of peaks, for which it depends on the ray.
+    takes_means : bool
+        Whether nodes that are even are taken as their mean: where it was asked for, and there are enough of them.
     octree : dict
         What the octree costs: its ``bytes``, their ``share`` of the volume's, and ``ms`` that building it took. All are
         0 while rays skip nothing: then there is none, neither here nor on the GPU.
@@ -48,6 +54,7 @@ class NodeList:
         self._lists: dict[str, tuple[moderngl.Buffer, BufferTexture]] = {}
         self.levels: npt.NDArray[np.int64] = np.zeros((0, 4), np.int64)
         self.skipped = 0.0
+        self.takes_means = False
         self.octree: dict[str, float] = {}
 
     def make(self, casting: RaycastOptions) -> None:
@@ -68,7 +75,7 @@ class NodeList:
         if not casting.octree:
             self._octrees.clear()
             self.octree = {"bytes": 0, "share": 0.0, "ms": 0.0}
-            self.levels, self.skipped = np.zeros((0, 4), np.int64), 0.0
+            self.levels, self.skipped, self.takes_means = np.zeros((0, 4), np.int64), 0.0, False
             self._made_for = key
             return
         margin = 2 if casting.filter == "tricubic" else 1
@@ -85,7 +92,10 @@ class NodeList:
         looked_into = casting.mode in ("isosurface", "composite")
         self.skipped = float(np.mean(numbers[0] == SKIP)) if looked_into else 0.0
         self._put("nodes", numbers)
-        if takes_means(casting):
+        visited = np.count_nonzero(numbers[0] != SKIP) if looked_into else 0
+        even = np.count_nonzero(numbers[0] == HOMOGENEOUS) if _may_take_means(casting) else 0
+        self.takes_means = bool(even > 0 and even >= WORTH * visited)
+        if self.takes_means:
             self._put("means", [level.mean for level in octree.levels])
         self._made_for = key
 
@@ -148,7 +158,7 @@ def _numbers(octree: Octree, casting: RaycastOptions) -> list[npt.NDArray[Any]]:
     return list(seen)
 
 
-def takes_means(casting: RaycastOptions) -> bool:
+def _may_take_means(casting: RaycastOptions) -> bool:
     """Whether there may be nodes that are taken as their mean."""
     return casting.mode == "composite" and casting.octree and (casting.homogeneous > 0.0 or casting.recon)
 

@@ -12,7 +12,7 @@ from ..drawable import Drawable
 from ..gbuffer import GBuffer
 from ..view import Style, View
 from ..work_limits import WorkLimits
-from .nodes import NodeList, takes_means
+from .nodes import NodeList
 from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
 from .textures import VolumeTexture
@@ -235,7 +235,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             features += _OF_INTEGRATOR[casting.integrator]
             features += ["VOLUME_FINER"] if self._tables.finer else []
             features += ["VOLUME_EXACT"] if self._tables.exact else []
-            features += ["VOLUME_HOMOGENEOUS"] if takes_means(casting) else []
+            features += ["VOLUME_HOMOGENEOUS"] if self._nodes.takes_means else []
         features += [] if casting.octree else ["VOLUME_WHOLE"]
         return [*features, *(["VOLUME_JITTER"] if casting.jitter else []), *(["SCENE_DEPTH"] if outside else [])]
 

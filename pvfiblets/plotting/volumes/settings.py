@@ -227,8 +227,9 @@ class VolumeSettings(Settings):
         where=CASTING,
     )
     recon: Setting[bool] = Setting(
-        False,
-        "Whether parts in which colour and opacity are the same for all values are taken as one.",
+        True,
+        "Whether parts in which colour and opacity are the same for all values are taken as one, where there are "
+        "enough of them for rays to be faster by it.",
         kind="bool",
         where=CASTING,
     )
