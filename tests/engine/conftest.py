@@ -15,6 +15,14 @@ _module = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_module)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def classes():
+    """Few as the fiblets of tests are, the compute pipeline draws them by a program for each class."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("pvfiblets.engine.fiblets.pipelines.compute.FEW", 0)
+        yield
+
+
 @pytest.fixture(scope="session")
 def fabricate():
     """Return the encoder of ``fabricate.py``."""

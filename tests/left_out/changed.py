@@ -19,7 +19,7 @@ HARDWARE_PASSES = "-cull, -depth, -resolve_owner, -resolve_ties, -visible, draw"
 
 TUBES = What(
     ran=f"{HARDWARE}, fiblets/geometry/capsules.geom, fiblets/hardware_raster/capsule.frag",
-    features="CROSS_LINE, TEXTURE_DATA, TUBES, WIDE_LINES",
+    features="-ONE_CLASS, CROSS_LINE, TEXTURE_DATA, TUBES, WIDE_LINES",
     resolve="-line_light, tube_normal",
     passes=HARDWARE_PASSES,
     buffers="depth of tubes, tubes",
@@ -213,7 +213,7 @@ CHANGED = {
         modules="engine.effects.halos, engine.effects.outline",
     ),
     "picking": What(),
-    "detail": What(features="LEVEL_OF_DETAIL, ONE_SEGMENT"),
+    "detail": What(features="LEVEL_OF_DETAIL"),
     "culling: none": What(),
     "culling: two-phase": What(
         ran="""
@@ -237,7 +237,7 @@ CHANGED = {
     ),
     "pipeline: geometry": What(
         ran=f"{HARDWARE}, fiblets/geometry/lines.geom, fiblets/hardware_raster/line.frag",
-        features="TEXTURE_DATA",
+        features="-ONE_CLASS, TEXTURE_DATA",
         passes=HARDWARE_PASSES,
         buffers="-visibility_bits, depth",
         modules="engine.fiblets.pipelines.geometry",
@@ -247,7 +247,7 @@ CHANGED = {
             {HARDWARE}, fiblets/hardware_raster/line.frag, fiblets/tessellation/decode.tesc,
             fiblets/tessellation/lines.tese
         """,
-        features="TEXTURE_DATA",
+        features="-ONE_CLASS, TEXTURE_DATA",
         passes=HARDWARE_PASSES,
         buffers="-visibility_bits, depth",
         modules="engine.fiblets.pipelines.tessellation",

@@ -11,7 +11,7 @@ PLAIN = {
             fiblets/compute/depth.comp, fiblets/compute/resolve_owner.comp, fiblets/compute/plan.comp,
             fiblets/compute/resolve_ties.comp
         """,
-        features="CLIPPING, CLIPPING_DEPTH, DIRECTION",
+        features="CLIPPING, CLIPPING_DEPTH, DIRECTION, ONE_CLASS",
         resolve="colour_orientation, gbuffer, line_light, normal",
         passes="clear, cull, depth, resolve_owner, resolve_ties, visible",
         buffers="anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, pages, rotations",

@@ -5,6 +5,7 @@
 //   - A fiblet of class 0 lies inside all planes, by `plane_rounding` and its radius: its segments need no clipping. One of
 //     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, and
 //     those that the caller's planes or region may touch, or some points of which are not to be shown. Class 3 are those of class 0 that are drawn as one segment.
+//   - Where there is ONE_CLASS, it has all fiblets, and its program what any of them needs.
 //
 // One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), which others will probably show
@@ -44,11 +45,16 @@ void main() {
     uint before = visibility_bits[word + SEEN];
     for (uint part = 0u; part <= REST; part += CLASSES) {
         uint these = shown & (part == 0u ? before : ~before & (part == PREDICTED ? likely : ~likely));
+#if FEATURE_ONE_CLASS
+        visibility_bits[word + part] = these;
+        for (uint which = 1u; which < CLASSES; ++which) visibility_bits[word + part + which] = 0u;
+#else
         uint inside = these & ~crossing & ~crossing_depth;
         visibility_bits[word + part] = inside & ~single;
         visibility_bits[word + part + 1u] = these & crossing & ~crossing_depth;
         visibility_bits[word + part + 2u] = these & crossing_depth;
         visibility_bits[word + part + 3u] = inside & single;
+#endif
     }
     visibility_bits[word + CANDIDATES] = 0u;
     visibility_bits[word + SEEN] = 0u;

@@ -20,7 +20,7 @@ resolve_ties   writes the pixels that more than one fiblet took, by their owners
 Of these, predicted to refine belong to two-phase culling. Last time's fiblets and depth only decide the order: the
 picture is the same whatever was seen before. There is a program for each class of fiblets
 (``shaders/fiblets/compute/cull.comp``): those inside all planes of the view volume need no clipping, those drawn as
-one segment no decoding.
+one segment no decoding. Few fiblets are all of one class: programs take longer to compile than they would spare.
 
 Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth passes keep depth and fiblet in one word
 (``shaders/fiblets/compute/nearest.glsl``). Passes make depth and owners of the words, ``split`` before the pyramid and
@@ -63,6 +63,10 @@ ROUNDS = 6
 ARGUMENT_BYTES = 16
 SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
 
+
+FEW = 2048
+"""Fiblets that are drawn by one program, without classes. A frame takes a twentieth longer by that, one of a hundred
+thousand segments; the first one takes half as long, for there is less to compile."""
 
 SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
@@ -109,6 +113,7 @@ class ComputePipeline:
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
+        self._one_class = n_fiblets <= FEW
         self._words = -(-n_fiblets // 32)
         self._round_arguments = n_chunks * CLASSES
         self._list_base = self._words * VISIBILITY_WORDS
@@ -156,7 +161,7 @@ class ComputePipeline:
             self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
-            features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
+            features = self._planning(request)
             if occlusion is not None and occlusion.predicts:
                 features.append(occlusion.feature)
                 occlusion.bind(self._program("cull", features))
@@ -213,7 +218,7 @@ class ComputePipeline:
             request.gather.target.clear(self._gl)
             size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
             self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
-            features = [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling]
+            features = self._planning(request)
             self._run("cull", features, request)
             self._barrier()
             self._round("gather", REST, request)
@@ -250,6 +255,11 @@ class ComputePipeline:
             self._set(split, marking=int(marking))
             dispatch(split, request.target.size[1], self._max_groups)
             self._barrier()
+
+    def _planning(self, request: DrawRequest) -> list[str]:
+        """Features of the program that plans a picture."""
+        one = ("ONE_CLASS",) if self._one_class else ()
+        return [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling, *one]
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
         return self._programs.compute(f"fiblets/compute/{stage}.comp", features)
@@ -296,7 +306,7 @@ class ComputePipeline:
         """Draw one round's fiblets, class by class."""
         refined = number == REST and request.occlusion is not None and request.occlusion.halfway
         self._plan(number, request.chunks, refined)
-        for part, features in request.classes:
+        for part, features in request.classes(one=self._one_class):
             program = self._program(stage, [*features, *self._int64])
             for share in self._shares if request.line_width > 0.0 else self._shares[:1]:
                 self._set(program, drawing=number, part=part, share=share)
@@ -332,7 +342,7 @@ class ComputePipeline:
         """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
         program = self._program("refine", self._looking("refine", request))
         self._plan(TESTED, request.chunks)
-        for part, _ in request.classes:
+        for part, _ in request.classes(one=self._one_class):
             self._set(program, part=part)
             self._run_listed(program, TESTED, part, request)
         self._barrier()

@@ -102,14 +102,22 @@ class DrawRequest:
         """Features by which a fiblet is drawn in part."""
         return (*self.planes, *self.kept.cutting)
 
-    @property
-    def classes(self) -> list[tuple[int, tuple[str, ...]]]:
-        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
+    def classes(self, *, one: bool = False) -> list[tuple[int, tuple[str, ...]]]:
+        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs.
+
+        Parameters
+        ----------
+        one : bool
+            Whether there is but one, whose program draws any fiblet.
+        """
         common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling, *self.gathering)
+        whole = (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")
+        if one:
+            return [(0, whole if self.clipping or self.detail else common)]
         classes = [(0, common)]
         if self.clipping:
             classes.append((1, (*common, *self.detail, "CLIPPING")))
-            classes.append((2, (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")))
+            classes.append((2, whole))
         if self.detail:
             classes.append((3, (*common, "ONE_SEGMENT")))
         return classes
