@@ -124,7 +124,7 @@ STATES["coding"].loaded = STATES["decoding"].loaded = True
 lines = brain_streamlines(20)
 uneven = pvfiblets.Streamlines(lines.points ** 2, lines.offsets)
 for made in (lines, uneven):
-    pvfiblets.compress(made).decompress()
+    pvfiblets.compress(made, exact=False).decompress()
 assert all(before.values()), before
 assert compiled() == before
 print("done")

@@ -258,7 +258,7 @@ def compiled(source, features):
 
     def holds(condition):
         words = (f" {word.removeprefix('FEATURE_') in features} " for word in re.findall(r"FEATURE_\w+", condition))
-        condition = re.sub(r"FEATURE_\w+", lambda _: next(words), condition)
+        condition = re.sub(r"FEATURE_\w+", lambda _: next(words), condition).replace("__VERSION__", "430")
         return bool(eval(condition.replace("&&", "and").replace("||", "or").replace("!", "not ")))
 
     for line in source.splitlines():

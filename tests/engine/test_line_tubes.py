@@ -291,6 +291,7 @@ def test_a_picture_pays_only_for_what_it_shows(gl, knots, camera):
 def settled(source):
     """Lines that are left of a composed source when its switches are decided; comments are left out."""
     values = dict(line.split()[1:] for line in source.splitlines() if line.startswith("#define FEATURE_"))
+    values["__VERSION__"] = "430"
     kept, stack = [], []
     for line in source.splitlines():
         words = line.split("//")[0].strip()

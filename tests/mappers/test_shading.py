@@ -344,7 +344,7 @@ def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     mapper.set_effect(name, ALL[name])
     with_it = tools.picture(plotter, mapper)
     assert not np.array_equal(before, with_it)
-    slot = next(iter(windows._contexts.values())).slot(mapper)
+    slot = windows.contexts_with(mapper)[0].slot(mapper)
     assert name in slot.effects
     mapper.set_effect(name, None)
     assert np.array_equal(tools.picture(plotter, mapper), before)

@@ -34,7 +34,8 @@ vec3 walk_anchor;
 vec3 walk_point;
 vec3 walk_delta;
 vec4 walk_frame;
-#if __VERSION__ >= 400  // qualified afterwards: glslang takes `precise vec3 name;` for a variable of the next function
+// Qualified afterwards: glslang takes `precise vec3 name;` for a variable of the next function.
+#if __VERSION__ >= 400
 precise walk_anchor;
 precise walk_point;
 precise walk_delta;
