@@ -22,6 +22,7 @@ from pvfiblets.web.confined import Confined
 from pvfiblets.web.document import volume_in
 from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.filter_tab import FilterActions
+from pvfiblets.web.first_document import first_document
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
@@ -125,6 +126,14 @@ class Explorer(TrameApp):
 
     def add_routes(self, router: Any) -> None:
         """Add what comes and goes by plain HTTP."""
+        from aiohttp import web
+
+        document = first_document()
+
+        async def index(_: Any) -> Any:
+            return web.Response(text=document, content_type="text/html")
+
+        router.add_get("/index.html", index)
         router.add_post("/upload", self.files.receive)
         router.add_get("/download/{number}", self.exports.send)
 

@@ -31,6 +31,7 @@ logger = logging.getLogger("pvfiblets.web")
 REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
+PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may have gone to sleep
 SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
 REDUCED = 0.5  # of the width and the height of these
 HEARD = 0.002  # seconds between samples, in which events are heard
@@ -227,27 +228,31 @@ class PictureStream:
             await self._wanted.wait()
             self._wanted.clear()
             started = time.monotonic()
-            moving = self.moving
             try:
-                pixels = self._draw(self._moving_at if moving else 1.0)
-                self._after()
-            except Exception as error:
+                await self._frame()
+            except Exception as error:  # the next is drawn all the same
                 logger.exception("drawing failed")
                 self._failed(error)
                 continue
-            coarse = moving and self.codec != "png"
-            await self._send(pixels, self.moving_quality if coarse else self.still_quality)
-            await self._drained()
-            if moving and (coarse or self._drawn_at < 1.0) and await self._rests():
-                if self._drawn_at < 1.0:
-                    self.request()
-                else:
-                    await self._send(pixels, self.still_quality)
-            if moving:
-                self._moving_at = self._next()
-            if not self._wanted.is_set() and self._drawn_at == 1.0:
-                await self._refine()
             await asyncio.sleep(max(0.0, FASTEST - (time.monotonic() - started)))
+
+    async def _frame(self) -> None:
+        """Draw and send a frame, and what follows it when the camera rests."""
+        moving = self.moving
+        pixels = self._draw(self._moving_at if moving else 1.0)
+        self._after()
+        coarse = moving and self.codec != "png"
+        await self._send(pixels, self.moving_quality if coarse else self.still_quality)
+        await self._drained()
+        if moving and (coarse or self._drawn_at < 1.0) and await self._rests():
+            if self._drawn_at < 1.0:
+                self.request()
+            else:
+                await self._send(pixels, self.still_quality)
+        if moving:
+            self._moving_at = self._next()
+        if not self._wanted.is_set() and self._drawn_at == 1.0:
+            await self._refine()
 
     async def _refine(self) -> None:
         """Draw the samples of the picture at rest and send it, unless something happens meanwhile."""
@@ -255,13 +260,8 @@ class PictureStream:
             await asyncio.wait_for(self._wanted.wait(), REST)
         picture = self._plotter.picture
         before = picture.samples
-        try:
-            while not self._wanted.is_set() and picture.refine():
-                await asyncio.sleep(HEARD)
-        except Exception as error:
-            logger.exception("refining failed")
-            self._failed(error)
-            return
+        while not self._wanted.is_set() and picture.refine():
+            await asyncio.sleep(HEARD)
         if not self._wanted.is_set() and picture.samples != before:
             await self._send(self._read(), self.still_quality)
 
@@ -272,7 +272,8 @@ class PictureStream:
         return not self._wanted.is_set()
 
     async def _drained(self) -> None:
-        while self._pending() > UNSENT:
+        end = time.monotonic() + PATIENCE
+        while self._pending() > UNSENT and time.monotonic() < end:
             await asyncio.sleep(0.005)
 
     @property

@@ -31,6 +31,21 @@ def test_a_lost_connection_is_taken_up_again(visit):
     here.changed(turned)
 
 
+def test_a_page_stays_when_what_loads_before_it_comes_late(visit):
+    here = visit("lines.fiblets")
+    held = []
+
+    def hold(route):  # what trame's own document fetches, and puts over the page
+        held.append(route)
+
+    here.page.route("**/loading.tpl", hold)
+    here.page.reload()
+    here.ready()
+    for late in held:
+        late.continue_()
+    assert not held
+
+
 def test_a_long_conversion_shows_how_far_it_is_and_can_be_cancelled(visit, tmp_path):
     import pvfiblets
     from pvfiblets.synthetic import brain_streamlines
