@@ -43,7 +43,8 @@ def _is_drawn(renderer: vtkRenderer) -> bool:
 def _actors() -> Iterator[vtkActor]:
     """Yield the actors that Python or a renderer that it leads to has; some more than once."""
     seen: set[str] = set()
-    for held in [held for held in gc.get_objects() if isinstance(held, vtkObjectBase)]:
+    # By type(): isinstance asks objects for their class, which those of others may refuse; a dead weakref.proxy does.
+    for held in [held for held in gc.get_objects() if issubclass(type(held), vtkObjectBase)]:
         if isinstance(held, vtkProp):
             yield from actors_in(held)
         for renderer in _renderers(held):

@@ -142,6 +142,22 @@ def test_set_mapper_is_enough(tools):
         window.Finalize()
 
 
+def test_objects_that_refuse_to_tell_their_class_are_passed_over():
+    """Python's collector knows such of any library: all mappers given by SetMapper then drew nothing."""
+
+    class Gone:
+        pass
+
+    gone = Gone()
+    proxy = weakref.proxy(gone)
+    del gone
+    with pytest.raises(ReferenceError):
+        isinstance(proxy, vtkActor)
+    mapper = FibletMapper(compress(Streamlines.from_list(CURVES)))
+    assert drawn(mapper).any()
+    mapper.raise_pending()
+
+
 def test_connected_lines_are_drawn_as_vtk_draws_them(tools):
     data = lines()
     mapper = FibletMapper()
