@@ -13,8 +13,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.plotting.actor_registry import ActorRegistry
-
 ROOT = Path(__file__).resolve().parents[1]
 STUB = ROOT / "pvfiblets" / "plotting" / "plotter.pyi"
 
@@ -76,7 +74,7 @@ def _components(module: Any) -> list[Any]:
     return [
         one
         for one in vars(module).values()
-        if inspect.isclass(one) and issubclass(one, ActorRegistry) and one.__module__ == module.__name__
+        if inspect.isclass(one) and hasattr(one, "ADD") and one.__module__ == module.__name__
     ]
 
 

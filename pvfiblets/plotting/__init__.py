@@ -3,11 +3,12 @@
 ``plotter.add_fiblets(...)``, ``plotter.fiblets``, ``plotter.add_spline_tubes(...)``,
 ``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
 ``plotter.add_halo_points(...)``, ``plotter.halo_points``, ``plotter.add_raycast_volume(...)``,
-``plotter.raycast_volumes`` and ``polydata.fiblets`` need no import: PyVista finds them by entry
-points (see ``pyproject.toml``), which name the modules ``component`` of each drawable's folder and
-``accessor`` here. ``files`` serves ``pyvista.read`` and ``save``. What can be set of a drawable is
-declared once, in the ``settings`` of its folder. The actor's colours are found in ``scalars`` and made
-into a look-up table in ``colours``; the drawing is the mapper's.
+``plotter.raycast_volumes``, ``plotter.add_slices(...)``, ``plotter.slices`` and
+``polydata.fiblets`` need no import: PyVista finds them by entry points (see ``pyproject.toml``),
+which name the modules ``component`` of each drawable's folder and ``accessor`` here. ``files``
+serves ``pyvista.read`` and ``save``. What can be set of a drawable is declared once, in the
+``settings`` of its folder. The actor's colours are found in ``scalars`` and made into a look-up
+table in ``colours``; the drawing is the mapper's.
 
 Importing this package registers the components. They import actors, mappers and the engine with the
 first ``add_*``: a scene of lines loads no volumes, and a compressed file no compiler.
@@ -25,12 +26,15 @@ from pvfiblets.plotting.halos.component import (
     HaloLinesComponent,
     HaloPointsComponent,
 )
+from pvfiblets.plotting.slices.component import AddSlices, SlicesComponent
 from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
 from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
+    from pvfiblets.plotting.slices.layer import SliceLayer
+    from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.plotting.tubes.actor import TubeActor
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
@@ -39,6 +43,7 @@ __all__ = [
     "AddHaloLines",
     "AddHaloPoints",
     "AddRaycastVolume",
+    "AddSlices",
     "AddSplineTubes",
     "FibletActor",
     "FibletsComponent",
@@ -47,6 +52,9 @@ __all__ = [
     "HaloPointActor",
     "HaloPointsComponent",
     "RaycastVolumesComponent",
+    "SliceLayer",
+    "SliceStack",
+    "SlicesComponent",
     "SplineTubesComponent",
     "TubeActor",
     "VolumeActor",
@@ -57,6 +65,8 @@ _HOME = {
     "HaloLineActor": "halos.actors",
     "HaloPointActor": "halos.actors",
     "VolumeActor": "volumes.actor",
+    "SliceLayer": "slices.layer",
+    "SliceStack": "slices.stack",
     "TubeActor": "tubes.actor",
 }
 

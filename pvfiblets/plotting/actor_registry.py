@@ -100,6 +100,8 @@ class ActorRegistry(Generic[A]):
 
     # What can be set of its actors.
     _SETTINGS: ClassVar[type[Settings]]
+    # Arguments of every ``add``.
+    COMMON: ClassVar[type[Settings]] = Common
     # By which plotters know the component.
     NAME: ClassVar[str]
 

@@ -14,10 +14,8 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from pvfiblets.plotting.settings import arguments
-from pvfiblets.plotting.shared_settings import Common
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.actor_registry import ActorRegistry
     from pvfiblets.plotting.settings import Argument
 
 __all__ = ["document", "plotter_method"]
@@ -25,14 +23,14 @@ __all__ = ["document", "plotter_method"]
 _WIDEST = 100
 
 
-def document(component: type[ActorRegistry[Any]]) -> None:
+def document(component: Any) -> None:
     """Give a component an ``add`` of its own whose signature and doc say all arguments."""
     made = inspect.signature(component._make)
     skipped = ("self", "settings")
     own = [one for name, one in made.parameters.items() if name not in skipped]
     last = [one for one in own if one.kind is one.VAR_KEYWORD]
     component.OWN = frozenset(one.name for one in own if one.kind is one.KEYWORD_ONLY)
-    declared = {**arguments(component._SETTINGS), **Common.DECLARED}  # noqa: SLF001
+    declared = {**arguments(component._SETTINGS), **component.COMMON.DECLARED}  # noqa: SLF001 - a component's
     settings = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=one.default, annotation=one.kind)
         for name, one in declared.items()
@@ -49,10 +47,10 @@ def document(component: type[ActorRegistry[Any]]) -> None:
     add.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # inspect looks for it
         [first, *kept, *settings, *last], return_annotation=made.return_annotation
     )
-    component.add = add  # type: ignore[method-assign]
+    component.add = add
 
 
-def plotter_method(component: type[ActorRegistry[Any]]) -> Any:
+def plotter_method(component: Any) -> Any:
     """Register a component's ``add`` as a method of plotters, and return the class that makes it callable."""
     target = component.add
 

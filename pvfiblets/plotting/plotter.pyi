@@ -15,6 +15,9 @@ from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsCom
 from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
 from pvfiblets.plotting.halos.style import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
+from pvfiblets.plotting.slices.component import SlicesComponent
+from pvfiblets.plotting.slices.component import Source as SlicesSource
+from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.plotting.tubes.actor import TubeActor
 from pvfiblets.plotting.tubes.component import Source as SplineTubesSource
 from pvfiblets.plotting.tubes.component import SplineTubesComponent
@@ -124,6 +127,21 @@ class _RaycastVolumesComponent(RaycastVolumesComponent):
     @property
     def add(self) -> _AddRaycastVolume: ...  # type: ignore[override]
 
+class _AddSlices(Protocol):
+    def __call__(
+        self, source: SlicesSource, *, position: Any = None,
+        planes: str | Iterable[str] = ('axial', 'coronal', 'sagittal'), axes: str | np.ndarray = "world",
+        kind: str | None = None, labels: Any = None, modulate: Any = None, cmap: Any = "gray", clim: Any = None,
+        percentiles: tuple[float, float] = (1.0, 99.0), log_scale: bool = False, below: float | None = None,
+        above: float | None = None, opacity: float = 1.0, blend: str = "over", interpolation: str = "linear",
+        index: int = 0, outline: bool = False, visible: bool = True, name: str | None = None, pickable: bool = True,
+        reset_camera: bool | None = None, render: bool = True,
+    ) -> SliceStack: ...
+
+class _SlicesComponent(SlicesComponent):
+    @property
+    def add(self) -> _AddSlices: ...  # type: ignore[override]
+
 class Plotter(pv.Plotter):
     @property
     def add_fiblets(self) -> _AddFiblets: ...
@@ -145,5 +163,9 @@ class Plotter(pv.Plotter):
     def add_raycast_volume(self) -> _AddRaycastVolume: ...
     @property
     def raycast_volumes(self) -> _RaycastVolumesComponent: ...
+    @property
+    def add_slices(self) -> _AddSlices: ...
+    @property
+    def slices(self) -> _SlicesComponent: ...
     @property
     def picture(self) -> PictureComponent: ...

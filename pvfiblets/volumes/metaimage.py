@@ -32,18 +32,20 @@ DIRECTIONS = ("transformmatrix", "orientation", "rotation")
 Array = npt.NDArray[np.float64]
 
 
-def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
+def read_metaimage(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
     """Read a volume.
 
     Parameters
     ----------
     path : str or PathLike
         The file, or of data kept apart its header.
+    components : bool, default: False
+        Whether there may be a fourth axis, or several numbers per voxel.
 
     Returns
     -------
     values : ndarray
-        ``(nx, ny, nz)``, of the file's type.
+        ``(nx, ny, nz)``, of the file's type; a fourth axis and components follow these.
     affine : ndarray
         ``(4, 4)`` voxel indices to mm, RAS+.
 
@@ -60,15 +62,22 @@ def read_metaimage(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Arra
     if dims is None:
         raise FormatError(path, None, "no field DimSize", "a MetaImage header with one")
     channels = fields.get("elementnumberofchannels", "1").strip()
-    if len(dims) != 3 or channels != "1":
+    if components and len(dims) in (3, 4) and channels.isdecimal() and int(channels[:9]) > 0:
+        pass
+    elif len(dims) != 3 or channels != "1":
         raise FormatError(
             path, None, f"{len(dims)} axes and {channels} numbers per voxel",
             "three axes and one number per voxel: save one of its volumes or components",
         )  # fmt: skip
     if not all(n >= 1 and n == int(n) for n in dims.tolist() if math.isfinite(n)) or not np.isfinite(dims).all():
-        raise FormatError(path, None, f"DimSize = {fields['dimsize']}", "three whole numbers above 0")
+        n = "three" if len(dims) == 3 else "four"
+        raise FormatError(path, None, f"DimSize = {fields['dimsize']}", f"{n} whole numbers above 0")
     shape = [int(n) for n in dims.tolist()]
-    return _data(path, fields, size, shape).reshape(shape, order="F"), _affine(path, fields)
+    if channels == "1":
+        return _data(path, fields, size, shape).reshape(shape, order="F"), _affine(path, fields, len(shape))
+    stored = [int(channels), *shape]  # numbers of a voxel lie side by side
+    values = _data(path, fields, size, stored).reshape(stored, order="F")
+    return np.moveaxis(values, 0, -1), _affine(path, fields, len(shape))
 
 
 def _data(path: Path, fields: dict[str, str], size: int, shape: list[int]) -> npt.NDArray[Any]:
@@ -140,13 +149,14 @@ def _numbers(path: Path, fields: dict[str, str], names: tuple[str, ...], n: int 
     return found
 
 
-def _affine(path: Path, fields: dict[str, str]) -> Array:
-    spacing = _numbers(path, fields, ("elementspacing", "elementsize"), 3)
-    directions = _numbers(path, fields, DIRECTIONS, 9)
-    origin = _numbers(path, fields, PLACES, 3)
+def _affine(path: Path, fields: dict[str, str], n: int = 3) -> Array:
+    """Voxel indices to mm; n axes, of which the first three are of space."""
+    spacing = _numbers(path, fields, ("elementspacing", "elementsize"), n)
+    directions = _numbers(path, fields, DIRECTIONS, n * n)
+    origin = _numbers(path, fields, PLACES, n)
     affine = np.eye(4)
-    columns = np.eye(3) if directions is None else directions.reshape(3, 3).T
-    affine[:3, :3] = columns * (1.0 if spacing is None else spacing)
-    affine[:3, 3] = 0.0 if origin is None else origin
+    columns = np.eye(3) if directions is None else directions.reshape(n, n)[:3, :3].T
+    affine[:3, :3] = columns * (1.0 if spacing is None else spacing[:3])
+    affine[:3, 3] = 0.0 if origin is None else origin[:3]
     affine[:2] *= -1.0  # LPS+ to RAS+
     return affine

@@ -100,18 +100,20 @@ class _Header:
         return found
 
 
-def read_nrrd(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
+def read_nrrd(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
     """Read a volume.
 
     Parameters
     ----------
     path : str or PathLike
         The file, or of data kept apart its header.
+    components : bool, default: False
+        Whether there may be axes besides those of space: of colours, vectors or times.
 
     Returns
     -------
     values : ndarray
-        ``(nx, ny, nz)``, of the file's type; of raw encoding a memory map.
+        ``(nx, ny, nz)``, of the file's type; of raw encoding a memory map. Axes of components follow these.
     affine : ndarray
         ``(4, 4)`` voxel indices to mm, RAS+ where the file says what its space is.
 
@@ -128,9 +130,11 @@ def read_nrrd(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
     sizes = [_whole(header, "sizes", word) for word in header.need("sizes").split()]
     if len(sizes) != dimension or min(sizes, default=0) < 1:
         raise header.error(f"sizes: {header.need('sizes')}", f"{dimension} whole numbers above 0")
-    axes = _spatial_axes(header, sizes)
-    values = _data(header, sizes).reshape([sizes[axis] for axis in axes], order="F")
-    return values, _affine(header, axes, dimension)
+    axes = _spatial_axes(header, sizes, components)
+    others = [axis for axis in range(dimension) if axis not in axes and sizes[axis] > 1]
+    order = [*axes, *others, *_single(axes, others, dimension)]
+    values = _data(header, sizes).reshape(sizes, order="F").transpose(order)
+    return values.reshape([sizes[axis] for axis in (*axes, *others)], order="F"), _affine(header, axes, dimension)
 
 
 def header_fields(path: Path) -> dict[str, str]:
@@ -168,8 +172,13 @@ def _whole(header: _Header, name: str, word: str) -> int:
         raise header.error(f"{name}: {word}", "a whole number") from None
 
 
-def _spatial_axes(header: _Header, sizes: list[int]) -> list[int]:
-    """The three axes of space; others must have one entry each."""
+def _single(axes: list[int], others: list[int], dimension: int) -> list[int]:
+    """The axes of one entry that are neither of space nor of components."""
+    return [axis for axis in range(dimension) if axis not in axes and axis not in others]
+
+
+def _spatial_axes(header: _Header, sizes: list[int], components: bool) -> list[int]:
+    """The three axes of space; others must have one entry each, unless they may be components."""
     directions = header.vectors("space directions")
     kinds = header.get("kinds")
     named = kinds.split() if kinds else ["???"] * len(sizes)
@@ -183,7 +192,7 @@ def _spatial_axes(header: _Header, sizes: list[int]) -> list[int]:
     if len(axes) > 3:  # of older files that say nothing of their axes
         axes = [axis for axis in axes if sizes[axis] > 1]
     others = [axis for axis in range(len(sizes)) if axis not in axes and sizes[axis] > 1]
-    if len(axes) != 3 or others:
+    if len(axes) != 3 or (others and not components):
         kind = f" of the kinds {kinds}" if kinds else ""
         raise header.error(
             f"{len(sizes)} axes of the sizes {' x '.join(map(str, sizes))}{kind}",

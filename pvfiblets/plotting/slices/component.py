@@ -1,0 +1,198 @@
+"""``plotter.add_slices(...)`` and ``plotter.slices``.
+
+PyVista finds this module by two entry points and imports it when a plotter is first asked for either name.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+
+import pyvista as pv
+
+from pvfiblets.plotting.call_signature import document, plotter_method
+from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings import arguments as settings_of_call
+from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import numpy as np
+
+    from pvfiblets.plotting.slices.stack import SliceStack
+    from pvfiblets.slices.image import SliceImage
+
+    Source: TypeAlias = str | PathLike[str] | SliceImage | np.ndarray | tuple[Any, Any] | pv.ImageData
+
+
+@pv.register_plotter_component("slices")
+class SlicesComponent:
+    """The slices of one plotter.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+        The plotter it belongs to.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pyvista as pv
+    >>> pl = pv.Plotter(off_screen=True)
+    >>> slices = pl.slices.add(np.random.default_rng(0).random((8, 9, 10)))
+    >>> list(pl.slices) == [slices]
+    True
+    """
+
+    _SETTINGS: ClassVar[type[SliceSettings]] = SliceSettings
+    COMMON: ClassVar[type[SliceCommon]] = SliceCommon
+    NAME: ClassVar[str] = "slices"
+    ADD: ClassVar[str] = "add_slices"
+    OWN: ClassVar[frozenset[str]] = frozenset()
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter: Any = weakref.proxy(plotter)
+        self._stacks: list[SliceStack] = []
+
+    def __iter__(self) -> Iterator[SliceStack]:
+        return iter(tuple(self._stacks))
+
+    def __len__(self) -> int:
+        return len(self._stacks)
+
+    def add(self, /, source: Any, **arguments: Any) -> SliceStack:
+        """Make slices and add them to the plotter."""
+        common = {name: arguments.pop(name, one.default) for name, one in SliceCommon.DECLARED.items()}
+        known = set(settings_of_call(SliceSettings))
+        given = Given(SliceSettings, arguments)
+        own = {name: value for name, value in arguments.items() if name not in known}
+        unknown = next((name for name in own if name not in self.OWN), None)
+        if unknown is not None:
+            raise TypeError(f"{self.ADD}() got an unexpected keyword argument {unknown!r}")
+        stack = self._make(source, given, **own)
+        if common["name"] is not None:
+            for other in self:
+                if other.name == common["name"]:
+                    other.remove()
+            stack.name = str(common["name"])
+        else:
+            taken = {other.name for other in self}
+            number = 1
+            while stack.name in taken:
+                number += 1
+                stack.name = f"slices {number}"
+        self._enter(stack, bool(common["pickable"]), common["reset_camera"])
+        if common["render"]:
+            self._plotter.render()
+        return stack
+
+    def _make(
+        self,
+        source: Source,
+        settings: Given,
+        *,
+        position: Any = None,
+        planes: str | Iterable[str] = ("axial", "coronal", "sagittal"),
+        axes: str | np.ndarray = "world",
+        kind: str | None = None,
+        labels: Any = None,
+        modulate: Any = None,
+    ) -> SliceStack:
+        """Add axial, coronal and sagittal slices of an image to the scene.
+
+        The slices lie where the image's affine puts them, on any grid, sheared ones too, and show streamlines and
+        meshes before and behind them. More images are laid over the first by ``slices.add(...)``, up to eight.
+
+        Parameters
+        ----------
+        source : path, nibabel image, (array, affine), array, pyvista.ImageData or SliceImage
+            What to slice: NIfTI 1 and 2, MGH, MIF, NRRD and MetaImage files among others. An image of four axes
+            shows the volume ``index``.
+        position : (3,) array, optional
+            Where the planes meet, mm; the image's middle by default.
+        planes : str or iterable of str, default: ("axial", "coronal", "sagittal")
+            Which planes.
+        axes : {"world", "image"} or (3, 3) array, default: "world"
+            Along what the planes lie: the scanner's axes, those of the image, as near as right angles allow, or
+            a rotation whose columns point to the right, to the front and up.
+        kind : {"scalars", "rgb", "direction", "labels"}, optional
+            What the numbers mean. By default bytes with three or four of them per voxel are colours, files that say
+            so labels, and all others scalars. ``"direction"`` shows vectors, such as V1, by the size of their parts
+            along right, front and up as red, green and blue.
+        labels : path, mapping or LabelTable, optional
+            Names and colours of labels: a colour table of FreeSurfer, a description of labels of ITK-SNAP, a ``.tsv``
+            of BIDS, a GIFTI file, or a dict such as ``{17: ("hippocampus", "yellow")}``. With it numbers are labels.
+        modulate : image, optional
+            What brightens direction-coded colours, such as FA; any of what ``source`` may be, on any grid.
+
+        Returns
+        -------
+        SliceStack
+            ``position``, ``layers`` and ``planes`` are live; ``remove()`` takes all away.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        TypeError
+            If ``source`` is of an unknown kind.
+        ValueError
+            If an argument has no meaning, or a file is damaged.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> x, y, z = np.mgrid[:40, :50, :45]
+        >>> ball = np.exp(-((x - 20) ** 2 + (y - 25) ** 2 + (z - 22) ** 2) / 200.0)
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> slices = pl.add_slices(ball, clim=(0, 1))
+        >>> hot = slices.add(ball, cmap="hot", below=0.7, opacity=0.5)
+        >>> slices.position = 20, 25, 30
+        >>> round(slices.values()["image"], 3)
+        0.726
+        """
+        from pvfiblets.plotting.slices.stack import SliceStack
+
+        stack = SliceStack("slices", planes, axes)
+        stack.put(source, settings, kind=kind, labels=labels, modulate=modulate)
+        if position is not None:
+            stack.position = position
+        return stack
+
+    # Life cycle ---------------------------------------------------------------------------------
+
+    def _enter(self, stack: SliceStack, pickable: bool, reset_camera: bool | None) -> None:
+        if reset_camera is None and self._plotter.camera_set:
+            reset_camera = False
+        renderer = self._plotter.renderer
+        for plane in stack:
+            self._plotter.add_actor(
+                plane.actor, name=f"{stack.name} {plane.name}", pickable=pickable, reset_camera=False, render=False
+            )
+            plane.enter(renderer)
+        if reset_camera or (reset_camera is None and not self._plotter.camera_set):
+            self._plotter.reset_camera(render=False)
+        self._stacks.append(stack)
+        stack.removed_by(self._remove)
+
+    def _remove(self, stack: SliceStack) -> None:
+        if stack in self._stacks:
+            self._stacks.remove(stack)
+        for plane in stack:
+            plane.leave()
+            self._plotter.remove_actor(plane.actor, reset_camera=False, render=False)
+
+    def __plotter_close__(self) -> None:
+        """Forget all; PyVista calls this before the render window goes."""
+        for stack in self:
+            stack.removed_by(None)
+            for plane in stack:
+                plane.leave()
+        self._stacks.clear()
+
+
+document(SlicesComponent)
+AddSlices = plotter_method(SlicesComponent)

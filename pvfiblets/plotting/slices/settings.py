@@ -1,0 +1,134 @@
+"""What can be set of a layer of slices, said once."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral, Real
+from typing import Any
+
+from pvfiblets.plotting.setting_places import Place
+from pvfiblets.plotting.settings import Argument, Setting, Settings, truth
+from pvfiblets.plotting.shared_settings import CMAP, Common
+
+__all__ = ["LAYER", "SliceCommon", "SliceSettings"]
+
+
+class _Layer(Place):
+    """A value of the layer's own; its slices are made anew with the next render."""
+
+    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+        return actor._state[setting.field]  # noqa: SLF001 - of the class that it is part of
+
+    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+        actor._write(setting.field, value)  # noqa: SLF001
+
+
+LAYER = _Layer()
+
+
+def _pair(name: str, value: Any, expected: str) -> tuple[float, float]:
+    try:
+        low, high = (float(part) for part in value)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ValueError(f"{name} is {value!r}; give {expected}")
+    return low, high
+
+
+def _window(name: str, value: Any) -> Any:
+    """Return a window: two numbers, one for a window about 0, or None."""
+    if value is None:
+        return None
+    if isinstance(value, Real) and not isinstance(value, bool):
+        value = -abs(float(value)), abs(float(value))
+    return _pair(name, value, "two finite numbers, the low one first, such as (0, 1)")
+
+
+def _percentiles(name: str, value: Any) -> tuple[float, float]:
+    expected = "two percentages from 0 to 100, the low one first, such as (1, 99)"
+    low, high = _pair(name, value, expected)
+    if low < 0.0 or high > 100.0:
+        raise ValueError(f"{name} is {value!r}; give {expected}")
+    return low, high
+
+
+def _threshold(name: str, value: Any) -> float | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, Real) or math.isnan(float(value)):
+        raise ValueError(f"{name} is {value!r}; give a number, or None for no threshold")
+    return float(value)
+
+
+def _index(name: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise ValueError(f"{name} is {value!r}; give a whole number, which counts volumes from 0")
+    return int(value)
+
+
+class SliceSettings(Settings):
+    """What can be set of a layer of slices."""
+
+    cmap: Setting[Any] = Setting(
+        "gray",
+        "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
+        header='str, list, colormap or LookupTable, default: "gray"',
+        where=LAYER,
+        check=lambda _name, value: CMAP.check(value),
+    )
+    clim: Setting[tuple[float, float]] = Setting(
+        None,
+        "Values of the first and the last colour, the window; ``None`` sets that of ``percentiles``.",
+        argument="Values of the first and the last colour, the window; those of ``percentiles`` by default. Of "
+        "direction-coded images, weights of black and of full colour.",
+        header="float or (float, float), optional",
+        where=LAYER,
+        check=_window,
+        read=lambda layer: layer.window,
+    )
+    percentiles: Setting[tuple[float, float]] = Setting(
+        (1.0, 99.0),
+        "Percentages of the voxels, those of 0 left out, below both ends of the window, where ``clim`` says none.",
+        kind="tuple[float, float]",
+        header="(float, float), default: (1, 99)",
+        where=LAYER,
+        check=_percentiles,
+    )
+    log_scale: Setting[bool] = Setting(
+        False, "Whether the colours spread over the logarithm of the values.", kind="bool", where=LAYER, check=truth
+    )
+    below: Setting[float | None] = Setting(
+        None, "Values below are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold
+    )
+    above: Setting[float | None] = Setting(
+        None, "Values above are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold
+    )
+    opacity: Setting[float] = Setting(
+        1.0, "From 0, not to be seen, to 1.", kind="float", where=LAYER, low=0.0, high=1.0
+    )
+    blend: Setting[str] = Setting(
+        "over", "Whether it lies over the layers before it, or is added to them.", kind="str",
+        choices=("over", "add"), where=LAYER,
+    )  # fmt: skip
+    interpolation: Setting[str] = Setting(
+        "linear", "Between voxels; labels are never interpolated.", kind="str",
+        choices=("nearest", "linear", "cubic"), where=LAYER,
+    )  # fmt: skip
+    index: Setting[int] = Setting(
+        0, "Which volume of an image of four axes is shown, from 0; negative ones count from the end.", kind="int",
+        where=LAYER, check=_index,
+    )  # fmt: skip
+    outline: Setting[bool] = Setting(
+        False, "Whether labels are shown by their outlines alone.", kind="bool", where=LAYER, check=truth
+    )
+    visible: Setting[bool] = Setting(True, "Whether it is shown.", kind="bool", where=LAYER, check=truth)
+
+
+class SliceCommon(Settings):
+    """Arguments that say how slices come into the plotter."""
+
+    name = Argument(None, "Replaces the slices of the same name.", kind="str | None")
+    pickable = Argument(True, "Whether pickers find the slices.", kind="bool")
+    reset_camera = Common.DECLARED["reset_camera"]
+    render = Common.DECLARED["render"]

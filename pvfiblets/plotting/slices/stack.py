@@ -1,0 +1,391 @@
+"""Slices of images in layers, in a 3-D view: what ``plotter.add_slices`` returns."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.slices.layer import SliceLayer
+from pvfiblets.plotting.slices.plane import SliceActor, before_render
+from pvfiblets.plotting.slices.settings import SliceSettings
+from pvfiblets.slices import colours
+from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, covered, grid_of, nearest_frame, plane_axes
+from pvfiblets.slices.image import as_slice_image
+
+__all__ = ["MOST_LAYERS", "SlicePlane", "SliceStack"]
+
+Array = npt.NDArray[np.float64]
+
+MOST_LAYERS = 8
+OVERSAMPLED = 2
+"""Pixels of a slice in the 3-D view along the finest voxel of all layers."""
+MOST_ACROSS = 768
+"""Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
+
+
+class SlicePlane:
+    """One of the planes of a stack.
+
+    Attributes
+    ----------
+    name : str
+    actor : SliceActor
+    """
+
+    def __init__(self, stack: SliceStack, name: str, axes: tuple[Array, Array] | None = None) -> None:
+        self._stack = weakref.proxy(stack)
+        self._axes = axes
+        self._grid: PlaneGrid | None = None
+        self._stale = True
+        self._visible = True
+        self.name = name
+        self.actor = SliceActor()
+        self._end: Callable[[], None] = lambda: None
+
+    @property
+    def axes(self) -> tuple[Array, Array]:
+        """Unit directions along and up the slice, ``(3,)`` each."""
+        return plane_axes(self._stack.frame, self.name) if self._axes is None else self._axes
+
+    @property
+    def normal(self) -> Array:
+        """Unit direction across the slice; setting it turns the plane about the stack's position."""
+        along, up = self.axes
+        return np.cross(along, up)
+
+    @normal.setter
+    def normal(self, normal: Any) -> None:
+        self._axes = turned(self.axes, normal)
+        self.update()
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is shown."""
+        return self._visible
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
+        self._visible = bool(visible)
+        self.update()
+
+    @property
+    def grid(self) -> PlaneGrid | None:
+        """Pixels of the slice; None where the plane misses all images."""
+        return self._grid
+
+    def update(self) -> None:
+        """Lie where the stack's position is; colours follow with the next render."""
+        stack, (along, up) = self._stack, self.axes
+        layers = [layer for layer in stack.layers if layer.visible]
+        bounds = covered((layer.image.corners for layer in layers), stack.position, along, up)
+        self._grid = None
+        if bounds is not None:
+            pixel = min(float(layer.image.voxel_size.min()) for layer in layers) / OVERSAMPLED
+            pixel = max(pixel, float(max(bounds[1] - bounds[0], bounds[3] - bounds[2])) / MOST_ACROSS)
+            self._grid = grid_of(bounds, stack.position, along, up, pixel)
+            self.actor.place(self._grid)
+        self.actor.visibility = self._visible and self._grid is not None
+        self._stale = True
+
+    def refresh(self) -> None:
+        """Make the colours if they are out of date and the plane is shown."""
+        if self._stale and self._grid is not None and self._visible:
+            self.actor.show(self._stack.pixels(self._grid), self._stack.smooth)
+            self._stale = False
+
+    def enter(self, renderer: Any) -> None:
+        """Follow a renderer's frames."""
+        self._end = before_render(renderer, self, "refresh")
+
+    def leave(self) -> None:
+        """Follow them no more."""
+        self._end()
+
+
+class SliceStack:
+    """Axial, coronal and sagittal slices of up to eight images; ``plotter.add_slices`` makes it.
+
+    Its properties may be set at any time and show with the next render. ``stack["axial"]`` is one of its planes.
+
+    Parameters
+    ----------
+    name : str
+    planes : iterable of str
+        Of ``"axial"``, ``"coronal"`` and ``"sagittal"``.
+    axes : str or (3, 3) array
+        As of ``plotter.add_slices``.
+    """
+
+    def __init__(self, name: str, planes: Iterable[str], axes: Any = "world") -> None:
+        self.name = name
+        self._layers: list[SliceLayer] = []
+        self._position: Array = np.zeros(3)
+        self._axes_given = axes
+        self._frame: Array = np.eye(3) if isinstance(axes, str) else checked_frame(axes)
+        if isinstance(axes, str) and axes not in ("world", "image"):
+            raise ValueError(f'axes is {axes!r}; give "world", "image" or a (3, 3) array of unit directions')
+        names = (planes,) if isinstance(planes, str) else tuple(planes)
+        for one in names:
+            if one not in ORIENTATIONS:
+                raise ValueError(f"planes has {one!r}; choose among {ORIENTATIONS}")
+        self._planes = {one: SlicePlane(self, one) for one in dict.fromkeys(names)}
+        self._watchers: list[Callable[[], None]] = []
+        self._removal: Callable[[SliceStack], None] | None = None
+
+    def __repr__(self) -> str:
+        where = ", ".join(f"{part:g}" for part in self._position)
+        layers = [one.name for one in self._layers]
+        return f"<SliceStack {self.name!r}: {', '.join(self._planes)} at ({where}) mm, layers {layers}>"
+
+    def __getitem__(self, name: str) -> SlicePlane:
+        if name not in self._planes:
+            raise KeyError(f"there is no plane {name!r}; there are: {', '.join(self._planes)}")
+        return self._planes[name]
+
+    def __iter__(self) -> Iterator[SlicePlane]:
+        return iter(tuple(self._planes.values()))
+
+    # Layers -------------------------------------------------------------------------------------
+
+    @property
+    def layers(self) -> tuple[SliceLayer, ...]:
+        """All layers, the lowest first."""
+        return tuple(self._layers)
+
+    def layer(self, name: str) -> SliceLayer:
+        """Return the layer of a name."""
+        for one in self._layers:
+            if one.name == name:
+                return one
+        raise KeyError(f"there is no layer {name!r}; there are: {', '.join(repr(one.name) for one in self._layers)}")
+
+    def add(
+        self,
+        source: Any,
+        *,
+        kind: str | None = None,
+        labels: Any = None,
+        modulate: Any = None,
+        name: str | None = None,
+        **settings: Any,
+    ) -> SliceLayer:
+        """Lay another image over those that are there.
+
+        Parameters
+        ----------
+        source, kind, labels, modulate
+            As of ``plotter.add_slices``.
+        name : str, optional
+            Of the layer; the file's by default.
+        **settings
+            Those of ``plotter.add_slices`` that are of layers, such as ``cmap``, ``opacity`` or ``blend``.
+
+        Returns
+        -------
+        SliceLayer
+            Its properties may be changed at any time.
+
+        Raises
+        ------
+        ValueError
+            If there are eight layers already, or as of ``plotter.add_slices``.
+        """
+        unknown = next((one for one in settings if one not in SliceSettings.DECLARED), None)
+        if unknown is not None:
+            raise TypeError(
+                f"add() got an unexpected keyword argument {unknown!r}; a layer has {', '.join(SliceSettings.DECLARED)}"
+            )
+        return self.put(source, Given(SliceSettings, settings), kind=kind, labels=labels, modulate=modulate, name=name)
+
+    def put(self, source: Any, given: Given, *, name: str | None = None, **meaning: Any) -> SliceLayer:
+        """Add a layer of settings that are checked already."""
+        if len(self._layers) >= MOST_LAYERS:
+            raise ValueError(f"{self.name!r} has {MOST_LAYERS} layers, as many as there may be; remove one first")
+        layer = SliceLayer(as_slice_image(source, name), given, **meaning)
+        taken = {one.name for one in self._layers}
+        stem, number = layer.name, 2
+        while layer.name in taken:
+            layer.name, number = f"{stem} {number}", number + 1
+        first = not self._layers
+        self._layers.append(layer)
+        reference = weakref.WeakMethod(self.changed)
+
+        def changed() -> None:
+            alive = reference()
+            if alive is not None:
+                alive()
+
+        layer.watch(changed)
+        if first:
+            self._position = layer.image.center
+            if isinstance(self._axes_given, str) and self._axes_given == "image":
+                self._frame = nearest_frame(layer.image.affine)
+        self.changed()
+        return layer
+
+    def remove_layer(self, layer: SliceLayer | str) -> None:
+        """Take a layer, or that of a name, away."""
+        layer = self.layer(layer) if isinstance(layer, str) else layer
+        self._layers.remove(layer)
+        layer.watch(None)
+        self.changed()
+
+    # Place --------------------------------------------------------------------------------------
+
+    @property
+    def position(self) -> Array:
+        """``(3,)`` mm: where all planes meet."""
+        return self._position.copy()
+
+    @position.setter
+    def position(self, position: Any) -> None:
+        self._position = checked_position("position", position)
+        self.changed()
+
+    @property
+    def voxel(self) -> tuple[int, int, int] | None:
+        """The voxel of the lowest layer that holds the position; None outside of it."""
+        return self._layers[0].image.voxel_at(self._position) if self._layers else None
+
+    @voxel.setter
+    def voxel(self, voxel: Any) -> None:
+        affine = self._layers[0].image.affine
+        self.position = affine[:3, :3] @ checked_position("voxel", voxel) + affine[:3, 3]
+
+    @property
+    def frame(self) -> Array:
+        """``(3, 3)`` unit directions, as columns: to the right, to the front and up of the slices."""
+        return self._frame.copy()
+
+    @frame.setter
+    def frame(self, frame: Any) -> None:
+        self._frame = checked_frame(frame)
+        self.changed()
+
+    @property
+    def planes(self) -> Mapping[str, SlicePlane]:
+        """All planes by name."""
+        return MappingProxyType(self._planes)
+
+    def new_plane(self, name: str, normal: Any) -> SlicePlane:
+        """Return another plane, at any angle, through the position; it is in no renderer yet."""
+        plane = SlicePlane(self, name, turned((self._frame[:, 0], self._frame[:, 1]), normal))
+        self._planes[name] = plane
+        plane.update()
+        return plane
+
+    # Pictures and values ------------------------------------------------------------------------
+
+    def pixels(self, grid: PlaneGrid) -> npt.NDArray[np.uint8]:
+        """Return the colours of all layers at the pixels of a plane.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(height, width, 4)`` uint8, the lowest row first; the opacity is 0 where no layer shows anything.
+        """
+        found = None
+        for layer in self._layers:
+            if layer.visible and layer.opacity > 0.0:
+                picture, visible = layer.colours_on(grid)
+                found = colours.blend(found, picture, visible, layer.opacity, layer.blend)
+        if found is None:
+            return np.zeros((grid.shape[1], grid.shape[0], 4), np.uint8)
+        return colours.to_bytes(found)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether colours may be interpolated between pixels."""
+        shown = [one for one in self._layers if one.visible]
+        return all(one.kind != "labels" and one.interpolation != "nearest" for one in shown)
+
+    def values(self, position: Any = None) -> dict[str, Any]:
+        """Return what all layers are at a position.
+
+        Parameters
+        ----------
+        position : (3,) array, optional
+            mm; that of the planes by default.
+
+        Returns
+        -------
+        dict
+            By the layer's name: a number; of labels ``(number, name)``; of colours and vectors ``(n,)``; None outside.
+        """
+        at = self._position if position is None else checked_position("position", position)
+        found = {}
+        for layer in self._layers:
+            value = layer.value_at(at)
+            if layer.labels is not None and value is not None:
+                value = value, layer.labels.name(value)
+            found[layer.name] = value
+        return found
+
+    # Life cycle ---------------------------------------------------------------------------------
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Call that whenever layers, position or directions change."""
+        self._watchers.append(changed)
+
+    def changed(self) -> None:
+        """Have all slices made anew."""
+        for plane in self._planes.values():
+            plane.update()
+        for call in self._watchers:
+            call()
+
+    def removed_by(self, removal: Callable[[SliceStack], None] | None) -> None:
+        """Say what takes it out of its plotter."""
+        self._removal = removal
+
+    def remove(self) -> None:
+        """Take all slices away; twice is harmless."""
+        removal, self._removal = self._removal, None
+        if removal is not None:
+            removal(self)
+
+
+def checked_position(name: str, given: Any) -> Array:
+    """Return three finite numbers."""
+    try:
+        found = np.array(given, np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if found.shape != (3,) or not np.isfinite(found).all():
+        raise ValueError(f"{name} is {given!r}; give three finite numbers")
+    return found
+
+
+def checked_frame(given: Any) -> Array:
+    """Return three unit directions at right angles, right-handed, as columns."""
+    try:
+        found = np.array(given, np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    good = found.shape == (3, 3) and np.isfinite(found).all()
+    if not good or abs(found.T @ found - np.eye(3)).max() > 1e-4 or np.linalg.det(found) < 0.0:
+        raise ValueError(
+            f"axes is {given!r}; give a (3, 3) rotation whose columns point to the right, to the front and up, in mm"
+        )
+    return found
+
+
+def turned(axes: tuple[Array, Array], normal: Any) -> tuple[Array, Array]:
+    """Return two directions of a plane turned, by the least angle, until they stand at right angles to a normal."""
+    n = checked_position("normal", normal)
+    length = float(np.linalg.norm(n))
+    if length == 0.0:
+        raise ValueError("normal is (0, 0, 0); give a direction")
+    n = n / length
+    along, up = axes
+    flat = along - n * float(n @ along)
+    if np.linalg.norm(flat) < 1e-3:  # it points along the slice: its other direction decides
+        flat = np.cross(up, n)
+    flat = flat / np.linalg.norm(flat)
+    return flat, np.cross(n, flat)

@@ -1,0 +1,204 @@
+"""Images in layers of slices: numbers, colours, vectors or labels per voxel, on any grid and affine."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.volumes.image_files import SUFFIXES, colour_fields, read_image, values_of_nibabel
+
+__all__ = ["KINDS", "SliceImage", "as_slice_image"]
+
+Array = npt.NDArray[np.float64]
+
+KINDS = ("scalars", "rgb", "direction", "labels")
+"""What the numbers of a voxel may mean."""
+
+SAMPLED = 1_000_000
+"""Voxels of which percentiles are taken; of larger images every n-th."""
+
+_EXPECTED = (
+    "the path of one of "
+    + ", ".join(SUFFIXES)
+    + ", an image of nibabel, (array, affine), an array, a pyvista.ImageData, or anything with values and affine"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class SliceImage:
+    """An image and where it lies.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        ``(nx, ny, nz, n)``: the last axis counts times, volumes or components.
+    affine : numpy.ndarray
+        ``(4, 4)`` voxel indices to mm; sheared ones, too.
+    name : str
+    is_labels : bool
+        Whether the file says that its numbers are labels.
+    is_colours : bool
+        Whether they are bytes of red, green, blue and maybe opacity.
+    """
+
+    values: npt.NDArray[Any]
+    affine: Array
+    name: str = "image"
+    is_labels: bool = False
+    is_colours: bool = False
+    _percentiles: dict[tuple[float, float, int], tuple[float, float]] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        affine = np.asarray(self.affine, np.float64)
+        if affine.shape != (4, 4) or not np.isfinite(affine).all() or not abs(np.linalg.det(affine[:3, :3])) > 0.0:
+            raise ValueError(
+                f"the affine of {self.name} is {affine.tolist()}; give an invertible (4, 4) matrix from voxels to mm"
+            )
+        if self.values.ndim != 4 or not self.values.size:
+            raise ValueError(
+                f"{self.name} has the shape {self.values.shape}; give (nx, ny, nz) or (nx, ny, nz, n) numbers"
+            )
+        if self.values.dtype.kind not in "biuf":
+            raise ValueError(f"{self.name} holds {self.values.dtype}; give real numbers, such as abs() of complex ones")
+        object.__setattr__(self, "affine", affine)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along each axis."""
+        nx, ny, nz = self.values.shape[:3]
+        return nx, ny, nz
+
+    @property
+    def n_volumes(self) -> int:
+        """Numbers per voxel."""
+        return int(self.values.shape[3])
+
+    @cached_property
+    def inverse(self) -> Array:
+        """``(4, 4)`` mm to voxel indices."""
+        inverse: Array = np.asarray(np.linalg.inv(self.affine), np.float64)
+        return inverse
+
+    @cached_property
+    def voxel_size(self) -> Array:
+        """``(3,)`` mm between voxels along each axis."""
+        sizes: Array = np.linalg.norm(self.affine[:3, :3], axis=0)
+        return sizes
+
+    @cached_property
+    def corners(self) -> Array:
+        """``(8, 3)`` mm: those of the voxels' outer faces."""
+        ends = [(-0.5, n - 0.5) for n in self.shape]
+        at = np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1).reshape(-1, 3)
+        return at @ self.affine[:3, :3].T + self.affine[:3, 3]
+
+    @property
+    def center(self) -> Array:
+        """``(3,)`` mm: the middle of the image."""
+        return self.corners.mean(axis=0)
+
+    def percentiles(self, low: float, high: float, index: int = 0) -> tuple[float, float]:
+        """Return two percentiles of a volume's finite numbers other than 0, which is what lies around a head."""
+        key = low, high, index
+        if key not in self._percentiles:
+            flat = self.values[..., index].ravel(order="K")
+            flat = flat[:: max(1, flat.size // SAMPLED)].astype(np.float64)
+            flat = flat[np.isfinite(flat)]
+            found = flat[flat != 0.0] if (flat != 0.0).any() else flat
+            a, b = (float(v) for v in np.percentile(found, (low, high))) if len(found) else (0.0, 1.0)
+            if not a < b:  # one number throughout, as masks have: nothing is below it
+                a, b = min(a, 0.0), max(b, 0.0)
+                b = b if a < b else a + 1.0
+            self._percentiles[key] = a, b
+        return self._percentiles[key]
+
+    def voxel_at(self, position: npt.ArrayLike) -> tuple[int, int, int] | None:
+        """Return the voxel that holds a position in mm; None outside of the image."""
+        found = self.inverse[:3, :3] @ np.asarray(position, np.float64) + self.inverse[:3, 3]
+        i, j, k = (int(n) for n in np.floor(found + 0.5))
+        return (i, j, k) if all(0 <= v < n for v, n in zip((i, j, k), self.shape, strict=True)) else None
+
+
+def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
+    """Take an image from any source.
+
+    Parameters
+    ----------
+    source : object
+        - The path of a NIfTI (1 and 2), MGH, MIF, NRRD, MetaImage or VTI file.
+        - An image of nibabel.
+        - ``(nx, ny, nz)`` or ``(nx, ny, nz, n)`` numbers, whose voxels are 1 mm wide, or ``(array, affine)``.
+        - :class:`pyvista.ImageData`: its active scalars; point data are centres of voxels, cell data voxels.
+        - Anything with ``values`` and ``affine``, such as a density map, or a `SliceImage`.
+    name : str, optional
+        The file's, or ``"image"``, by default.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    TypeError
+        If the source is of another kind.
+    ValueError
+        If a file is damaged, the array has other than three or four axes, or the affine cannot be inverted.
+    """
+    if isinstance(source, SliceImage):
+        return source
+    labels = colours = False
+    own = "image"
+    if isinstance(source, (str, os.PathLike)):
+        path = Path(source).expanduser()
+        values, affine, own, labels = read_image(path)
+    elif hasattr(source, "IsA"):
+        values, affine, own = _of_vtk(source)
+    elif hasattr(source, "dataobj") and hasattr(source, "affine"):
+        if source.affine is None:
+            raise ValueError("the image has no affine; give (array, affine)")
+        values, affine, labels = values_of_nibabel(source)
+    elif hasattr(source, "values") and hasattr(source, "affine"):
+        values, affine, own = np.asarray(source.values), source.affine, str(getattr(source, "name", "image"))
+    elif isinstance(source, tuple) and len(source) == 2 and np.shape(source[1]) == (4, 4):
+        values, affine = np.ma.getdata(np.ma.asanyarray(source[0])), source[1]
+    elif isinstance(source, np.ndarray):
+        values, affine = source, np.eye(4)
+    else:
+        raise TypeError(f"slices cannot be made of a {type(source).__name__}; give {_EXPECTED}")
+    if values.dtype.names is not None:
+        values = colour_fields(values)
+        colours = True
+    name = name or own
+    if values.ndim > 4:  # NIfTI keeps components of vectors on the fifth axis, with one time before them
+        values = values.reshape(*values.shape[:3], -1, order="F")
+    if values.ndim == 3:
+        values = values[..., None]
+    if values.dtype.kind == "b":
+        values = values.view(np.uint8)
+    colours = colours or (values.dtype == np.uint8 and values.ndim == 4 and values.shape[3] in (3, 4))
+    return SliceImage(values, np.asarray(affine, np.float64), name, labels, bool(colours))
+
+
+def _of_vtk(image: Any) -> tuple[npt.NDArray[Any], Array, str]:
+    """Return the active scalars of an image of VTK, and where they lie."""
+    if not (image.IsA("vtkImageData") and hasattr(image, "active_scalars_info")):
+        raise TypeError(f"slices cannot be made of a {type(image).__name__}; give a pyvista.ImageData")
+    association, name = image.active_scalars_info
+    if name is None:
+        raise ValueError(
+            f"the image has no active scalars among its arrays {image.array_names}; choose by "
+            "image.set_active_scalars(name)"
+        )
+    of_cells = getattr(association, "name", "POINT") == "CELL"
+    data = np.asarray((image.cell_data if of_cells else image.point_data)[name])
+    sides = [max(n - 1, 1) if of_cells else n for n in image.dimensions]
+    place = np.array(image.index_to_physical_matrix, np.float64)
+    first = np.array(image.extent[0::2], np.float64)
+    if of_cells:
+        first += [0.5 if n > 1 else 0.0 for n in image.dimensions]
+    place[:3, 3] += place[:3, :3] @ first
+    return data.reshape(*sides, *data.shape[1:], order="F"), place, str(name)

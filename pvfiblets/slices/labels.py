@@ -1,0 +1,185 @@
+"""Names and colours of labels: tables of FreeSurfer, ITK-SNAP, BIDS and GIFTI."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.errors import FormatError
+
+__all__ = ["LabelTable", "as_label_table", "distinct_colours"]
+
+SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii")
+
+_ITKSNAP = re.compile(r'^\s*(\d+)\s+(\d+)\s+(\d+)\s+(\d+)\s+([\d.eE+-]+)\s+([01])\s+([01])\s+"(.*)"\s*$')
+_FREESURFER = re.compile(r"^\s*(-?\d+)\s+(\S.*?)\s+(\d+)\s+(\d+)\s+(\d+)(?:\s+(\d+))?\s*$")
+
+
+@dataclass
+class LabelTable:
+    """Names and colours of labels.
+
+    Attributes
+    ----------
+    names : dict of int to str
+    colours : dict of int to tuple
+        Red, green, blue, opacity, from 0 to 255. Labels that are missing have colours of their own making.
+    """
+
+    names: dict[int, str] = field(default_factory=dict)
+    colours: dict[int, tuple[int, int, int, int]] = field(default_factory=dict)
+
+    def name(self, label: int) -> str:
+        """Return a label's name; its number if it has none."""
+        return self.names.get(label, str(label))
+
+    def rows(self, labels: npt.NDArray[np.int64]) -> npt.NDArray[np.uint8]:
+        """Return ``(n, 4)`` colours of labels; 0 is not to be seen, whatever a table says of it."""
+        found = distinct_colours(labels)
+        for row, label in enumerate(labels.tolist()):
+            if label in self.colours:
+                found[row] = self.colours[label]
+        found[labels == 0, 3] = 0
+        return found
+
+
+def distinct_colours(labels: npt.NDArray[np.int64]) -> npt.NDArray[np.uint8]:
+    """Return ``(n, 4)`` colours that differ much between labels that follow each other, the same for the same label."""
+    turn = (np.asarray(labels, np.float64) * 0.61803398875) % 1.0  # the golden ratio: hues far apart
+    step = np.asarray(labels, np.int64) % 3
+    value, saturation = np.array([1.0, 0.8, 0.95])[step], np.array([0.75, 0.85, 0.5])[step]
+    wave = np.clip(abs((turn[:, None] * 6.0 + np.array([0.0, 4.0, 2.0])) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    rgb = value[:, None] * (1.0 - saturation[:, None] * (1.0 - wave))
+    out = np.full((len(turn), 4), 255, np.uint8)
+    out[:, :3] = np.rint(255.0 * rgb)
+    return out
+
+
+def as_label_table(given: Any) -> LabelTable:
+    """Take a table of labels from a file, a mapping, or as it is.
+
+    Parameters
+    ----------
+    given : path, LabelTable or mapping
+        - A colour table of FreeSurfer (``FreeSurferColorLUT.txt``, ``.ctab``).
+        - A description of labels of ITK-SNAP (``.label``, ``.txt``).
+        - A table of BIDS (``.tsv``), with the columns ``index``, ``name`` and maybe ``color`` (``#rrggbb``).
+        - A file of GIFTI with a table of labels (``.label.gii``).
+        - By number: a name, a colour, or both as ``(name, colour)``; colours as matplotlib names them.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    FormatError
+        If a file holds no such table.
+    TypeError, ValueError
+        If it is something else.
+    """
+    if isinstance(given, LabelTable):
+        return given
+    if isinstance(given, Mapping):
+        return _of_mapping(given)
+    if not isinstance(given, (str, os.PathLike)):
+        raise TypeError(
+            f"labels is a {type(given).__name__}; give the path of a table of FreeSurfer, ITK-SNAP, BIDS or GIFTI, or "
+            "a dict such as {17: 'hippocampus'}"
+        )
+    path = Path(given).expanduser()
+    if path.name.lower().endswith(".gii"):
+        return _of_gifti(path)
+    text = path.read_text(encoding="utf-8", errors="replace")
+    table = _of_bids(path, text) if path.name.lower().endswith(".tsv") else _of_lines(text)
+    if not table.names and not table.colours:
+        raise FormatError(
+            path, None, "no line of a table of labels",
+            "lines 'number name R G B A' (FreeSurfer), 'number R G B A visible mesh \"name\"' (ITK-SNAP), or a .tsv "
+            "with the columns index and name (BIDS)",
+        )  # fmt: skip
+    return table
+
+
+def _of_mapping(given: Mapping[Any, Any]) -> LabelTable:
+    from pyvista import Color
+
+    table = LabelTable()
+    for label, said in given.items():
+        name, colour = said if isinstance(said, tuple) and len(said) == 2 else (said, None)
+        if not isinstance(name, str) or (colour is None and name.startswith("#")):
+            name, colour = None, said
+        if name is not None:
+            table.names[int(label)] = name
+        if colour is not None:
+            red, green, blue, alpha = Color(colour).int_rgba
+            table.colours[int(label)] = red, green, blue, alpha
+    return table
+
+
+def _of_lines(text: str) -> LabelTable:
+    """Return a table of FreeSurfer or of ITK-SNAP, whichever its lines are."""
+    table = LabelTable()
+    for line in text.splitlines():
+        if line.lstrip().startswith("#") or not line.strip():
+            continue
+        if found := _ITKSNAP.match(line):
+            label, (red, green, blue) = int(found[1]), (int(found[n]) for n in (2, 3, 4))
+            table.names[label] = found[8]
+            alpha = round(255 * min(max(float(found[5]), 0.0), 1.0)) if found[6] == "1" else 0
+            table.colours[label] = _bytes(red, green, blue, alpha)
+        elif found := _FREESURFER.match(line):
+            # Its last column is 255 less the opacity in some versions and 0 for opaque in all that are used.
+            table.names[int(found[1])] = found[2]
+            table.colours[int(found[1])] = _bytes(int(found[3]), int(found[4]), int(found[5]), 255)
+    return table
+
+
+def _bytes(*parts: int) -> tuple[int, int, int, int]:
+    red, green, blue, alpha = (min(max(part, 0), 255) for part in parts)
+    return red, green, blue, alpha
+
+
+def _of_bids(path: Path, text: str) -> LabelTable:
+    rows = list(csv.DictReader(text.splitlines(), delimiter="\t"))
+    columns = {str(name).strip().lower(): name for name in (rows[0] if rows else {})}
+    index, name = (next((columns[one] for one in many if one in columns), None) for many in (
+        ("index", "label", "id", "value"), ("name", "abbreviation", "region", "mapping"),
+    ))  # fmt: skip
+    if index is None or name is None:
+        found = ", ".join(columns) or "none"
+        raise FormatError(path, None, f"the columns {found}", "the columns index and name, as of BIDS")
+    colour = next((columns[one] for one in ("color", "colour") if one in columns), None)
+    table = LabelTable()
+    for row in rows:
+        word = str(row[index]).strip()
+        if not re.fullmatch(r"-?\d+(\.0*)?", word):
+            raise FormatError(path, None, f"index {word!r}", "a whole number")
+        label = int(float(word))
+        table.names[label] = str(row[name]).strip()
+        if colour is not None and (hexes := re.fullmatch(r"#?([0-9a-fA-F]{6})", str(row[colour]).strip())):
+            red, green, blue = bytes.fromhex(hexes[1])
+            table.colours[label] = red, green, blue, 255
+    return table
+
+
+def _of_gifti(path: Path) -> LabelTable:
+    import nibabel as nib
+
+    image = nib.load(path)
+    table = LabelTable()
+    for one in getattr(getattr(image, "labeltable", None), "labels", ()):
+        table.names[int(one.key)] = str(one.label)
+        if None not in (one.red, one.green, one.blue):
+            parts = (one.red, one.green, one.blue, 1.0 if one.alpha is None else one.alpha)
+            red, green, blue, alpha = (round(255 * min(max(float(part), 0.0), 1.0)) for part in parts)
+            table.colours[int(one.key)] = red, green, blue, alpha
+    if not table.names:
+        raise FormatError(path, None, "no table of labels", "a GIFTI file with one, such as .label.gii")
+    return table

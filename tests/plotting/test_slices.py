@@ -1,0 +1,314 @@
+"""Slices of images lie where their affines say and have the colours that their layers say."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+
+import nibabel as nib
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets.plotting  # noqa: F401 - registers the components
+from pvfiblets.plotting.slices.resampling import Resampler
+from pvfiblets.slices.frames import covered, grid_of, plane_axes
+from pvfiblets.slices.image import SliceImage, as_slice_image
+
+SHEARED = np.array([[2.0, 0.7, 0.3, -20.0], [-0.4, 1.5, 0.2, 5.0], [0.1, 0.5, 3.0, 9.0], [0.0, 0.0, 0.0, 1.0]])
+MIRRORED = np.diag([-2.0, 1.5, 2.5, 1.0])
+SHAPE = (12, 14, 9)
+
+
+def ramp(affine, weights=(0.03, -0.02, 0.05), shape=SHAPE):
+    """Return numbers that grow evenly in mm: linear interpolation gives them exactly at every position."""
+    at = nib.affines.apply_affine(affine, np.stack(np.mgrid[: shape[0], : shape[1], : shape[2]], axis=-1))
+    return (at @ np.array(weights)).astype(np.float32)
+
+
+def in_the_middle(affine, positions, shape=SHAPE, margin=0.0):
+    """Return which positions lie within the centres of the outer voxels."""
+    voxels = nib.affines.apply_affine(np.linalg.inv(affine), positions)
+    return ((voxels >= margin) & (voxels <= np.array(shape) - 1 - margin)).all(axis=-1)
+
+
+@pytest.mark.parametrize("affine", [SHEARED, MIRRORED], ids=["sheared", "mirrored"])
+@pytest.mark.parametrize("orientation", ["axial", "coronal", "sagittal"])
+@pytest.mark.parametrize("interpolation", ["nearest", "linear", "cubic"])
+def test_values_on_a_plane_are_those_at_nibabels_coordinates(affine, orientation, interpolation):
+    values = np.random.default_rng(0).normal(size=SHAPE).astype(np.float32)
+    image = SliceImage(values[..., None], affine)
+    along, up = plane_axes(np.eye(3), orientation)
+    position = image.center + (0.31, -0.22, 0.43)
+    grid = grid_of(covered([image.corners], position, along, up), position, along, up, 0.41)
+    found = Resampler(values, image.inverse).at(grid, interpolation)
+    voxels = nib.affines.apply_affine(np.linalg.inv(affine), grid.positions())
+    inside = ((voxels > -0.5) & (voxels < np.array(SHAPE) - 0.5)).all(axis=-1)
+    assert inside.sum() > 500
+    np.testing.assert_array_equal(np.isfinite(found), inside)
+    middle = in_the_middle(affine, grid.positions(), margin=1.0)
+    wanted = _interpolated(values, voxels[middle], interpolation)
+    np.testing.assert_allclose(found[middle], wanted, atol=2e-4)
+
+
+def _interpolated(values, voxels, how):
+    """Return values between voxels in float64: the nearest, linear, or cubic after Catmull and Rom."""
+    if how == "nearest":
+        return values[tuple(np.floor(voxels + 0.5).astype(int).T)]
+    base = np.floor(voxels).astype(int)
+    t = voxels - base
+    if how == "linear":
+        weights = np.stack([1 - t, t], axis=-1)
+        first = 0
+    else:
+        weights = 0.5 * np.stack(
+            [-(t**3) + 2 * t**2 - t, 3 * t**3 - 5 * t**2 + 2, -3 * t**3 + 4 * t**2 + t, t**3 - t**2], axis=-1
+        )
+        first = -1
+    out = np.zeros(len(voxels))
+    n = weights.shape[-1]
+    for i, j, k in np.ndindex(n, n, n):
+        share = weights[:, 0, i] * weights[:, 1, j] * weights[:, 2, k]
+        at = np.clip(base + np.array([i, j, k]) + first, 0, np.array(values.shape) - 1)
+        out += share * values[tuple(at.T)]
+    return out
+
+
+@pytest.mark.parametrize("affine", [SHEARED, MIRRORED], ids=["sheared", "mirrored"])
+@pytest.mark.parametrize("orientation", ["axial", "coronal", "sagittal"])
+def test_pixels_of_the_window_show_what_lies_at_their_positions(plotter, affine, orientation):
+    values = ramp(affine)
+    low, high = float(values.min()), float(values.max())
+    slices = plotter.add_slices((values, affine), planes=orientation, clim=(low, high))
+    {"axial": plotter.view_xy, "coronal": plotter.view_xz, "sagittal": plotter.view_yz}[orientation]()
+    plotter.enable_parallel_projection()
+    plotter.show(auto_close=False)
+    picture = plotter.screenshot(return_img=True)[::-1].astype(float)
+    camera = plotter.camera
+    height = 2.0 * camera.parallel_scale
+    toward = np.array(camera.focal_point) - np.array(camera.position)
+    toward /= np.linalg.norm(toward)
+    up = np.array(camera.up)
+    right = np.cross(toward, up)
+    y, x = np.mgrid[:200, :200]
+    step = height / 200.0
+    at = np.array(camera.focal_point) + ((x - 99.5) * step)[..., None] * right + ((y - 99.5) * step)[..., None] * up
+    at = at - ((at - slices.position) @ toward)[..., None] * toward
+    middle = in_the_middle(affine, at, margin=0.5)
+    assert middle.sum() > 2000
+    wanted = 255.0 * (at @ (0.03, -0.02, 0.05) - low) / (high - low)
+    assert abs(picture[middle][:, 0] - wanted[middle]).max() < 4.0
+    outside = ~in_the_middle(affine, at, margin=-1.2)
+    assert not picture[outside].any()
+
+
+def test_a_slice_hides_what_is_behind_it_only_where_it_shows_something(plotter):
+    values = np.zeros(SHAPE)
+    values[:6] = 1.0
+    slices = plotter.add_slices(values, planes="axial", below=0.5, clim=(0, 1), interpolation="nearest")
+    plotter.add_mesh(pv.Plane(center=(5.5, 6.5, 1.0), i_size=40, j_size=40), color="red", lighting=False)
+    plotter.view_xy()
+    plotter.camera.zoom(3)
+    plotter.show(auto_close=False)
+    picture = plotter.screenshot(return_img=True)
+    colours, counts = np.unique(picture.reshape(-1, 3), axis=0, return_counts=True)
+    assert {tuple(c) for c in colours.tolist()} == {(255, 0, 0), (255, 255, 255)}
+    assert counts.min() > 200
+    slices.layers[0].opacity = 0.5
+    plotter.render()
+    picture = plotter.screenshot(return_img=True)
+    assert (abs(picture.astype(int) - (255, 128, 128)).max(axis=2) <= 1).sum() > 200
+
+
+def test_the_window_is_of_percentiles_and_follows_the_volume(plotter):
+    rng = np.random.default_rng(0)
+    values = np.concatenate([np.zeros((2, 20, 20, 3)), rng.normal(100, 10, (18, 20, 20, 3)) * [1, 2, 3]])
+    slices = plotter.add_slices((values, np.eye(4)), percentiles=(2, 98))
+    layer = slices.layers[0]
+    for index in range(3):
+        layer.index = index
+        wanted = np.percentile(values[2:, ..., index], (2, 98))
+        np.testing.assert_allclose(layer.clim, wanted)
+        at = slices.values()["image"]
+        np.testing.assert_allclose(at, values[9:11, 9:11, 9:11, index].mean(), rtol=1e-6)
+    layer.clim = 7
+    assert layer.clim == (-7.0, 7.0)
+    with pytest.raises(ValueError, match="index is 3; image has 3 volumes"):
+        layer.index = 3
+
+
+def test_labels_have_names_and_colours_and_are_never_mixed(plotter):
+    values = np.zeros((10, 10, 10), np.int32)
+    values[2:5], values[5:8] = 17, 2_000_000_011
+    slices = plotter.add_slices(
+        values, labels={17: ("hippocampus", "yellow"), 2_000_000_011: ("far", (0, 0, 255))}, planes="axial",
+        position=(3, 4, 5),
+    )
+    assert slices.values() == {"image": (17, "hippocampus")}
+    pixels = slices.pixels(slices["axial"].grid)
+    found = {tuple(c) for c in pixels.reshape(-1, 4).tolist()}
+    assert found == {(0, 0, 0, 0), (255, 255, 0, 255), (0, 0, 255, 255)}
+    full = (pixels[..., 3] > 0).sum()
+    slices.layers[0].outline = True
+    assert 0 < (slices.pixels(slices["axial"].grid)[..., 3] > 0).sum() < 0.5 * full
+    slices.position = (0, 0, 0)
+    assert slices.values() == {"image": (0, "0")}
+    with pytest.raises(ValueError, match="labels are whole numbers"):
+        plotter.add_slices(values + 0.5, labels={1: "one"})
+
+
+def test_vectors_are_colours_of_direction_brightened_by_an_image_on_another_grid(plotter):
+    vectors = np.zeros((8, 8, 8, 3), np.float32)
+    vectors[:4, ..., 0], vectors[4:, ..., 2] = -2.0, 1.0
+    weights = np.full((4, 4, 4), 0.5), np.diag([2.0, 2.0, 2.0, 1.0]) + np.array([[0, 0, 0, 0.5]] * 3 + [[0] * 4])
+    shown = {"modulate": weights, "clim": (0, 1), "planes": "axial", "interpolation": "nearest"}
+    slices = plotter.add_slices((vectors, np.eye(4)), **shown)
+    assert slices.layers[0].kind == "direction"
+    found = {tuple(c) for c in slices.pixels(slices["axial"].grid).reshape(-1, 4).tolist()}
+    assert found == {(128, 0, 0, 255), (0, 0, 128, 255)}
+    slices.layers[0].clim = (0.0, 0.5)
+    found = {tuple(c) for c in slices.pixels(slices["axial"].grid).reshape(-1, 4).tolist()}
+    assert found == {(255, 0, 0, 255), (0, 0, 255, 255)}
+    slices.layers[0].below = 0.6
+    assert not slices.pixels(slices["axial"].grid).any()
+    np.testing.assert_array_equal(slices.values((1, 1, 1))["image"], [-2.0, 0.0, 0.0])
+
+
+def test_bytes_of_three_are_colours(plotter):
+    values = np.zeros((6, 6, 6, 3), np.uint8)
+    values[..., 1] = 200
+    slices = plotter.add_slices((values, np.eye(4)), planes="coronal")
+    assert slices.layers[0].kind == "rgb"
+    assert {tuple(c) for c in slices.pixels(slices["coronal"].grid).reshape(-1, 4).tolist()} == {(0, 200, 0, 255)}
+    fields = np.zeros((6, 6, 6), [("R", "u1"), ("G", "u1"), ("B", "u1")])
+    fields["B"] = 9
+    assert as_slice_image((fields, np.eye(4))).values[0, 0, 0].tolist() == [0, 0, 9]
+
+
+def test_layers_are_laid_over_each_other_and_there_are_eight_at_most(plotter):
+    slices = plotter.add_slices(np.ones((5, 5, 5)), clim=(0, 1), planes="axial")
+    red = slices.add(np.ones((5, 5, 5)), cmap=["red", "red"], opacity=0.25)
+    grid = slices["axial"].grid
+    np.testing.assert_allclose(slices.pixels(grid)[0, 0], [255, 191, 191, 255], atol=1)
+    slices.layers[0].clim, red.blend = (0, 4), "add"
+    np.testing.assert_allclose(slices.pixels(grid)[0, 0], [128, 64, 64, 255], atol=1)
+    red.visible = False
+    np.testing.assert_allclose(slices.pixels(grid)[0, 0], [64, 64, 64, 255], atol=1)
+    assert [one.name for one in slices.layers] == ["image", "image 2"]
+    for _ in range(6):
+        slices.add(np.ones((5, 5, 5)))
+    with pytest.raises(ValueError, match="8 layers"):
+        slices.add(np.ones((5, 5, 5)))
+    slices.remove_layer("image 3")
+    assert len(slices.layers) == 7
+    with pytest.raises(KeyError, match="image 3"):
+        slices.layer("image 3")
+
+
+def test_what_is_set_shows_with_the_next_render(plotter):
+    slices = plotter.add_slices(np.ones((5, 5, 5)), clim=(0, 1), planes="axial")
+    plotter.view_xy()
+    plotter.show(auto_close=False)
+    before = plotter.screenshot(return_img=True)
+    slices.layers[0].cmap = ["blue", "blue"]
+    plotter.render()
+    after = plotter.screenshot(return_img=True)
+    assert before[100, 100].tolist() == [255, 255, 255]
+    assert after[100, 100].tolist() == [0, 0, 255]
+    slices.position = (2.0, 2.0, 30.0)
+    plotter.render()
+    assert not plotter.screenshot(return_img=True).any()
+    slices.voxel = (2, 2, 3)
+    assert slices.position.tolist() == [2.0, 2.0, 3.0]
+    slices["axial"].visible = False
+    plotter.render()
+    assert not plotter.screenshot(return_img=True).any()
+
+
+def test_slices_of_a_tilted_image_may_lie_along_its_own_axes(plotter):
+    angle = np.radians(30.0)
+    tilt = np.array([[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]])
+    affine = np.eye(4)
+    affine[:3, :3] = tilt
+    values = np.broadcast_to(np.arange(9.0), (7, 8, 9))
+    slices = plotter.add_slices((values, affine), axes="image", clim=(0, 8))
+    np.testing.assert_allclose(slices["axial"].normal, tilt[:, 2], atol=1e-12)
+    picture = slices.pixels(slices["axial"].grid)
+    assert np.ptp(picture[..., 0]) <= 1  # one layer of voxels throughout
+    slices["axial"].normal = (0, 0, 1)
+    assert np.ptp(slices.pixels(slices["axial"].grid)[..., 0]) > 60
+    np.testing.assert_allclose(slices["axial"].normal, (0, 0, 1), atol=1e-12)
+
+
+def test_the_same_name_replaces_and_remove_takes_all_away(plotter):
+    first = plotter.add_slices(np.ones((5, 5, 5)), name="t1")
+    second = plotter.add_slices(np.ones((5, 5, 5)), name="t1")
+    assert list(plotter.slices) == [second]
+    assert first["axial"].actor not in plotter.actors.values()
+    assert len(plotter.actors) == 3
+    second.remove()
+    second.remove()
+    assert not plotter.actors
+    assert not len(plotter.slices)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"clim": (1, 0)}, "clim is"), ({"clim": "all"}, "clim is"), ({"percentiles": (-1, 50)}, "percentiles is"),
+        ({"below": "high"}, "below is"), ({"blend": "under"}, "blend is"), ({"interpolation": "sinc"}, "interpolation"),
+        ({"opacity": 2}, "opacity is"), ({"index": 1}, "index is"), ({"cmap": "viridsi"}, "viridis"),
+        ({"planes": "oblique"}, "planes has"), ({"axes": "voxels"}, "axes is"), ({"kind": "heat"}, "kind is"),
+        ({"axes": np.diag([1, 1, -1])}, "axes is"), ({"position": (1, 2)}, "position is"),
+        ({"kind": "rgb"}, "1 numbers per voxel"), ({"kind": "rgb", "labels": {}}, "labels are given"),
+    ],
+)  # fmt: skip
+def test_bad_arguments_are_refused_and_nothing_is_left_behind(plotter, arguments, said):
+    with pytest.raises(ValueError, match=said):
+        plotter.add_slices(np.ones((5, 5, 5)), **arguments)
+    assert not plotter.actors
+    assert not len(plotter.slices)
+
+
+def test_other_kinds_of_sources_are_refused(plotter):
+    with pytest.raises(TypeError, match="a set"):
+        plotter.add_slices({1, 2})
+    with pytest.raises(TypeError, match="opactiy"):
+        plotter.add_slices(np.ones((5, 5, 5)), opactiy=1)
+    with pytest.raises(ValueError, match=r"the shape \(5, 5\)"):
+        plotter.add_slices(np.ones((5, 5)))
+    with pytest.raises(ValueError, match="complex"):
+        plotter.add_slices(np.ones((5, 5, 5), complex))
+
+
+def test_images_of_pyvista_and_nibabel_lie_where_they_lie(plotter):
+    image = pv.ImageData(dimensions=(4, 5, 6), spacing=(1, 2, 3), origin=(7, 8, 9))
+    image["a"] = np.arange(120.0)
+    found = as_slice_image(image)
+    np.testing.assert_allclose(found.affine @ (1, 1, 1, 1), (8, 10, 12, 1))
+    assert found.values[1, 2, 3, 0] == image["a"][1 + 4 * (2 + 5 * 3)]
+    image = pv.ImageData(dimensions=(4, 5, 6))
+    image.cell_data["b"] = np.arange(60.0)
+    np.testing.assert_allclose(as_slice_image(image).affine[:3, 3], 0.5)
+    again = as_slice_image(nib.Nifti1Image(np.ones((3, 4, 5), np.int16), SHEARED))
+    np.testing.assert_allclose(again.affine, SHEARED)
+
+
+def test_a_real_image_says_what_nibabel_says(plotter, shared_data):
+    slices = plotter.add_slices(shared_data / "nv_MNI152_2009_template.nii.gz", interpolation="nearest")
+    image = nib.load(shared_data / "nv_MNI152_2009_template.nii.gz")
+    data = image.get_fdata()
+    rng = np.random.default_rng(0)
+    for voxel in rng.integers(0, data.shape, (20, 3)):
+        position = nib.affines.apply_affine(image.affine, voxel)
+        assert slices.values(position) == {"nv_MNI152_2009_template": data[tuple(voxel)]}
+
+
+def test_a_closed_plotter_leaves_nothing_alive():
+    plotter = pv.Plotter(off_screen=True)
+    slices = plotter.add_slices(np.ones((5, 5, 5)))
+    gone = weakref.ref(slices)
+    plotter.close()
+    del slices, plotter
+    gc.collect()
+    assert gone() is None
