@@ -69,6 +69,21 @@ np.savetxt("sift2.txt", np.linspace(0, 2, 400))
     "docs/seeing-inside.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
+    "docs/slices.md": BRAIN + """
+import nibabel, numpy as np
+pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
+rng = np.random.default_rng(0)
+affine = np.array([[12.0, 1, 0, -80], [-1, 12, 0, -90], [0, 0, 12, -50], [0, 0, 0, 1]])
+labels = rng.choice([0, 17, 53], (12, 14, 10)).astype(np.int16)
+for name, numbers in {
+    "t1": rng.integers(0, 900, (12, 14, 10)).astype(np.int16), "fa": rng.random((12, 14, 10)).astype("f4"),
+    "v1": rng.normal(size=(12, 14, 10, 3)).astype("f4"),
+}.items():
+    nibabel.save(nibabel.Nifti1Image(numbers, affine), f"{name}.nii.gz")
+nibabel.save(nibabel.MGHImage(labels, np.diag([12.0, 12.0, 12.0, 1.0])), "aparc+aseg.mgz")
+with open("FreeSurferColorLUT.txt", "w") as table:
+    table.write("17  Left-Hippocampus  220 216 20 0\\n")
+""",
     "docs/from-vtk.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",
