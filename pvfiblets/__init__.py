@@ -17,6 +17,7 @@ _HOME = {
     "FormatError": "errors",
     "SplineTubes": "tubes.spline_tubes",
     "Streamlines": "streamlines",
+    "clusters": "query.bundles.clusters",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
     "connectome": "query.connectome",
@@ -27,6 +28,7 @@ _HOME = {
     "plot": "plotting.plot",
     "read": "formats",
     "read_volume": "plotting.read_volume",
+    "similar": "query.bundles.similar",
     "table": "query.table",
     "write": "formats",
 }
@@ -48,6 +50,8 @@ if TYPE_CHECKING:
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot
     from .plotting.read_volume import read_volume as read_volume
+    from .query.bundles.clusters import clusters as clusters
+    from .query.bundles.similar import similar as similar
     from .query.connectome import connectome as connectome
     from .query.density import density as density
     from .query.density_map import DensityMap

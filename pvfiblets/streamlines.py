@@ -33,6 +33,8 @@ from pvfiblets.ragged import (
 if TYPE_CHECKING:
     import pyvista
 
+    from pvfiblets.query.bundles.clusters import Clusters
+    from pvfiblets.query.bundles.similar import Similar
     from pvfiblets.query.table import Table
 
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
@@ -139,6 +141,18 @@ class Streamlines:
         from pvfiblets import table
 
         return table(self, ids)
+
+    def clusters(self, threshold: float = 10.0, **options: Any) -> Clusters:
+        """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`."""
+        from pvfiblets import clusters
+
+        return clusters(self, threshold, **options)
+
+    def similar(self, like: Any, distance: float = 10.0, **options: Any) -> Similar:
+        """Find streamlines that run near some others; see :func:`pvfiblets.similar`."""
+        from pvfiblets import similar
+
+        return similar(self, like, distance, **options)
 
     def plot(self, **options: Any) -> Any:
         """Show them in a window of their own; see :func:`pvfiblets.plot`."""

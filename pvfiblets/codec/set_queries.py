@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from ..query.bundles.clusters import Clusters
+    from ..query.bundles.similar import Similar
     from ..query.connectome import Connectome
     from ..query.density_map import DensityMap
     from ..query.table import Table
@@ -84,6 +86,44 @@ class SetQueries:
         from .. import connectome
 
         return connectome(self, labels, **options)
+
+    def clusters(self: Any, threshold: float = 10.0, **options: Any) -> Clusters:
+        """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`.
+
+        Parameters
+        ----------
+        threshold : float, default: 10.0
+            mm from a cluster's mean line.
+        **options
+            ``n_points, max_clusters, ids`` of that function.
+
+        Returns
+        -------
+        Clusters
+        """
+        from .. import clusters
+
+        return clusters(self, threshold, **options)
+
+    def similar(self: Any, like: Any, distance: float = 10.0, **options: Any) -> Similar:
+        """Find streamlines that run near some others; see :func:`pvfiblets.similar`.
+
+        Parameters
+        ----------
+        like : array_like, Streamlines or list of array_like
+            Numbers of streamlines, or lines of their own.
+        distance : float, default: 10.0
+            mm from the nearest of them.
+        **options
+            ``n_points, ids`` of that function.
+
+        Returns
+        -------
+        Similar
+        """
+        from .. import similar
+
+        return similar(self, like, distance, **options)
 
     def table(self: Any, ids: npt.ArrayLike | slice | None = None) -> Table:
         """Return a row for each streamline; see :func:`pvfiblets.table`.

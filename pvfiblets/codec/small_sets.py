@@ -16,7 +16,7 @@ from typing import Literal
 
 from .kernel_cache import is_filled, mark_filled
 
-__all__ = ["STATES", "State", "Work", "without_kernels"]
+__all__ = ["STATES", "State", "Work", "prefer_kernels", "without_kernels"]
 
 Work = Literal["coding", "decoding"]
 
@@ -61,3 +61,9 @@ def without_kernels(work: Work, points: int) -> Iterator[bool]:
         elif not state.loaded:
             state.loaded = True
             mark_filled(work)
+
+
+def prefer_kernels(work: Work) -> None:
+    """Do a work by kernels from now on if they were compiled before: whoever asks has loaded numba for others."""
+    if is_filled(work):
+        STATES[work].loaded = True

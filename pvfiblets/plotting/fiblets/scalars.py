@@ -15,6 +15,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
+from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.query.endpoints import anchor_points, end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
 
@@ -238,20 +239,6 @@ def _end_directions(fiblets: FibletSet) -> np.ndarray:
     apart = np.abs(ends[:, 1] - ends[:, 0])
     sizes = np.linalg.norm(apart, axis=1, keepdims=True)
     return np.where(sizes > 0.0, apart / np.where(sizes > 0.0, sizes, 1.0), 0.5)
-
-
-def distinct_colours(count: int) -> np.ndarray:
-    """Return so many bright colours, (n, 3) from 0 to 1, of which neighbours are far apart.
-
-    The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
-    brightness change with a rhythm of their own.
-    """
-    index = np.arange(count)
-    hue = np.modf(index * 0.6180339887498949)[0][:, None]
-    saturation, value = (np.array(some)[index % 3][:, None] for some in ((0.9, 0.6, 0.75), (1.0, 0.9, 0.75)))
-    # Travis, "Effective Color Displays", 1991: the hexagon of hues as three ramps.
-    ramp = np.clip(np.abs(np.mod(hue * 6.0 + [0.0, 4.0, 2.0], 6.0) - 3.0) - 1.0, 0.0, 1.0)
-    return np.asarray(value * (1.0 - saturation * (1.0 - ramp)))
 
 
 def by_group(fiblets: FibletSet) -> Scalars:

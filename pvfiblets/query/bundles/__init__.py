@@ -1,0 +1,1 @@
+"""Bundles: streamlines that run alike, found, listed, measured."""

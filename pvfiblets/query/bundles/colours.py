@@ -1,0 +1,58 @@
+"""Colours that are easily told apart, and colours as people write them, without a drawing library."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["as_colour", "distinct_colours"]
+
+
+def distinct_colours(count: int) -> npt.NDArray[np.float64]:
+    """Return so many bright colours, (n, 3) from 0 to 1, of which neighbours are far apart.
+
+    The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
+    brightness change with a rhythm of their own.
+    """
+    index = np.arange(count)
+    hue = np.modf(index * 0.6180339887498949)[0][:, None]
+    saturation, value = (np.array(some)[index % 3][:, None] for some in ((0.9, 0.6, 0.75), (1.0, 0.9, 0.75)))
+    # Travis, "Effective Color Displays", 1991: the hexagon of hues as three ramps.
+    ramp = np.clip(np.abs(np.mod(hue * 6.0 + [0.0, 4.0, 2.0], 6.0) - 3.0) - 1.0, 0.0, 1.0)
+    return np.asarray(value * (1.0 - saturation * (1.0 - ramp)))
+
+
+def as_colour(given: Any) -> tuple[float, float, float]:
+    """Return a colour as red, green, blue from 0 to 1.
+
+    Parameters
+    ----------
+    given : str or sequence
+        ``"#rrggbb"``, a name that PyVista knows, three floats from 0 to 1, or three whole numbers up to 255.
+
+    Raises
+    ------
+    ValueError
+        If it is no colour.
+    """
+    if isinstance(given, str):
+        text = given.lstrip("#")
+        if given.startswith("#") and len(text) == 6:
+            try:
+                parts = [int(text[i : i + 2], 16) / 255.0 for i in (0, 2, 4)]
+            except ValueError:
+                raise ValueError(f"{given!r} is no colour; give '#rrggbb', a name, or three numbers") from None
+            return parts[0], parts[1], parts[2]
+        from pyvista import Color
+
+        red, green, blue = Color(given).float_rgb
+        return float(red), float(green), float(blue)
+    values = np.asarray(given)
+    whole = values.dtype.kind in "iu"
+    top = 255.0 if whole else 1.0
+    if values.shape != (3,) or values.dtype.kind not in "iuf" or not ((values >= 0) & (values <= top)).all():
+        raise ValueError(f"{given!r} is no colour; give '#rrggbb', a name, or three numbers from 0 to 1 (or 255)")
+    scaled = values.astype(np.float64) / (255.0 if whole else 1.0)
+    return float(scaled[0]), float(scaled[1]), float(scaled[2])
