@@ -21,6 +21,7 @@ from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
 from pvfiblets.web.document import volume_in
 from pvfiblets.web.exporting import ExportActions
+from pvfiblets.web.filter_regions import RegionActions
 from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.first_document import first_document
 from pvfiblets.web.history import History
@@ -38,6 +39,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
+SCRIPTS = ("pvfiblets.js", "regions.js")
 
 
 class Explorer(TrameApp):
@@ -81,13 +83,16 @@ class Explorer(TrameApp):
         self._charts = describe.Charts(self.scene)
         self.camera = CameraActions(self)
         self.cuts = CutActions(self)
+        self.regions = RegionActions(self)
         self.filtering = FilterActions(self, self._charts)
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
-        self.server.enable_module({"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/pvfiblets.js"]})
+        self.server.enable_module(
+            {"serve": {CLIENT_URL: str(CLIENT)}, "scripts": [f"{CLIENT_URL}/{name}" for name in SCRIPTS]}
+        )
         self._register_keys()
         self.ui = layout.build(self)
         self.scene.watch(lambda _: self.refresh())
@@ -297,6 +302,7 @@ class Explorer(TrameApp):
         """Show what goes with a frame; nothing is sent where it is as before."""
         with self.state:
             self.camera.refresh()
+            self.regions.refresh_marks()
             left_out = self.scene.bars.left_out
             self.page.no_room = f"No room for the colours of {', '.join(left_out)}" if left_out else ""
             milliseconds = self.stream.milliseconds

@@ -17,6 +17,7 @@ VIEWS = tuple(DIRECTIONS)
 """Names of the directions that one can look from."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))
+NEAR = 6.0  # pixels within which a click means what is drawn there
 _LARGEST_PICTURE = 64_000_000  # pixels
 
 
@@ -83,13 +84,15 @@ class Cameras:
             "left": _letters(-right), "right": _letters(right), "top": _letters(up), "bottom": _letters(-up),
         }  # fmt: skip
 
-    def place_at(self, x: float, y: float) -> list[float] | None:
+    def place_at(self, x: float, y: float, *, tolerance: float = 0.0) -> list[float] | None:
         """Return where the surface or line is that a pixel of the last picture shows.
 
         Parameters
         ----------
         x, y : float
             Pixel, from the lower left corner.
+        tolerance : float, default: 0.0
+            Pixels that it may be away; the nearest counts.
 
         Returns
         -------
@@ -99,10 +102,17 @@ class Cameras:
         width, height = self.plotter.window_size
         column = round(number(x, "x", 0, width - 1))
         row = round(number(y, "y", 0, height - 1))
+        reach = int(number(tolerance, "tolerance", 0.0, 64.0))
+        left, right = max(column - reach, 0), min(column + reach, width - 1)
+        below, above = max(row - reach, 0), min(row + reach, height - 1)
         renderer = self.plotter.renderer
-        depth = renderer.GetZ(column, row)
-        if not depth < 1.0:
+        depths = _depths(self.plotter.render_window, left, below, right, above)
+        rows, columns = np.nonzero(depths < 1.0)
+        if not rows.size:
             return None
+        nearest = int(np.argmin(np.hypot(columns + left - column, rows + below - row)))
+        depth = float(depths[rows[nearest], columns[nearest]])
+        column, row = int(columns[nearest]) + left, int(rows[nearest]) + below
         renderer.SetDisplayPoint(column + 0.5, row + 0.5, depth)
         renderer.DisplayToWorld()
         *place, w = renderer.GetWorldPoint()
@@ -116,7 +126,7 @@ class Cameras:
         dict or None
             ``mm``, ``from`` and ``to`` (mm); ``None`` where one of them shows nothing.
         """
-        begin, end = self.place_at(x0, y0), self.place_at(x1, y1)
+        begin, end = self.place_at(x0, y0, tolerance=NEAR), self.place_at(x1, y1, tolerance=NEAR)
         if begin is None or end is None:
             return None
         return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
@@ -148,6 +158,16 @@ class Cameras:
             target, return_img=True, scale=times, transparent_background=truth(transparent, "transparent")
         )
         return np.asarray(picture)
+
+
+def _depths(window: Any, left: int, below: int, right: int, above: int) -> np.ndarray:
+    """Return the depths of a rectangle of the last picture, ``(rows from below, columns)``; 1 is nothing."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkFloatArray
+
+    found = vtkFloatArray()
+    window.GetZbufferData(left, below, right, above, found)
+    return np.asarray(vtk_to_numpy(found)).reshape(above - below + 1, right - left + 1)
 
 
 def check_camera(value: Any) -> dict[str, Any]:

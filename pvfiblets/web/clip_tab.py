@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.actions import Actions
-from pvfiblets.web.controls import AXES, axis_of, controls, moved
+from pvfiblets.web.controls import AXES, axis_of, controls, moved, typed_value
 
 EVERY = "*"
 """Among the layers of a cut: all that are lines."""
@@ -88,6 +88,11 @@ class CutActions(Actions):
     def set_value(self, clip_id: str, name: str, value: Any) -> None:
         """Move a cut's slider."""
         self._app.scene.set_clip(clip_id, **moved(self._app.scene.state.clip(clip_id).shape, name, value))
+
+    def set_end(self, clip_id: str, name: str, end: int, text: str) -> None:
+        """Set a number of a cut, or one end of a range, to mm that were typed."""
+        shape = self._app.scene.state.clip(clip_id).shape
+        self.set_value(clip_id, name, typed_value(shape, self._app.plotter.bounds, name, end, text))
 
 
 def _side(clip: Any) -> str:

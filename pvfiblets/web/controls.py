@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.charts import short, steps
+from pvfiblets.web.describe import typed
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 NAMES = ("left–right", "back–front", "down–up")
@@ -28,7 +29,9 @@ def controls(shape: Mapping[str, Any], bounds: Sequence[float]) -> list[dict[str
     kind = shape["kind"]
     if kind in ("plane", "slab"):
         along, low, high = _span(shape["normal"], sides)
-        found = [_number("position", "Position", float(np.dot(along, shape["origin"])), low, high)]
+        axis = axis_of(shape["normal"])
+        label = NAMES["xyz".index(axis)].capitalize() if axis else "Position"
+        found = [_number("position", label, float(np.dot(along, shape["origin"])), low, high)]
         if kind == "slab":
             found.append(_number("thickness", "Thickness", shape["thickness"], 0.002 * reach, 0.5 * reach))
         return found
@@ -72,6 +75,25 @@ def moved(shape: Mapping[str, Any], name: str, value: Any) -> dict[str, Any]:
     raise ValueError(f"a {kind} has no {str(name)[:40]!r}")
 
 
+def typed_value(shape: Mapping[str, Any], bounds: Sequence[float], name: str, end: int, text: str) -> Any:
+    """Return what a slider of :func:`controls` is moved to by a number that was typed for it, or for one of its ends.
+
+    Raises
+    ------
+    ValueError
+        If the shape has no such slider, or the text is no number.
+    """
+    found = next((one for one in controls(shape, bounds) if one["name"] == name), None)
+    if found is None:
+        raise ValueError(f"a {shape['kind']} has no {str(name)[:40]!r}")
+    value = typed(text, found["label"], optional=False)
+    if found["type"] != "range":
+        return value
+    ends = list(found["value"])
+    ends[1 if end else 0] = value
+    return ends
+
+
 def axis_of(normal: Sequence[float]) -> str:
     """Return the name of the axis that a normal runs along, or nothing."""
     along = np.abs(_unit(normal))
@@ -94,7 +116,7 @@ def _number(name: str, label: str, value: float, low: float, high: float) -> dic
     low, high = min(low, value), max(high, value)
     return {
         "name": name, "label": label, "type": "number", "value": float(value), "limits": [low, high],
-        "step": steps((low, high)), "shown": [f"{short(value)} mm"],
+        "step": steps((low, high)), "shown": [short(value)],
     }  # fmt: skip
 
 
@@ -102,7 +124,7 @@ def _range(name: str, label: str, ends: Sequence[float], low: float, high: float
     low, high = min(low, ends[0]), max(high, ends[1])
     return {
         "name": name, "label": label, "type": "range", "value": [float(end) for end in ends], "limits": [low, high],
-        "step": steps((low, high)), "shown": [f"{short(end)} mm" for end in ends],
+        "step": steps((low, high)), "shown": [short(end) for end in ends],
     }  # fmt: skip
 
 

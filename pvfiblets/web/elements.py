@@ -16,7 +16,7 @@ from trame.widgets import vuetify3 as _vuetify
 __all__ = ["html", "v3"]
 
 PASSED_ON = ("data_", "aria_")
-PLAIN = frozenset({"accept", "autofocus", "download", "hidden", "inputmode", "role", "tabindex", "type"})
+PLAIN = frozenset({"accept", "autofocus", "download", "hidden", "inputmode", "maxlength", "role", "tabindex", "type"})
 
 
 class Elements:

@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short, steps
-from pvfiblets.web.controls import controls, moved
 from pvfiblets.web.describe import Charts, typed
 from pvfiblets.web.document import LINES
-from pvfiblets.web.shapes import HOWS
 
 
 class FilterActions(Actions):
@@ -53,11 +50,6 @@ class FilterActions(Actions):
         actor = scene.actor(layer.id)
         filters = layer.filters
         amount = (filters.subset or {}).get("amount", 1.0)
-        try:
-            join, regions = _flat(filters.regions)
-        except ValueError:  # nested, by a session file: they hold, and whoever edits them is told so
-            join, regions = "and", []
-        bounds = self._app.plotter.bounds
         page.filters = {
             "layer": layer.id,
             "active": filters.active,
@@ -71,17 +63,7 @@ class FilterActions(Actions):
             "groups": list(actor.fiblets.groups),
             "shown_groups": list(filters.groups or ()),
             "share": round(100.0 * amount) if amount <= 1.0 else 100,
-            "join": join,
-            "hows": [{"title": title, "value": how} for how, title in HOWS.items()],
-            "regions": [
-                {
-                    "not": row["not"], "how": row["how"], "kind": row["region"]["kind"],
-                    "controls": controls(row["region"], bounds),
-                    "file": row["region"].get("path", "").rpartition("/")[2],
-                    "labels": ", ".join(map(str, row["region"].get("labels") or ())),
-                }
-                for row in regions
-            ],
+            **self._app.regions.described(layer),
         }  # fmt: skip
 
     def counted(self) -> str:
@@ -141,100 +123,3 @@ class FilterActions(Actions):
         """Show a random share of the streamlines, in per cent."""
         value = typed(str(share), "share", optional=False)
         self._app.scene.set_subset(self._layer.id, None if value is None or value >= 100 else value / 100.0)
-
-    # Regions: a flat list, each with or without 'not', joined by one word
-
-    def add_region(self, kind: str) -> None:
-        """Add a region in the middle of what is shown."""
-        if kind not in ("sphere", "box"):
-            raise ValueError(f"there is no region {kind!r}; choose sphere or box")
-        region = self._app.scene.usual_shape(kind)
-        self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}))
-
-    def add_file(self, path: str) -> None:
-        """Add the region of a closed mesh, or of the labels of a volume, which is read beside everything else."""
-        layer = self._layer
-        kind = "labels" if path.lower().endswith(LABELS) else "mesh"
-        region = {"kind": kind, "path": path} | ({"labels": None} if kind == "labels" else {})
-
-        def add() -> None:
-            self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}), layer)
-
-        self._app.later(self._app.files.with_shape(kind, path, add))
-
-    def set_labels(self, row: int, text: str) -> None:
-        """Choose the labels of a region by their numbers, between commas; none chosen are all but 0."""
-        parts = [part for part in str(text).replace(";", ",").replace(" ", ",").split(",") if part]
-        labels = [typed(part, "labels", optional=False) for part in parts] or None
-
-        def change(rows: list[dict[str, Any]]) -> None:
-            found = rows[_index(rows, row)]
-            if found["region"]["kind"] != "labels":
-                raise ValueError(f"a region of the kind {found['region']['kind']} has no labels")
-            found["region"] = {**found["region"], "labels": labels}
-
-        self._edit(change)
-
-    def drop_region(self, row: int) -> None:
-        """Take a region away."""
-        self._edit(lambda rows: rows.pop(_index(rows, row)))
-
-    def set_not(self, row: int, negated: bool) -> None:
-        """Ask for streamlines of which it is not so."""
-        self._edit(lambda rows: rows[_index(rows, row)].update({"not": bool(negated)}))
-
-    def set_how(self, row: int, how: str) -> None:
-        """Choose what streamlines do in a region."""
-        self._edit(lambda rows: rows[_index(rows, row)].update({"how": how}))
-
-    def set_region(self, row: int, name: str, value: Any) -> None:
-        """Move a region's slider."""
-
-        def change(rows: list[dict[str, Any]]) -> None:
-            found = rows[_index(rows, row)]
-            found["region"] = {**found["region"], **moved(found["region"], name, value)}
-
-        self._edit(change)
-
-    def set_join(self, word: str) -> None:
-        """Ask for all of the regions, or for any."""
-        layer = self._layer
-        _, rows = _flat(layer.filters.regions)
-        self._app.scene.set_regions(layer.id, _condition("or" if word == "or" else "and", rows))
-
-    def _edit(self, change: Any, layer: Any = None) -> None:
-        layer = self._layer if layer is None else self._app.scene.layer(layer.id)
-        join, rows = _flat(layer.filters.regions)
-        change(rows)
-        self._app.scene.set_regions(layer.id, _condition(join, rows))
-
-
-def _index(rows: list[Any], row: Any) -> int:
-    if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < len(rows):
-        raise ValueError(f"there is no region {row!r}")
-    return row
-
-
-def _flat(condition: Any) -> tuple[str, list[dict[str, Any]]]:
-    """Return a condition as the word that joins it and its rows."""
-    if condition is None:
-        return "and", []
-    parts, join = [condition], "and"
-    if condition.get("op") in ("and", "or"):
-        parts, join = list(condition["of"]), condition["op"]
-    rows = []
-    for part in parts:
-        negated = part.get("op") == "not"
-        inner = part["of"][0] if negated else part
-        if "op" in inner:
-            raise ValueError("these regions are nested deeper than this panel shows; they stay as they are")
-        rows.append({"not": negated, "how": inner["how"], "region": dict(inner["region"])})
-    return join, rows
-
-
-def _condition(join: str, rows: list[dict[str, Any]]) -> dict[str, Any] | None:
-    parts: list[dict[str, Any]] = []
-    for row in rows:
-        part = {"how": row["how"], "region": row["region"]}
-        parts.append({"op": "not", "of": [part]} if row["not"] else part)
-    return None if not parts else {"op": join, "of": parts}

@@ -20,6 +20,7 @@ from pvfiblets.web.properties import Choices, Property
 
 __all__ = ["MESH", "TRACTOGRAM", "TUBES", "VOLUME", "value_names"]
 
+
 def value_names(fiblets: Any) -> list[str]:
     """Names of numbers that fiblets have, per streamline or per point."""
     from pvfiblets.query.measures import measure_names

@@ -37,6 +37,20 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 @media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
 .pv-over svg { width: 100%; height: 100% }
+.pv-marks { position: absolute; inset: 0; z-index: 2; overflow: hidden; pointer-events: none }
+.pv-marks svg { position: absolute; width: 100%; height: 100% }
+.pv-marks polyline { fill: none; stroke: #7ad97a; stroke-width: 2; vector-effect: non-scaling-stroke }
+.pv-marks .pv-not polyline { stroke: #ff7a7a; stroke-dasharray: 6 4 }
+.pv-handle { position: absolute; width: 14px; height: 14px; margin: -7px 0 0 -7px; border-radius: 50%; z-index: 3;
+  background: #7ad97a; border: 2px solid #000; box-shadow: 0 0 0 1px #fff8; cursor: grab; touch-action: none;
+  pointer-events: auto }
+.pv-handle::after { content: ""; position: absolute; inset: -10px } /* fingers are wider */
+.pv-handle:active { cursor: grabbing }
+.pv-handle[data-handle=center] { border-radius: 3px; cursor: move }
+.pv-handle.pv-not { background: #ff7a7a }
+.pv-mark-name { position: absolute; transform: translate(12px, -130%); color: #fff; font: 600 14px Roboto, sans-serif;
+  text-shadow: 0 0 3px #000, 0 0 3px #000; white-space: nowrap }
+.pv-dot { width: 10px; height: 10px; border-radius: 50%; flex: none }
 .pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
   opacity: .85; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
 .pv-notes { position: absolute; right: 8px; top: 8px; z-index: 3; max-width: calc(50% - 40px); display: flex;
@@ -89,6 +103,18 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .v-field-label { font-size: 13px !important }
 .v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;
   padding-bottom: 3px !important }
+"""
+
+# Names are put in as text, by Vue.
+MARKS = """
+<svg viewBox="0 0 1000 1000" preserveAspectRatio="none">
+  <g v-for="m in marks" :key="m.row" :class="m.not ? 'pv-not' : ''" :data-mark="m.name">
+    <polyline v-for="(points, k) in m.lines" :key="k" :points="points"/>
+  </g>
+</svg>
+<template v-for="m in marks" :key="'name' + m.row">
+  <div class="pv-mark-name" :style="{ left: m.handles[0].x + '%', top: m.handles[0].y + '%' }">{{ m.name }}</div>
+</template>
 """
 
 
@@ -179,6 +205,15 @@ def _view(app: Any) -> None:
             style="position: absolute; inset: 0; width: 100%; height: 100%",
         )
         area.add_view_handler(app.stream)
+        with html.Div(v_if="show_regions && marks.length", classes="pv-marks", id="pv-marks"):
+            html.Div(MARKS)
+            with html.Div(v_if="tool === 'rotate' && tab === 'filter'"):  # dragged by client/regions.js
+                with v3.Template(v_for="m in marks", key="m.row"):
+                    html.Div(
+                        v_for="h in m.handles", key="m.row + h.name", classes=("['pv-handle', m.not ? 'pv-not' : '']",),
+                        style=("{ left: h.x + '%', top: h.y + '%' }",), data_row=("m.row",), data_handle=("h.name",),
+                        title=("h.name === 'center' ? 'Move ' + m.name : 'Size of ' + m.name",),
+                    )  # fmt: skip
         # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
         html.Div(v_if="tool !== 'rotate'", classes="pv-over", id="pv-over", data_tool=("tool",))
         for edge, place in (
@@ -203,6 +238,9 @@ def _view(app: Any) -> None:
                 data_action="clear-distance", click=app.selecting.clear_distance,
             )  # fmt: skip
             html.Div("{{ no_room }}", v_if="no_room", data_value="no-room")
+            html.Div(
+                "Click where {{ placing_name }} shall be (Esc: stop)", v_if="tool === 'place'", data_value="placing"
+            )
         with html.Div(
             v_if="!layers.length && !job.text",
             style="position: absolute; inset: 0; display: grid; place-items: center; z-index: 3; pointer-events: none",

@@ -259,7 +259,7 @@ class FileActions(Actions):
         if purpose == "clip":
             app.cuts.add("mesh", path)
         elif purpose == "region":
-            app.filtering.add_file(path)
+            app.regions.add_file(path)
         elif path.lower().endswith(SESSION):
             self.load_session(self._text(path), app.confined.resolve(path).parent)
         else:

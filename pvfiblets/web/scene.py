@@ -21,6 +21,7 @@ from pvfiblets.web.layer_queries import LayerQueries
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scalar_bars import Bars
 from pvfiblets.web.scene_filters import SceneFilters
+from pvfiblets.web.scene_regions import SceneRegions
 from pvfiblets.web.scene_selection import SceneSelection
 from pvfiblets.web.store import Store
 from pvfiblets.web.values import colour, text
@@ -56,7 +57,7 @@ class _Drawn:
     whole: Any = None  # of a mesh: what the actor draws where nothing is cut
 
 
-class Scene(SceneFilters, SceneSelection, LayerQueries, Cameras):
+class Scene(SceneFilters, SceneRegions, SceneSelection, LayerQueries, Cameras):
     """What a session shows.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.

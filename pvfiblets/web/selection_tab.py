@@ -28,7 +28,7 @@ class SelectionActions(Actions):
 
         Parameters
         ----------
-        tool : {'pick', 'box', 'lasso', 'measure'}
+        tool : {'pick', 'box', 'lasso', 'measure', 'place'}
             Which one.
         places : list of [x, y]
             Where the pointer went, as shares of the picture from its upper left.
@@ -48,6 +48,9 @@ class SelectionActions(Actions):
         scene = self._app.scene
         if tool == "measure":
             self._measure(pixels[0], pixels[-1])
+            return
+        if tool == "place":
+            self._app.regions.place(*pixels[-1])
             return
         far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
         if tool == "pick" or (tool == "box" and far < 3) or (tool == "lasso" and len(pixels) < 3):

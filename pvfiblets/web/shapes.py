@@ -10,7 +10,8 @@ A *shape* is one of::
     {"kind": "labels", "path": "atlas.nii.gz", "labels": [12, 17]}      (without labels: all that are not 0)
 
 A *condition* on streamlines is ``{"how": how, "region": shape}`` with one of `HOWS`, or
-``{"op": "and" | "or" | "not", "of": [conditions]}``. All positions are mm.
+``{"op": "and" | "or" | "not", "of": [conditions]}``. All positions are mm. The shape of a condition may have a
+``"name"``: layers with one of the same name share it.
 """
 
 from __future__ import annotations
@@ -109,7 +110,11 @@ def _checked(value: Any, name: str, depth: int) -> dict[str, Any]:
     mapping(value, name, ("how", "region"))
     if value["how"] not in tuple(HOWS):
         raise ValueError(f"how of {name} is {shown(value['how'])}; choose one of {', '.join(HOWS)}")
-    return {"how": value["how"], "region": check_shape(value["region"], name)}
+    region = value["region"]
+    if not isinstance(region, Mapping) or "name" not in region:
+        return {"how": value["how"], "region": check_shape(region, name)}
+    found = check_shape({key: part for key, part in region.items() if key != "name"}, name)
+    return {"how": value["how"], "region": {**found, "name": text(region["name"], f"{name}'s name", 40)}}
 
 
 def shapes_in(condition: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

@@ -15,7 +15,7 @@ from pvfiblets.web.charts import short
 
 __all__ = ["SlideActions"]
 
-FILTERS = ("region", "criterion", "share")
+FILTERS = ("region", "handle", "criterion", "share")
 SETTLED = 3.0  # seconds without a word from the slider after which the page is brought in step
 
 
@@ -29,7 +29,8 @@ class SlideActions(Actions):
         self._moves: dict[str, Callable[[Any, Any, Any], None]] = {
             "property": lambda layer, name, value: app.scene.set(layer, name, value),
             "clip": lambda clip, name, value: app.cuts.set_value(clip, name, value),
-            "region": lambda row, name, value: app.filtering.set_region(row, name, value),
+            "region": lambda row, name, value: app.regions.set_value(row, name, value),
+            "handle": lambda row, name, place: app.regions.drag(row, name, place),
             "criterion": lambda _, name, value: app.filtering.set_criterion(name, value),
             "share": lambda _, __, value: app.filtering.set_share(value),
         }
@@ -39,14 +40,14 @@ class SlideActions(Actions):
 
         Parameters
         ----------
-        kind : {'property', 'clip', 'region', 'criterion', 'share'}
-            What the slider is of.
+        kind : {'property', 'clip', 'region', 'handle', 'criterion', 'share'}
+            What the slider is of; handles of regions in the picture are taken like sliders.
         owner : str or int
             The layer, cut or row that it belongs to.
         name : str
             Of the slider.
         value : float or list of 2 floats
-            Where its thumbs are.
+            Where its thumbs are; of a handle, its place in the picture.
         """
         move = self._moves.get(kind) if isinstance(kind, str) else None
         if move is None:
@@ -60,8 +61,7 @@ class SlideActions(Actions):
             self.moving = False
             self._settle_later()
         ends = value if isinstance(value, list) else [value]
-        unit = " mm" if kind in ("clip", "region") else ""
-        held = {"at": f"{kind} {owner} {name}", "shown": [f"{short(float(end))}{unit}" for end in ends]}
+        held = {"at": f"{kind} {owner} {name}", "shown": [short(float(end)) for end in ends]}
         if kind in FILTERS:
             held["counted"] = app.filtering.counted()
         with app.state:

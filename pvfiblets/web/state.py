@@ -29,6 +29,7 @@ class Page:
     uploaded: float = 0.0  # per cent; below zero: nobody knows
     export_what: str = "selected"
     export_to: str = "folder"
+    show_regions: bool = True
 
     layers: list[Record] = field(default_factory=list)
     chosen: str = ""
@@ -48,6 +49,9 @@ class Page:
 
     clips: list[Record] = field(default_factory=list)
     filters: Record = field(default_factory=dict)
+    marks: list[Record] = field(default_factory=list)  # regions over the picture
+    placing: int = 0  # the row of the region that the next click places
+    placing_name: str = ""
     selection: Record = field(default_factory=dict)
     info: list[Record] = field(default_factory=list)
     frame: str = ""
@@ -75,6 +79,7 @@ WRITABLE: dict[str, type] = {
     "uploaded": float,
     "export_what": str,
     "export_to": str,
+    "show_regions": bool,
 }
 """Fields that browsers may write, and their types."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.web.controls import NAMES
 from pvfiblets.web.elements import html, v3
 from pvfiblets.web.writing import EXPORTS
 
@@ -30,9 +31,16 @@ def build(app: Any) -> None:
                 _info()
 
 
-def _slider_rows(change: Any, kind: str, owner: str, rows: str) -> None:
-    """Build sliders with their numbers for a list of described values."""
+def _slider_rows(change: Any, typed: Any, kind: str, owner: str, rows: str) -> None:
+    """Build sliders, with their numbers in mm to type, for a list of described values."""
     shown = f"(held.at === '{kind} ' + {owner} + ' ' + c.name ? held.shown : c.shown)"
+
+    def field(end: int, label: str) -> None:
+        html.Input(
+            classes="pv-num", inputmode="decimal", value=(f"{shown}[{end}]",), style="width: 60px", title="mm",
+            change=(typed, f"[{owner}, c.name, {end}, $event.target.value]"), aria_label=(f"c.label + '{label}, mm'",),
+        )  # fmt: skip
+
     with html.Div(v_for=f"c in {rows}", key="c.name", classes="pv-row", data_control=("c.name",)):
         html.Label("{{ c.label }}", title=("c.help || ''",))
         with html.Div(style="min-width: 0"):
@@ -44,14 +52,15 @@ def _slider_rows(change: Any, kind: str, owner: str, rows: str) -> None:
             }  # fmt: skip
             with html.Div(v_if="c.type === 'range'"):
                 v3.VRangeSlider(**common)
-                with html.Div(classes="pv-pair pv-small px-1", style="justify-content: space-between"):
-                    html.Span(f"{{{{ {shown}[0] }}}}")
-                    html.Span(f"{{{{ {shown}[1] }}}}")
+                with html.Div(classes="pv-pair pv-small", style="justify-content: space-between"):
+                    field(0, " from")
+                    html.Span("to", style="flex: 1; text-align: center")
+                    field(1, " to")
+                    html.Span("mm")
             with html.Div(v_else=True, classes="pv-pair"):
                 v3.VSlider(**common, style="min-width: 0")
-                html.Span(
-                    f"{{{{ {shown}[0] }}}}", classes="pv-small", style="flex: none; width: 68px; text-align: right"
-                )
+                field(0, "")
+                html.Span("mm", classes="pv-small")
 
 
 def _clip(app: Any) -> None:
@@ -86,17 +95,16 @@ def _clip(app: Any) -> None:
                 icon=True, size="x-small", variant="text", click=(app.cuts.remove, "[clip.id]"), aria_label="Remove"
             ):
                 v3.VIcon("mdi-delete-outline", size=18)
-        with html.Div(v_if="clip.axes", classes="pv-pair px-3 pt-1"):
-            html.Span("Across", classes="pv-small", style="width: 104px")
-            for axis, title in (("x", "Left–right"), ("y", "Back–front"), ("z", "Down–up")):
+        with html.Div(v_if="clip.axes", classes="pv-pair px-3 pt-1", style="flex-wrap: wrap"):
+            for axis, name in zip("xyz", NAMES, strict=True):
                 v3.VBtn(
-                    axis.upper(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",),
-                    color=(f"clip.axis === '{axis}' ? 'primary' : undefined",), title=title,
-                    click=(app.cuts.set_axis, f"[clip.id, '{axis}']"), style="min-width: 34px",
+                    name.capitalize(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",),
+                    color=(f"clip.axis === '{axis}' ? 'primary' : undefined",), classes="text-none px-2",
+                    click=(app.cuts.set_axis, f"[clip.id, '{axis}']"), data_axis=axis,
                 )  # fmt: skip
-            v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none",
-                    click=(app.cuts.set_axis, "[clip.id, 'view']"))  # fmt: skip
-        _slider_rows(app.cuts.set_value, "clip", "clip.id", "clip.controls")
+            v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none px-2",
+                    click=(app.cuts.set_axis, "[clip.id, 'view']"), data_axis="view")  # fmt: skip
+        _slider_rows(app.cuts.set_value, app.cuts.set_end, "clip", "clip.id", "clip.controls")
         with html.Div(classes="pv-row"):
             html.Label("Cuts")
             v3.VSelect(
@@ -166,46 +174,84 @@ def _filter(app: Any) -> None:
 
 
 def _regions(app: Any) -> None:
-    html.Div("Regions", classes="pv-head")
+    regions = app.regions
+    with html.Div(classes="pv-pair pr-2"):
+        html.Div("Regions", classes="pv-head", style="flex: 1")
+        with v3.VBtn(
+            v_if="filters.regions.length", icon=True, size="x-small", variant="text", data_action="show-regions",
+            click="show_regions = !show_regions", title="Show them in the picture",
+            aria_label=("show_regions ? 'Hide regions in the picture' : 'Show regions in the picture'",),
+        ):  # fmt: skip
+            v3.VIcon(icon=("show_regions ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
     with html.Div(classes="pv-pair px-3 pb-1", style="flex-wrap: wrap"):
         v3.VBtn("Sphere", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                click=(app.filtering.add_region, "['sphere']"), data_region="sphere")  # fmt: skip
+                click=(regions.add, "['sphere']"), data_region="sphere")  # fmt: skip
         v3.VBtn("Box", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                click=(app.filtering.add_region, "['box']"), data_region="box")  # fmt: skip
+                click=(regions.add, "['box']"), data_region="box")  # fmt: skip
         v3.VBtn("File", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
                 title="A closed mesh, or a volume of labels", click=(app.files.browse, "['', 'region']"),
                 data_region="file")  # fmt: skip
-        v3.VSpacer()
+    html.Div(
+        "Add a sphere or a box, drag it where it belongs or place it by a click; only streamlines through it stay. "
+        "“not” keeps those that miss it.",
+        v_if="!filters.regions.length", classes="pv-small px-3",
+    )  # fmt: skip
+    with html.Div(v_if="filters.regions.length", classes="pv-pair px-3 pb-1"):
+        html.Span(
+            "{{ filters.sentence }}", classes="pv-small", style="flex: 1; overflow-wrap: anywhere",
+            data_value="sentence",
+        )  # fmt: skip
         with v3.VBtnToggle(
             v_if="filters.regions.length > 1", model_value=("filters.join",), mandatory=True, density="compact",
-            update_modelValue=(app.filtering.set_join, "[$event]"), style="height: 26px",
+            update_modelValue=(regions.set_join, "[$event]"), style="height: 26px",
         ):  # fmt: skip
-            v3.VBtn("all", value="and", size="x-small", classes="text-none")
-            v3.VBtn("any", value="or", size="x-small", classes="text-none")
-    with html.Div(v_for="(r, i) in filters.regions", key="i", data_region_row=("i",)):
+            v3.VBtn("all", value="and", size="x-small", classes="text-none", title="All of these must hold")
+            v3.VBtn("any", value="or", size="x-small", classes="text-none", title="One of these must hold")
+    with html.Div(v_for="(r, i) in filters.regions", key="i", data_region_row=("i",), classes="pv-region"):
+        with html.Div(classes="pv-pair px-3 pt-1"):
+            html.Span(classes="pv-dot", style=("{ background: r.not ? '#ff7a7a' : '#7ad97a' }",))
+            html.Input(
+                classes="pv-num", style="flex: 1; width: auto; font-weight: 600", value=("r.name",), maxlength=40,
+                change=(regions.rename, "[i, $event.target.value]"), aria_label="Name of the region",
+                title=("r.file || r.kind",), data_field="name",
+            )  # fmt: skip
+            with v3.VBtn(
+                v_if="r.kind === 'sphere' || r.kind === 'box'", size="x-small", variant=(
+                    "tool === 'place' && placing === i ? 'flat' : 'tonal'",), classes="text-none",
+                click=(regions.begin_placing, "[i]"), prepend_icon="mdi-target", data_action="place",
+                title="Put it on what is clicked next: a streamline, a slice or a surface",
+            ):  # fmt: skip
+                html.Span("Place")
+            with v3.VBtn(icon=True, size="x-small", variant="text", aria_label="Remove", click=(regions.drop, "[i]")):
+                v3.VIcon("mdi-delete-outline", size=18)
         with html.Div(classes="pv-pair px-3 pt-1"):
             v3.VBtn(
-                "not", size="x-small", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'primary' : ''",),
-                classes="text-none", click=(app.filtering.set_not, "[i, !r.not]"), style="min-width: 36px",
+                "not", size="x-small", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'error' : ''",),
+                classes="text-none", click=(regions.set_not, "[i, !r.not]"), style="min-width: 36px",
+                title="Keep those of which this is not so",
             )  # fmt: skip
             v3.VSelect(
                 items=("filters.hows",), model_value=("r.how",), density="compact", variant="outlined",
-                hide_details=True, update_modelValue=(app.filtering.set_how, "[i, $event]"),
+                hide_details=True, update_modelValue=(regions.set_how, "[i, $event]"),
+                aria_label="What streamlines do there",
             )  # fmt: skip
-            html.Span("{{ r.file || r.kind }}", classes="pv-value text-truncate", title=("r.file || r.kind",),
-                      style="max-width: 90px")  # fmt: skip
-            with v3.VBtn(
-                icon=True, size="x-small", variant="text", aria_label="Remove", click=(app.filtering.drop_region, "[i]")
-            ):
-                v3.VIcon("mdi-delete-outline", size=18)
+        html.Div("{{ r.file }}", v_if="r.file", classes="pv-small px-3 text-truncate", title=("r.file",))
         with html.Div(v_if="r.kind === 'labels'", classes="pv-row"):
             html.Label("Labels")
             html.Input(
                 classes="pv-num", style="width: auto", value=("r.labels",), placeholder="all but 0",
-                change=(app.filtering.set_labels, "[i, $event.target.value]"), aria_label="Labels, between commas",
+                change=(regions.set_labels, "[i, $event.target.value]"), aria_label="Labels, between commas",
                 title="Numbers of the labels, between commas",
             )  # fmt: skip
-        _slider_rows(app.filtering.set_region, "region", "i", "r.controls")
+        _slider_rows(regions.set_value, regions.set_end, "region", "i", "r.controls")
+        with html.Div(v_if="filters.lines.length > 1 && r.named", classes="pv-row"):
+            html.Label("Used for")
+            v3.VSelect(
+                items=("filters.lines",), model_value=("r.layers",), multiple=True, density="compact",
+                variant="outlined", hide_details=True, aria_label="Layers that this region is used for",
+                update_modelValue=(regions.set_layers, "[i, $event]"), data_select="region-layers",
+            )  # fmt: skip
+        v3.VDivider(classes="mt-2")
 
 
 def _selection(app: Any) -> None:

@@ -23,7 +23,7 @@ FLAGS = (
     "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
     "--disable-quic", "--no-first-run",
 )  # fmt: skip
-PATIENCE = 120_000  # ms: machines that run tests are busy
+PATIENCE = int(os.environ.get("PVFIBLETS_PATIENCE", "120000"))  # ms: machines that run tests are busy
 QUIET = 600  # ms without a picture: twice as long as the server waits for the camera to rest
 
 

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
 from pvfiblets.web.describe import Charts
+from pvfiblets.web.filter_regions import RegionActions
 from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
@@ -34,6 +35,7 @@ class Desk:
         self.refreshed = 0
         self.files = FileActions(self)
         self.cuts = CutActions(self)
+        self.regions = RegionActions(self)
         self.filtering = FilterActions(self, Charts(scene))
         self.tasks = []
 

@@ -198,18 +198,18 @@ def test_meshes_and_labels_are_regions_and_cuts_read_beside_the_page(desk, scene
     asyncio.run(choose("clip", "ball.ply"))
     assert threads == [False, False]  # the mesh is there already
     ball, labels = scene.layer(layer.id).filters.regions["of"]
-    assert ball["region"] == {"kind": "mesh", "path": "ball.ply"}
-    assert labels["region"] == {"kind": "labels", "path": "atlas.nii.gz", "labels": None}
+    assert ball["region"] == {"kind": "mesh", "path": "ball.ply", "name": "A"}
+    assert labels["region"] == {"kind": "labels", "path": "atlas.nii.gz", "labels": None, "name": "B"}
     assert scene.state.clips[0].shape == {"kind": "mesh", "path": "ball.ply"}
-    desk.filtering.drop_region(0)
+    desk.regions.drop(0)
     everywhere = int(scene.actor(layer.id).shown.sum())
-    desk.filtering.set_labels(0, "5; 7")
+    desk.regions.set_labels(0, "5; 7")
     assert scene.layer(layer.id).filters.regions["of"][0]["region"]["labels"] == [5, 7]
     assert 0 < scene.actor(layer.id).shown.sum() < everywhere
-    desk.filtering.set_labels(0, " ")
+    desk.regions.set_labels(0, " ")
     assert scene.actor(layer.id).shown.sum() == everywhere
     with pytest.raises(ValueError, match="not a number"):
-        desk.filtering.set_labels(0, "five")
+        desk.regions.set_labels(0, "five")
     for bad, says in (("head.nii.gz", "fractions"), ("open.ply", "open")):
         with pytest.raises(ValueError, match=says):
             asyncio.run(choose("region", bad))

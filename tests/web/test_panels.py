@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.web.controls import axis_of, controls, moved
 from pvfiblets.web.describe import typed
-from pvfiblets.web.filter_tab import _condition, _flat
+from pvfiblets.web.filter_regions import condition, flat
 
 BOUNDS = (-10.0, 30.0, 0.0, 20.0, -5.0, 5.0)
 SPHERE = {"kind": "sphere", "center": [1.0, 2.0, 3.0], "radius": 4.0}
@@ -44,12 +44,12 @@ def test_regions_are_rows_joined_by_a_word_and_back():
         {"not": False, "how": "passes", "region": SPHERE},
         {"not": True, "how": "ends_in", "region": SPHERE},
     ]
-    assert _flat(_condition("or", rows)) == ("or", rows)
-    assert _condition("and", []) is None
-    assert _flat(None) == ("and", [])
+    assert flat(condition("or", rows)) == ("or", rows)
+    assert condition("and", []) is None
+    assert flat(None) == ("and", [])
     nested = {"op": "and", "of": [{"op": "or", "of": [{"how": "passes", "region": SPHERE}]}]}
     with pytest.raises(ValueError, match="nested"):
-        _flat(nested)
+        flat(nested)
 
 
 def test_numbers_are_typed_with_points_commas_and_units():

@@ -71,7 +71,7 @@ def test_cuts_filters_and_regions_slide(desk, scene):
     desk.filtering.remove("length")
     drag(desk, ("share", "of", "streamlines", 50))
     assert scene.layer(layer.id).filters.subset["amount"] == 0.5
-    desk.filtering.add_region("sphere")
+    desk.regions.add("sphere")
     drag(desk, ("region", 0, "radius", 7.0))
     assert scene.layer(layer.id).filters.regions["of"][0]["region"]["radius"] == 7.0
 
