@@ -16,6 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.depth_peeling import with_layers
 from pvfiblets.mappers.scene import actors_in, items_of
+from pvfiblets.mappers.vtk_overrides import override
 from pvfiblets.mappers.windows import weak
 
 VTK_SURFACE = 2
@@ -53,6 +54,7 @@ class Attached:
             menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
         """
         self.detach()
+        override()  # of modules of VTK's that have been loaded since
         self._found = False
         self._actor = weak(actor)
         actor.SetMapper(cast("Any", self))

@@ -72,9 +72,9 @@ class Connected:
 
     def GetInputConnection(self, port: int, index: int) -> Any:  # noqa: N802 - VTK's name
         """Return what was connected."""
-        return (_BASE if self._input is None else type(self._input)).GetInputConnection(
-            self if self._input is None else self._input, port, index
-        )
+        if self._input is None or self.is_readable:
+            return _BASE.GetInputConnection(self, port, index)
+        return self._input.GetInputConnection(port, index)
 
     def GetInputAlgorithm(self, port: int = 0, index: int = 0) -> Any:  # noqa: N802 - VTK's name
         """Return the algorithm that was connected."""
@@ -83,13 +83,14 @@ class Connected:
 
     def GetInputDataObject(self, port: int, index: int) -> Any:  # noqa: N802 - VTK's name
         """Return the data that were connected."""
-        if self._input is None:
+        if self._input is None or self.is_readable:
             return _BASE.GetInputDataObject(self, port, index)
         return self._input.GetInputDataObject(port, index)
 
     def GetInput(self) -> Any:  # noqa: N802 - VTK's name
         """Return the data that were connected."""
-        return _BASE.GetInput(self) if self._input is None else self._input.GetInputDataObject(0, 0)
+        read = self._input is None or self.is_readable
+        return _BASE.GetInput(self) if read else self._input.GetInputDataObject(0, 0)
 
     def SetArrayComponent(self, component: int) -> None:  # noqa: N802 - VTK's name
         """Colour by that component of vectors; -1 leaves it to the look-up table."""
@@ -129,7 +130,7 @@ class Connected:
     def _begin(self) -> None:
         """Find the actor that VTK is about to draw, and follow what has been set since the last draw."""
         self._find_actor()
-        if self._input is not None:
+        if self._input is not None and not self.is_readable:
             self._input.follow()
 
     def _input_state(self, data: Any) -> tuple[Any, ...]:
@@ -168,6 +169,11 @@ class Connected:
     # Of the other parts
 
     actor: Any
+
+    @property
+    def is_readable(self) -> bool:
+        """Whether VTK's data are the real lines at this moment."""
+        raise NotImplementedError
 
     def _put(self, drawn: Any, colouring: Colouring | None = None) -> None:
         raise NotImplementedError

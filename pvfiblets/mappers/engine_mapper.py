@@ -30,6 +30,7 @@ from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers.readable_lines import Readable
 from pvfiblets.mappers.scene import (
     Frame,
     frame_of,
@@ -53,7 +54,7 @@ SMOOTHED_BESIDE = 3.0
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
+class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
 
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
@@ -106,6 +107,7 @@ class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Gene
         self._error: BaseException | None = None
         self._follows = colouring is None
         self._colouring = Colouring("solid") if colouring is None else colouring
+        self._init_readable()
         self._init_input()
         self.SetScalarVisibility(self._follows)
         self._put(drawn)
@@ -203,6 +205,8 @@ class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Gene
 
     def _update(self, program: Any) -> None:
         """Answer VTK's ``UpdateShaderEvent``: G-buffer, textures and uniforms for this draw."""
+        if self.is_readable:
+            return  # VTK draws real lines
         unraised, self._error = self._error, None
         try:
             self._draw(program)
@@ -224,6 +228,7 @@ class EngineMapper(Attached, Connected, Questions, vtkOpenGLPolyDataMapper, Gene
                 "is not found out from SetMapper"
             )
         renderer = self._active.find(actor)
+        self._watch(renderer)
         self._check_alone(renderer)
         context = context_of(renderer.GetRenderWindow())
         if any(other is not context and other.shows(self) for other in contexts_with(self)):

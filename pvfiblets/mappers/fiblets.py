@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.fiblets.style import FibletStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
+from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
@@ -155,6 +157,34 @@ class FibletMapper(CutMapper[EngineOptions]):
         if not self._follows:
             return self._compressed[1], self._colouring
         return painted_fiblets(self._compressed[1], data, self)
+
+    def _readable_points(self) -> int | None:
+        from pvfiblets.mappers.drawn_lines import shown_points
+
+        return shown_points(self._drawn, self._filtering) * (SIDES if self._thickness > 0.0 else 1)
+
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
+        from pvfiblets.mappers.drawn_lines import shown_streamlines, thinned
+
+        ids = shown_streamlines(self._drawn, self._filtering)
+        if budget < (self._readable_points() or 0):
+            ids = ids[thinned(np.diff(self._drawn.offsets())[ids] * (SIDES if self._thickness > 0.0 else 1), budget)]
+        return self._readable_ids(ids, colours=colours, segments=segments)
+
+    def _readable_ids(self, ids: Any, *, colours: bool, segments: bool) -> Any:
+        from pvfiblets.mappers.drawn_lines import fiblet_lines
+
+        lines = fiblet_lines(self._drawn, self._colouring if colours else None, self._filtering, ids)
+        return self._readable_form(self._within_cuts(lines), self._thickness, segments)
+
+    def readable_near(self, ray: Any, budget: int) -> Any:
+        """Return lines for a picker: all of them, or if these are too many those near to its ray."""
+        if (self._readable_points() or 0) <= budget:
+            return self.readable_data(budget=budget)
+        from pvfiblets.mappers.drawn_lines import near_ray
+
+        ids = near_ray(self._drawn, self._filtering, ray, budget // (SIDES if self._thickness > 0.0 else 1))
+        return self._wrapped(self._readable_ids(ids, colours=False, segments=False))
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         before = slot.renderer

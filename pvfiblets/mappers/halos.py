@@ -250,6 +250,18 @@ class HaloMapper(EngineMapper[HaloOptions]):
         """Bounds that hold the strips too."""
         return thickened(self._drawn.bounds, self._look.strip_width / 2.0)
 
+    def _readable_points(self) -> int | None:
+        return int(self._drawn.n_points)
+
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
+        from pvfiblets.mappers.drawn_lines import halo_lines, thinned
+
+        lines = isinstance(self._drawn, HaloLines)
+        counts = np.diff(self._drawn.offsets) if lines else np.ones(self._drawn.n_points, np.int64)
+        ids = thinned(counts, budget)
+        found = halo_lines(self._drawn, self._look, self._colouring if colours else None, ids)
+        return self._within_cuts(found).to_polydata(segments=segments and lines, vertices=not lines)
+
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
         from pvfiblets.mappers.vtk_lines import measured_look, painted_halos
 

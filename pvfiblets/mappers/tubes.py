@@ -17,6 +17,7 @@ from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.engine_options import Options
+from pvfiblets.mappers.line_data import SIDES, STEPS
 from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame
@@ -168,6 +169,16 @@ class TubeMapper(EngineMapper[TubeOptions]):
     @property
     def _empty(self) -> bool:
         return not self._drawn.n_segments
+
+    def _readable_points(self) -> int | None:
+        return int(self._drawn.n_segments * STEPS * SIDES)
+
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
+        from pvfiblets.mappers.drawn_lines import tube_lines
+        from pvfiblets.mappers.line_data import tube_surface
+
+        lines = self._within_cuts(tube_lines(self._drawn, self._colouring if colours else None, budget // SIDES))
+        return lines.to_polydata(segments=True) if segments else tube_surface(lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
         from pvfiblets.mappers.vtk_lines import painted_tubes

@@ -15,8 +15,10 @@ from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
+from pvfiblets.mappers import follow
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
@@ -189,6 +191,7 @@ class ActorRegistry(Generic[A]):
             actor, name=name, pickable=pickable, reset_camera=reset_camera, render=False
         )
         self._track(actor, renderer)
+        self._meet_vtk()
         if label is not None:
             self._set_label(actor, label, renderer)
         if actor.scalars_title is not None:
@@ -217,6 +220,15 @@ class ActorRegistry(Generic[A]):
         # Registered current here, since `clear_on_render_callbacks` drops what others registered.
         self._plotter.add_on_render_callback(self._raise_pending)
         self._smooth(renderer)
+
+    def _meet_vtk(self) -> None:
+        """Have PyVista's exports and pickers know the actors; the picker was made before VTK could be told."""
+        for name in ("exports", "visible_picking"):
+            import_module(f"pvfiblets.plotting.{name}")
+        interactor = getattr(getattr(self._plotter, "iren", None), "interactor", None)
+        picker = None if interactor is None else interactor.GetPicker()
+        if len(self._actors) == 1 and isinstance(picker, vtkPicker):
+            follow(picker)
 
     def _release_removed(self, *_: Any) -> None:
         """Give back the GPU memory of actors that are in none of the plotter's renderers."""

@@ -16,9 +16,11 @@ import pyvista as pv
 from pvfiblets.plotting.settings import arguments
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pvfiblets.plotting.settings import Argument
 
-__all__ = ["document", "plotter_method"]
+__all__ = ["document", "method_of_plotters", "plotter_method"]
 
 _WIDEST = 100
 
@@ -54,19 +56,45 @@ def plotter_method(component: Any) -> Any:
     """Register a component's ``add`` as a method of plotters, and return the class that makes it callable."""
     target = component.add
 
-    class Adder:
-        def __init__(self, plotter: pv.BasePlotter) -> None:
-            self._plotter: Any = weakref.proxy(plotter)
+    def add(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        return getattr(plotter, component.NAME).add(*arguments, **named)
 
-        def __call__(self, source: Any, **arguments: Any) -> Any:
-            return getattr(self._plotter, component.NAME).add(source, **arguments)
+    adder = method_of_plotters(component.ADD, add, target.__doc__ or "", inspect.signature(target))
+    adder.__module__ = component.__module__
+    return pv.register_plotter_component(component.ADD)(adder)
 
-    Adder.__name__ = Adder.__qualname__ = "".join(part.title() for part in component.ADD.split("_"))
-    Adder.__module__ = component.__module__
-    Adder.__doc__ = f"What makes ``plotter.{component.ADD}`` callable; the same as ``plotter.{component.NAME}.add``."
-    Adder.__call__.__doc__ = target.__doc__
-    Adder.__call__.__signature__ = inspect.signature(target)  # type: ignore[attr-defined]
-    return pv.register_plotter_component(component.ADD)(Adder)
+
+def method_of_plotters(
+    name: str, call: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any], doc: str, signature: inspect.Signature
+) -> Any:
+    """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` say what it does.
+
+    Parameters
+    ----------
+    name : str
+    call : callable
+        Takes a plotter, and its arguments as a tuple and a dict.
+    doc : str
+    signature : inspect.Signature
+        With ``self``.
+    """
+    bound = signature.replace(parameters=list(signature.parameters.values())[1:])
+
+    class Method:
+        def __new__(cls, plotter: pv.BasePlotter) -> Any:  # an object of its own would have help() tell of its class
+            own = weakref.ref(plotter)
+
+            def method(*arguments: Any, **named: Any) -> Any:
+                return call(own(), arguments, named)
+
+            method.__name__, method.__qualname__ = name, f"{type(plotter).__name__}.{name}"
+            method.__doc__, method.__module__ = doc, cls.__module__
+            method.__signature__ = bound  # type: ignore[attr-defined]  # inspect looks for it
+            return method
+
+    Method.__name__ = Method.__qualname__ = "".join(part.title() for part in name.split("_"))
+    Method.__doc__ = doc
+    return Method
 
 
 def _with_parameters(doc: str, declared: dict[str, Argument]) -> str:

@@ -224,7 +224,12 @@ class PlottedLines(Plotted):
     @property
     def dataset(self) -> pv.PolyData:
         """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
+        if cast("Any", self).is_readable:
+            return cast("pv.PolyData", pv.wrap(cast("Any", self).GetDataSetInput()))
         return self._shown_by()._as_polydata()  # noqa: SLF001
+
+    def _wrapped(self, data: Any) -> Any:
+        return pv.wrap(data)
 
 
 # What the engine counts in each window (pvfiblets.engine.fiblets.census).

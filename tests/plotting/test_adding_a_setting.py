@@ -60,7 +60,7 @@ plotter.set_background("black")
 plotter.disable_anti_aliasing()
 told = inspect.signature(plotter.{add}).parameters["emission"]
 assert (told.default, told.annotation, told.kind) == (0.0, "float", told.KEYWORD_ONLY)
-doc = inspect.getdoc(type(plotter.{add}).__call__)
+doc = inspect.getdoc(plotter.{add})
 assert f"\\nemission : float, default: 0.0\\n    {{SAID}}\\n" in doc
 assert inspect.getdoc({actor}.emission) == SAID
 refused = pytest.raises(ValueError, match="emission is 2; give a number from 0 to 1")
