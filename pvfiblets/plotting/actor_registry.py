@@ -18,7 +18,7 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
-from pvfiblets.mappers import follow
+from pvfiblets.plotting import exports, visible_picking  # noqa: F401 - of which plotters are to know
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
@@ -222,12 +222,12 @@ class ActorRegistry(Generic[A]):
         self._smooth(renderer)
 
     def _meet_vtk(self) -> None:
-        """Have PyVista's exports and pickers know the actors; the picker was made before VTK could be told."""
-        for name in ("exports", "visible_picking"):
-            import_module(f"pvfiblets.plotting.{name}")
+        """Have the plotter's picker find actors: it was made before VTK could be told of them."""
         interactor = getattr(getattr(self._plotter, "iren", None), "interactor", None)
         picker = None if interactor is None else interactor.GetPicker()
         if len(self._actors) == 1 and isinstance(picker, vtkPicker):
+            from pvfiblets.mappers.vtk_overrides import follow
+
             follow(picker)
 
     def _release_removed(self, *_: Any) -> None:
