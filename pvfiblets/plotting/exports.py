@@ -3,8 +3,9 @@
 VTK's exporters read the data of mappers, not their pictures. So while one of these writes, mappers have real lines
 with the colours of the picture as their data (`pvfiblets.mappers.readable_lines`). PyVista's own way to put a component
 in the place of a method is used, ``register_plotter_component(..., override=True)``, from the import of
-`pvfiblets.plotting` on; ``pyvista.unregister_plotter_component(name)`` undoes it. ``export_html`` and ``export_vtksz`` need nothing:
-their serializers ask each mapper (`pvfiblets.mappers.browser_views`). ``save_graphic`` holds the picture itself.
+`pvfiblets.plotting` on; ``pyvista.unregister_plotter_component(name)`` undoes it. ``export_html`` and ``export_vtksz``
+need nothing: their serializers ask each mapper (`pvfiblets.mappers.browser_views`). ``save_graphic`` holds the picture
+itself.
 """
 
 from __future__ import annotations
