@@ -242,7 +242,7 @@ class Readable:
             return str(_BASE.GetClassName(self))
         from pvfiblets.mappers.browser_views import class_name
 
-        return class_name()
+        return class_name(readable_mapper)
 
     # Of the other parts
 
