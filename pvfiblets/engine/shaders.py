@@ -106,6 +106,8 @@ FEATURES: dict[str, str] = {
     "VOLUME_AVERAGE": "the mean value in a volume",
     "VOLUME_NEAREST": "the field of the nearest voxel",
     "VOLUME_TRICUBIC": "the field of cubics between voxels",
+    "VOLUME_BRICKS": "a volume in bricks, larger than 3-D textures",
+    "VOLUME_PAGES": "bricks in several textures",
     "VOLUME_UNREFINED": "surfaces at the sample behind them",
     "VOLUME_NEWTON": "surfaces by Newton's steps",
     "VOLUME_PREINTEGRATED": "light of steps integrated beforehand",

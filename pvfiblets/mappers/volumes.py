@@ -43,7 +43,7 @@ def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
     Raises
     ------
     EngineError
-        Memory does not suffice, or the volume is larger than this OpenGL's textures.
+        Memory does not suffice, or the volume is larger than eight of this OpenGL's textures.
     """
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -236,10 +236,22 @@ class VolumeMapper(CutMapper[Options]):
         found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
         if found is None:
             return None
-        voxel = tuple(int(at) for at in np.unravel_index(int(found.texels["owner"][0]), self.volume.shape, order="F"))
+        place = _place(found)
+        voxel = self._voxel(int(found.texels["owner"][0]), place)
         light = found.shown.drawn.style.casting.mode == "composite"
         value = self.volume.values[voxel] if light else found.texels["position"][1]
-        return RayHit((voxel[0], voxel[1], voxel[2]), _place(found), float(value))
+        return RayHit(voxel, place, float(value))
+
+    def _voxel(self, owner: int, place: npt.NDArray[np.float64]) -> tuple[int, int, int]:
+        """Return a pixel's voxel: by its number, or where there are more than 32 bits count the nearest to a place."""
+        volume = self.volume
+        if volume.n_points < EMPTY:
+            at = np.array(np.unravel_index(owner, volume.shape, order="F"))
+        else:
+            near = volume.inverse[:3, :3] @ place + volume.inverse[:3, 3]
+            at = np.clip(np.floor(near + 0.5), 0, np.array(volume.shape) - 1)
+        x, y, z = at.astype(int).tolist()
+        return x, y, z
 
     @property
     def _translucent(self) -> bool:

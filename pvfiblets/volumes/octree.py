@@ -42,6 +42,9 @@ __all__ = [
 LEAF = 8
 """Cells along each side of a leaf: level 3."""
 
+AT_ONCE = 1 << 22
+"""Numbers of a volume's leaves that are brought together along one axis at a time: six bytes each, more or less."""
+
 SKIP, VISIT, HOMOGENEOUS = 0, 1, 2
 """What rays do with a node: nothing, look into it, or take it as its mean."""
 
@@ -130,10 +133,16 @@ def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
     # Slices across the axis along which neighbours lie farthest apart in memory are read as they lie.
     order = np.argsort([-abs(stride) for stride in volume.values.strides], kind="stable")
     values = volume.values.transpose(order)
-    least = greatest = values
-    mean: npt.NDArray[Any] = values
-    for axis in range(3):
-        least, greatest, mean = _leaves_along(axis, least, greatest, mean, margin)
+    rows = max(1, AT_ONCE // (values.shape[1] * values.shape[2]))
+    found = []
+    for first in range(0, len(_cells(values.shape[0])), rows):
+        least = greatest = values
+        mean: npt.NDArray[Any] = values
+        for axis in range(3):
+            part = slice(first, first + rows) if axis == 0 else slice(None)
+            least, greatest, mean = _leaves_along(axis, least, greatest, mean, margin, part)
+        found.append((least, greatest, mean))
+    least, greatest, mean = (np.concatenate(parts) for parts in zip(*found, strict=True))
     back = np.argsort(order)
     least, greatest, mean = (np.ascontiguousarray(array.transpose(back)) for array in (least, greatest, mean))
     if margin == 2:
@@ -206,12 +215,18 @@ def _cells(n: int) -> npt.NDArray[np.int64]:
 
 
 def _leaves_along(
-    axis: int, least: npt.NDArray[Any], greatest: npt.NDArray[Any], mean: npt.NDArray[Any], margin: int
+    axis: int,
+    least: npt.NDArray[Any],
+    greatest: npt.NDArray[Any],
+    mean: npt.NDArray[Any],
+    margin: int,
+    part: slice,
 ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[np.float32]]:
-    """Bring voxels along one axis together to leaves, a slice of each at a time: such slices lie well in memory."""
+    """Bring voxels along one axis together to some of its leaves, a slice at a time: such slices lie well in memory."""
     n = mean.shape[axis]
     cells = _cells(n)
-    starts = LEAF * np.arange(len(cells))
+    starts = (LEAF * np.arange(len(cells)))[part]
+    cells = cells[part]
     shape = [-1 if i == axis else 1 for i in range(3)]
     low, high = np.take(least, starts, axis), np.take(greatest, starts, axis)
     total = np.zeros(low.shape, np.float32)

@@ -1,13 +1,18 @@
 // The field between the voxels, by one of three reconstruction filters.
 // Paper: Lesar 2015, section III.A; the third, tricubic, is Catmull and Rom's cubic along each axis.
 
+#if FEATURE_VOLUME_BRICKS
+#include "volumes/bricks.glsl"
+#else
 uniform sampler3D voxels;
 
 float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
+float read_voxel(ivec3 voxel) { return texelFetch(voxels, voxel, 0).x; }
+#endif
 
 #if FEATURE_VOLUME_NEAREST
 float value_at(vec3 p) {
-    return texelFetch(voxels, clamp(ivec3(floor(p + 0.5)), ivec3(0), ivec3(volume_shape) - 1), 0).x * field_scale + field_shift;
+    return read_voxel(clamp(ivec3(floor(p + 0.5)), ivec3(0), ivec3(volume_shape) - 1)) * field_scale + field_shift;
 }
 #elif FEATURE_VOLUME_TRICUBIC
 // Along an axis, four weights at three places: the middle two have one sign, and a linear texture weighs them.

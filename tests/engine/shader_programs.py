@@ -73,6 +73,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     **dict.fromkeys((*INTEGRATORS, "VOLUME_FINER", "VOLUME_HOMOGENEOUS"), (("VOLUME_COMPOSITE",),)),
     "VOLUME_SHADED": (("VOLUME_COMPOSITE",),),
     "VOLUME_EXACT": (("VOLUME_PREINTEGRATED",),),
+    "VOLUME_PAGES": (("VOLUME_BRICKS",),),
     "TUBE_HOLLOW": (("TUBE_CHAIN",),),
     "HALO_TAPER": (("!HALO_POINTS",),),
     "HALO_CUT": (("!HALO_POINTS",),),

@@ -15,7 +15,7 @@ from ..bindings import VOLUME_OCCLUSION
 from ..effects.screen import ScreenEffect
 from ..errors import EngineError
 from ..work_limits import WorkLimits
-from .renderer import FEATURES_OF_FILTER, VolumeRenderer
+from .renderer import VolumeRenderer
 from .uniform_blocks import CONSTANTS
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ class RayOcclusionPass(ScreenEffect):
         def rays() -> None:
             cut = [] if view.region is None else ["CLIP_REGION"]
             whole = [] if casting.octree else ["VOLUME_WHOLE"]
-            features = [*FEATURES_OF_FILTER[casting.filter], *whole, *cut]
+            features = [*renderer.field_features(casting), *whole, *cut]
             program, array = self._programs.screen("volumes/ray_occlusion.frag", features)
             renderer.bind_field(program)
             if cut:

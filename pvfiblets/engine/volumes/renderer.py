@@ -96,7 +96,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     Raises
     ------
     EngineError
-        If memory does not suffice or the volume is larger than this OpenGL's textures; nothing stays behind on the GPU.
+        If memory does not suffice or the volume is larger than eight of this OpenGL's textures; nothing stays behind on
+        the GPU.
 
     Notes
     -----
@@ -194,11 +195,10 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     ) -> None:
         """Cast a ray for every pixel of a picture, or those that pass the test of depth."""
         program, array = self._programs.screen("volumes/cast.frag", features)
-        bound = (("voxels", self._voxels.texture, VOLUMES["voxels"]), ("outside", outside, VOLUMES["outside"]))
-        for name, texture, unit in bound:
-            if name in program and texture is not None:
-                texture.use(unit)
-                program[name] = unit
+        self._voxels.bind(program)
+        if "outside" in program and outside is not None:
+            outside.use(VOLUMES["outside"])
+            program["outside"] = VOLUMES["outside"]
         self._tables.bind(program)
         self._nodes.bind(program)
         self._cuts.bind(program)
@@ -218,9 +218,12 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         self._check_alive()
         self._cuts.bind(program)
         self._block.buffer.bind_to_uniform_block(BLOCKS["Raycast"])
-        self._voxels.texture.use(VOLUMES["voxels"])
-        program["voxels"] = VOLUMES["voxels"]
+        self._voxels.bind(program)
         self._nodes.bind(program)
+
+    def field_features(self, casting: RaycastOptions) -> list[str]:
+        """Return the features of programs that read the volume."""
+        return [*FEATURES_OF_FILTER[casting.filter], *self._voxels.features]
 
     @staticmethod
     def _place(program: moderngl.Program, stride: int, size: tuple[int, int]) -> None:
@@ -228,7 +231,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         program["last_pixel"] = size[0] - 1, size[1] - 1
 
     def _features_of(self, casting: RaycastOptions, outside: bool) -> list[str]:
-        features = [*_OF_MODE[casting.mode], *FEATURES_OF_FILTER[casting.filter]]
+        features = [*_OF_MODE[casting.mode], *self.field_features(casting)]
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
         if casting.mode == "composite":

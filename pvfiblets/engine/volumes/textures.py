@@ -1,17 +1,21 @@
-"""A volume on the GPU: its voxels as a texture, its octree's nodes and its colours as short lists."""
+"""A volume's voxels on the GPU: as one 3-D texture, or where that is not to be had in bricks."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from ...volumes.volume import RaycastVolume
+from ..bindings import VOLUMES
 from ..errors import EngineError
 from ..passes import is_software
+from .bricks import MOST_PAGES, BrickLayout, Range, lay_out, pieces, voxels_of_page
 
-__all__ = ["VolumeTexture"]
+__all__ = ["Limits", "VolumeTexture"]
 
 _FORMATS: dict[Any, tuple[str, float, float]] = {
     np.uint8: ("f1", 255.0, 0.0),
@@ -21,54 +25,188 @@ _FORMATS: dict[Any, tuple[str, float, float]] = {
 }
 """moderngl's type, and what takes what a shader reads to values: times the first, plus the second."""
 
+UNLIMITED = 2.0**62
+"""Voxels of a texture where nothing is known of a limit."""
+
+_BYTES = {"f1": 1, "nu2": 2, "f4": 4}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What an OpenGL's textures take at the most.
+
+    Parameters
+    ----------
+    cube : int
+        Texels along each axis of 3-D ones.
+    side, layers : int
+        Texels along each axis of layers, and their number.
+    voxels : float
+        Of one texture.
+    """
+
+    cube: int
+    side: int
+    layers: int
+    voxels: float = UNLIMITED
+
+    @classmethod
+    def of(cls, ctx: moderngl.Context) -> Limits:
+        """Ask a context."""
+        return cls(
+            int(ctx.info["GL_MAX_3D_TEXTURE_SIZE"]),
+            int(ctx.info["GL_MAX_TEXTURE_SIZE"]),
+            int(ctx.info["GL_MAX_ARRAY_TEXTURE_LAYERS"]),
+        )
+
 
 class VolumeTexture:
     """The voxels.
+
+    They are handed over piece by piece: of arrays that lie in memory as textures do, and of memory maps, the host holds
+    nothing else beside the volume.
 
     Parameters
     ----------
     ctx : moderngl.Context
     volume : RaycastVolume
+    limits : Limits, optional
+        In place of the context's.
 
     Attributes
     ----------
-    texture : moderngl.Texture3D
     scale, shift : float
         A value is what a shader reads times the scale, plus the shift.
+    layout : BrickLayout or None
+        How bricks lie; None of one 3-D texture.
+    nbytes : int
 
     Raises
     ------
     EngineError
-        If an axis has more voxels than this OpenGL's textures, or memory does not suffice.
+        If memory does not suffice, or an axis has more voxels than layers have texels in all pages together.
     """
 
-    def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
-        limit = int(ctx.info["GL_MAX_3D_TEXTURE_SIZE"])
-        if max(volume.shape) > limit:
-            raise EngineError(
-                f"a volume of {' x '.join(map(str, volume.shape))} voxels has more than {limit} along an axis, the "
-                "most of this OpenGL's textures; take every second voxel, or a part of it"
-            )
+    def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, limits: Limits | None = None) -> None:
+        self._ctx = ctx
+        limits = Limits.of(ctx) if limits is None else limits
         voxels = volume.values
-        if voxels.dtype == np.uint8 and is_software(ctx):
-            # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
-            voxels = voxels.astype(np.uint16)
-        kind, self.scale, self.shift = _FORMATS[voxels.dtype.type]
+        # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
+        kept = np.uint16 if voxels.dtype == np.uint8 and is_software(ctx) else voxels.dtype.type
+        self._kind, self.scale, self.shift = _FORMATS[kept]
+        self._pages: list[Any] = []
+        self.layout: BrickLayout | None = None
+        whole = volume.n_points
+        self._make(volume.shape, limits)
+        self.nbytes = _BYTES[self._kind] * (
+            whole if self.layout is None else len(self._pages) * int(np.prod(self.layout.page_shape, dtype=np.int64))
+        )
+        for page in self._pages:
+            page.repeat_x = page.repeat_y = False
+            if self.layout is None:
+                page.repeat_z = False
+        try:
+            self._fill(voxels)
+        except BaseException:
+            self.release()
+            raise
+
+    @property
+    def features(self) -> list[str]:
+        """Of programs that read it."""
+        if self.layout is None:
+            return []
+        return ["VOLUME_BRICKS", *(["VOLUME_PAGES"] if len(self._pages) > 1 else [])]
+
+    def _make(self, shape: tuple[int, int, int], limits: Limits) -> None:
+        """Allocate one texture, or as few as this OpenGL gives."""
+        whole = int(np.prod(shape, dtype=np.int64))
+        if max(shape) <= limits.cube and whole <= limits.voxels and self._allocated(shape, 1, layers=False):
+            return
+        fits = False
+        for pages in range(1, MOST_PAGES + 1):
+            most = min(limits.voxels, voxels_of_page(shape, limits.side, limits.layers, pages))
+            self.layout = lay_out(shape, limits.side, limits.layers, most)
+            if self.layout is None:
+                continue
+            fits = True
+            if self._allocated(self.layout.page_shape, self.layout.pages, layers=True):
+                return
+        size = " x ".join(map(str, shape))
+        if fits:
+            raise EngineError(
+                f"no memory for a volume of {size} voxels ({whole * _BYTES[self._kind]} bytes) in one texture or "
+                f"{MOST_PAGES}; take every second voxel, or a part of it"
+            )
+        raise EngineError(
+            f"a volume of {size} voxels is more than {MOST_PAGES} of this OpenGL's textures take, each of "
+            f"{limits.layers} layers of {limits.side} x {limits.side}; take every second voxel, or a part of it"
+        )
+
+    def _allocated(self, shape: tuple[int, int, int], count: int, *, layers: bool) -> bool:
+        """Make so many textures, or none."""
+        make = self._ctx.texture_array if layers else self._ctx.texture3d
+        for _ in range(count):
+            try:
+                self._pages.append(make(shape, 1, None, alignment=1, dtype=self._kind))
+            except moderngl.Error:
+                break
+            if self._ctx.error != "GL_NO_ERROR":  # moderngl says nothing of it
+                break
+        else:
+            return True
+        self.release()
+        return False
+
+    def _fill(self, voxels: npt.NDArray[Any]) -> None:
+        axis = int(np.argmax(np.abs(voxels.strides)))  # along which slices lie together in memory
+        if self.layout is None:
+            nx, ny, nz = voxels.shape
+            bricks = iter([(0, (0, 0), (slice(0, nx), slice(0, ny), slice(0, nz)))])
+        else:
+            bricks = self.layout.bricks()
+        for page, corner, box in bricks:
+            for piece in pieces(box, axis):
+                self._write(self._pages[page], corner, box, piece, voxels[piece])
+
+    def _write(self, page: Any, corner: tuple[int, int], box: Range, piece: Range, voxels: npt.NDArray[Any]) -> None:
         if voxels.dtype == np.int16:
             voxels = (voxels.astype(np.int32) + 32768).astype(np.uint16)
+        elif voxels.dtype == np.uint8 and self._kind == "nu2":
+            voxels = voxels.astype(np.uint16)
+        x, y, z = (part.start - whole.start for part, whole in zip(piece, box, strict=True))
         data = np.ascontiguousarray(voxels.transpose(2, 1, 0))
-        try:
-            self.texture = ctx.texture3d(volume.shape, 1, data, alignment=1, dtype=kind)
-        except moderngl.Error as error:
-            raise EngineError(f"no memory for a volume of {data.nbytes} bytes: {error}") from error
-        self.texture.repeat_x = self.texture.repeat_y = self.texture.repeat_z = False
-        self.nbytes = data.nbytes
+        page.write(data, viewport=(corner[0] + x, corner[1] + y, z, *voxels.shape), alignment=1)
+
+    def bind(self, program: moderngl.Program) -> None:
+        """Bind it, and tell a program where it is."""
+        for k, page in enumerate(self._pages):
+            page.use(VOLUMES[_name(k)])
+        for k in range(MOST_PAGES):
+            if _name(k) in program:
+                program[_name(k)] = VOLUMES[_name(k if k < len(self._pages) else 0)]
+        if self.layout is not None:
+            for name, value in (
+                ("brick_step", self.layout.steps),
+                ("brick_count", self.layout.counts),
+                ("brick_size", self.layout.size[:2]),
+                ("bricks_in_page", self.layout.in_page),
+            ):
+                if name in program:
+                    program[name] = value
 
     def filter(self, linear: bool) -> None:
-        """Choose how the texture is sampled."""
+        """Choose how it is sampled."""
         kind = moderngl.LINEAR if linear else moderngl.NEAREST
-        self.texture.filter = kind, kind
+        for page in self._pages:
+            page.filter = kind, kind
 
     def release(self) -> None:
         """Give it back; twice is harmless."""
-        self.texture.release()
+        for page in self._pages:
+            page.release()
+        self._pages.clear()
+
+
+def _name(page: int) -> str:
+    return "voxels" if page == 0 else f"voxels_{page}"
