@@ -170,7 +170,7 @@ together(Scope("halos' vertices", {k: v for k, v in HALOS.items() if k.endswith(
 VOLUMES = Scope(
     "volumes",
     {"media": 9, "voxels": 10, "nodes": 11, "colours": 12, "segments": 13, "outside": 14, "means": 15,
-     "allowed_bends": 21, **{f"voxels_{page}": 32 + page for page in range(1, 8)}},
+     "allowed_bends": 21, "voxel_colours": 22, **{f"voxels_{page}": 32 + page for page in range(1, 8)}},
 )  # fmt: skip
 VOLUME_COARSE = Scope(
     "coarse rays",

@@ -91,6 +91,8 @@ class VolumeMapper(CutMapper[Options]):
     shaded : bool
         Whether the scene's lights shine on light through the volume, as the actor's property reflects them. Takes
         effect with the next frame.
+    lit_surfaces : bool
+        Whether they shine on translucent surfaces, of which `casting` has several. All others are shaded by VTK.
     coarser : InteractiveQuality or None
         How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
 
@@ -107,7 +109,7 @@ class VolumeMapper(CutMapper[Options]):
 
     _NAME = "VolumeMapper"
 
-    COPIED = (*CutMapper.COPIED, "_casting", "_taken", "coarser", "shaded")
+    COPIED = (*CutMapper.COPIED, "_casting", "_taken", "coarser", "shaded", "lit_surfaces")
 
     def __init__(
         self,
@@ -126,7 +128,7 @@ class VolumeMapper(CutMapper[Options]):
         self._casting = casting
         self._taken: tuple[Any, ...] = (0, None)
         self.coarser: InteractiveQuality | None = None
-        self.shaded = False
+        self.shaded, self.lit_surfaces = False, True
         usual = _plain(casting) if volume is not None else None
         super().__init__(volume, colouring=usual, options=Options(), renderer_factory=renderer_factory)
         follows = self._follows and colouring is None
@@ -156,7 +158,7 @@ class VolumeMapper(CutMapper[Options]):
         if paint is not None and paint.numbers is not None:
             return volume, paint.mapped(volume.name)
         solid = Colouring("solid", color=self._property_color())
-        return volume, _plain(self._casting) if self._casting.mode == "composite" else solid
+        return volume, _plain(self._casting) if self._casting.coloured else solid
 
     @property
     def volume(self) -> RaycastVolume:
@@ -176,7 +178,7 @@ class VolumeMapper(CutMapper[Options]):
 
     @casting.setter
     def casting(self, casting: RaycastOptions) -> None:
-        same, follows = (casting.mode == "composite") == (self._casting.mode == "composite"), self._follows
+        same, follows = casting.coloured == self._casting.coloured, self._follows
         self.show(casting, self._colouring if same else None)
         self._follows = follows
         if follows and self._input is not None:
@@ -200,10 +202,10 @@ class VolumeMapper(CutMapper[Options]):
         _check(casting, colouring)
         self._casting = casting
         CutMapper.colouring.fset(self, colouring)  # type: ignore[attr-defined]  # installs, and tells the actor
-        surface = casting.mode == "isosurface"
+        surface = casting.mode == "isosurface" and not casting.layered
         if surface != ("normals" in self._effects):
             self.set_effect("normals", SurfaceNormals() if surface else None)
-        light = casting.mode == "composite"
+        light = casting.coloured
         if light != ("own light" in self._effects):
             self.set_effect("own light", OwnLight() if light else None)
 
@@ -255,7 +257,7 @@ class VolumeMapper(CutMapper[Options]):
 
     @property
     def _translucent(self) -> bool:
-        return self._casting.mode != "isosurface" or super()._translucent
+        return self._casting.mode != "isosurface" or self._casting.layered or super()._translucent
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
@@ -271,7 +273,7 @@ class VolumeMapper(CutMapper[Options]):
         """Light and peaks that hardly show are not looked at."""
         from pvfiblets.engine.effects.picture import FAINTEST, SeenThrough
 
-        if self._casting.mode == "composite":
+        if self._casting.coloured:
             return SeenThrough(buffer.depth, lights=buffer.colours)
         colours = self._colouring
         if self._casting.mode == "isosurface" or colours.lut is None or colours.clim is None:
@@ -291,19 +293,20 @@ class VolumeMapper(CutMapper[Options]):
         casting = self._casting
         if self.coarser is not None and in_motion(renderer):
             casting = self.coarser.of(casting)
-        lit = self.shaded and casting.mode == "composite" and self.actor is not None
+        shone = self.shaded if casting.mode == "composite" else casting.layered and self.lit_surfaces
+        lit = shone and self.actor is not None
         return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)
 
 
 def _plain(casting: RaycastOptions) -> Colouring:
     """Colours without any choice."""
-    if casting.mode == "composite":
+    if casting.coloured:
         return Colouring("point_rgba", source=_LIGHT, has_alpha=True)
     return Colouring("solid")
 
 
 def _check(casting: RaycastOptions, colouring: Colouring) -> None:
-    light = casting.mode == "composite"
+    light = casting.coloured
     known = ("point_rgba",) if light else ("solid", "point_scalar")
     if colouring.mode not in known:
         instead = "light has the colours of casting.transfer: leave colouring out" if light else f"choose of {known}"

@@ -133,14 +133,14 @@ def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
     # Slices across the axis along which neighbours lie farthest apart in memory are read as they lie.
     order = np.argsort([-abs(stride) for stride in volume.values.strides], kind="stable")
     values = volume.values.transpose(order)
-    rows = max(1, AT_ONCE // (values.shape[1] * values.shape[2]))
+    at_once = max(1, AT_ONCE // (values.shape[1] * values.shape[2]))
     found = []
-    for first in range(0, len(_cells(values.shape[0])), rows):
+    for first in range(0, len(_cells(values.shape[0])), at_once):
         least = greatest = values
         mean: npt.NDArray[Any] = values
         for axis in range(3):
-            part = slice(first, first + rows) if axis == 0 else slice(None)
-            least, greatest, mean = _leaves_along(axis, least, greatest, mean, margin, part)
+            rows = slice(first, first + at_once) if axis == 0 else slice(None)
+            least, greatest, mean = _leaves_along(axis, least, greatest, mean, margin, rows)
         found.append((least, greatest, mean))
     least, greatest, mean = (np.concatenate(parts) for parts in zip(*found, strict=True))
     back = np.argsort(order)
@@ -220,13 +220,13 @@ def _leaves_along(
     greatest: npt.NDArray[Any],
     mean: npt.NDArray[Any],
     margin: int,
-    part: slice,
+    rows: slice,
 ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[np.float32]]:
     """Bring voxels along one axis together to some of its leaves, a slice at a time: such slices lie well in memory."""
     n = mean.shape[axis]
     cells = _cells(n)
-    starts = (LEAF * np.arange(len(cells)))[part]
-    cells = cells[part]
+    starts = (LEAF * np.arange(len(cells)))[rows]
+    cells = cells[rows]
     shape = [-1 if i == axis else 1 for i in range(3)]
     low, high = np.take(least, starts, axis), np.take(greatest, starts, axis)
     total = np.zeros(low.shape, np.float32)

@@ -53,6 +53,8 @@ class RaycastOptions:
         Of `MODES`.
     values : tuple of float
         Where surfaces are, 1 to `MAX_VALUES` of them, for ``'isosurface'``; each ray shows the first that it meets.
+    surfaces : tuple of tuples of 4 floats, optional
+        RGBA from 0 to 1 of each of `values`: then each ray shows all surfaces that it meets, one behind the other.
     transfer : Transfer, optional
         Colours and opacities by value, for ``'composite'``.
     threshold : float
@@ -104,6 +106,7 @@ class RaycastOptions:
 
     mode: str = "isosurface"
     values: tuple[float, ...] = ()
+    surfaces: tuple[tuple[float, ...], ...] | None = None
     transfer: Transfer | None = None
     threshold: float = -math.inf
     low: float = -math.inf
@@ -134,6 +137,7 @@ class RaycastOptions:
             raise ValueError(
                 f"values of isosurfaces are {self.values}; give 1 to {MAX_VALUES} finite numbers that float32 holds"
             )
+        self._check_surfaces()
         if self.mode == "composite" and self.transfer is None:
             raise ValueError("mode 'composite' needs transfer: colours and opacities by value")
         if math.isnan(self.low) or math.isnan(self.high) or self.low > self.high:
@@ -154,6 +158,16 @@ class RaycastOptions:
             if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
                 raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
             object.__setattr__(self, "box", box)
+
+    @property
+    def layered(self) -> bool:
+        """Whether rays show several surfaces, one behind the other."""
+        return self.mode == "isosurface" and self.surfaces is not None
+
+    @property
+    def coloured(self) -> bool:
+        """Whether what rays find is a colour and an opacity: light, or that of several surfaces."""
+        return self.mode == "composite" or self.layered
 
     def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
         """Return the length of a step, mm.
@@ -179,6 +193,16 @@ class RaycastOptions:
             deep = step * self.transfer.largest_extinction
             step /= min(max(deep / DEEPEST, 1.0), MOST_SHORTER)
         return step
+
+    def _check_surfaces(self) -> None:
+        if self.surfaces is None:
+            return
+        rgba = np.array(self.surfaces, np.float64)
+        if rgba.shape != (len(self.values), 4) or not ((rgba >= 0.0) & (rgba <= 1.0)).all():
+            raise ValueError(
+                f"surfaces is {self.surfaces!r}; give RGBA from 0 to 1 for each of the {len(self.values)} values"
+            )
+        object.__setattr__(self, "surfaces", tuple(tuple(row) for row in rgba.tolist()))
 
     def _check(self, name: str, right: Callable[[], bool], expected: str) -> None:
         try:

@@ -49,7 +49,11 @@ def smoothed(volume: RaycastVolume, sigma: Any, unit: Literal["voxels", "mm"] = 
     values = volume.values
     if volume.missing is not None:
         values = np.where(volume.missing, np.float32(np.nan), values)
-    return RaycastVolume(gaussian(values, deviations), volume.affine, name=volume.name)
+    colours = volume.colours
+    if colours is not None:
+        channels = [np.rint(gaussian(colours[..., k], deviations)).astype(np.uint8) for k in range(3)]
+        colours = np.stack(channels, axis=-1)
+    return RaycastVolume(gaussian(values, deviations), volume.affine, name=volume.name, colours=colours)
 
 
 def gaussian(values: npt.NDArray[Any], sigma: Any) -> Floats:

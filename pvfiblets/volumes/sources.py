@@ -51,8 +51,10 @@ def as_raycast_volume(
           data become the mean of the cells around each point, as in ``Plotter.add_volume``.
         - :class:`pyvista.RectilinearGrid`: along axes whose planes are uneven, values are interpolated at the least
           distance of two, at four times as many places at most.
+          Four numbers of type uint8 for each point are RGBA: light then has the voxels' own colours and opacities.
         - ``(nx, ny, nz)`` numbers, masked arrays (masked voxels are missing) and memory maps; or ``(array, affine)``.
-        - An image of nibabel.
+          ``(nx, ny, nz, 4)`` of type uint8 are RGBA.
+        - An image of nibabel; of type RGBA its colours count.
         - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.nrrd``, ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD
           files that say so, and of MetaImage files always, coordinates are LPS+ and are turned to RAS+. Any other, such
           as ``.raw``: bare numbers, the first axis running fastest; they need ``shape`` and ``dtype``.
@@ -104,7 +106,8 @@ def as_raycast_volume(
             values = source.values
             if source.missing is not None:
                 values = np.where(source.missing, np.float32(np.nan), values)
-            volume = RaycastVolume(values, _placed(source.affine, *given), name=source.name)
+            place = _placed(source.affine, *given)
+            volume = RaycastVolume(values, place, name=source.name, colours=source.colours)
     else:
         if is_raw:
             found = _of_raw(Path(source), shape, dtype)
@@ -113,7 +116,8 @@ def as_raycast_volume(
         else:
             found = _of_object(source, scalars)
         values, own, name = found
-        volume = RaycastVolume(values, _placed(own, *given), name=name)
+        values, colours = _apart(values)
+        volume = RaycastVolume(values, _placed(own, *given), name=name, colours=colours)
     return volume if smooth is None else smoothed(volume, smooth, smooth_unit)
 
 
@@ -132,6 +136,15 @@ def _of_object(source: Any, scalars: Any) -> Found:
     raise TypeError(f"rays cannot be cast through a {type(source).__name__}; give {_EXPECTED}")
 
 
+def _apart(values: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.uint8] | None]:
+    """Numbers, and colours where the numbers are RGBA: alpha, of which the others are the colours."""
+    return (values[..., 3], values[..., :3]) if _is_rgba(np.shape(values), values.dtype) else (values, None)
+
+
+def _is_rgba(shape: tuple[int, ...], kind: Any) -> bool:
+    return len(shape) == 4 and shape[3] == 4 and kind == np.uint8
+
+
 def _is_pair(values: Any, affine: Any) -> bool:
     """Whether two things are a volume and its affine, right or wrong, and not two slices of a volume."""
     whole = [isinstance(each, np.ndarray) and each.ndim >= 3 for each in (values, affine)]
@@ -148,7 +161,7 @@ def _of_array(given: Any) -> npt.NDArray[Any]:
         values = np.asarray(given)
     except ValueError:
         raise ValueError("the volume's rows are of unlike lengths; give an (nx, ny, nz) array") from None
-    return _three_axes(values, "the volume")
+    return values if _is_rgba(values.shape, values.dtype) else _three_axes(values, "the volume")
 
 
 def _three_axes(values: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
@@ -160,6 +173,8 @@ def _three_axes(values: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
 def _check_axes(shape: tuple[int, ...], what: str) -> None:
     if len(shape) < 3 or any(n != 1 for n in shape[3:]):
         colours = ", as RGB colours have" if len(shape) == 4 and shape[3] in (3, 4) else ""
+        if colours:
+            colours += " (RGBA of type uint8 is drawn as it is)"
         volumes = ": give one of its volumes, such as image[..., 0]" if len(shape) > 3 else ""
         raise ValueError(
             f"{what} has the shape {tuple(shape)}{colours}; three axes (nx, ny, nz) with one number per voxel are "
@@ -174,6 +189,9 @@ def _of_nibabel(image: Any, what: str, name: str) -> Found:
     _check_axes(image.shape, what)  # before anything is read
     data = image.dataobj
     kind = getattr(data, "dtype", np.dtype(np.float32))
+    if kind.names == ("R", "G", "B", "A"):
+        parts = np.asarray(data)
+        return np.stack([parts[name] for name in kind.names], axis=-1).astype(np.uint8), image.affine, name
     if kind.names is not None:
         raise ValueError(
             f"{what} holds colours, the fields {', '.join(kind.names)} of each voxel; one number each is needed: "
@@ -241,7 +259,7 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
 
     uneven = image.IsA("vtkRectilinearGrid")
     if image.IsA("vtkMultiBlockDataSet"):
-        raise TypeError("a MultiBlock is no grid; add each of its blocks by itself, or choose one: blocks[0]")
+        raise TypeError("a MultiBlock is no grid; take each of its blocks by itself, or choose one: blocks[0]")
     if not (uneven or image.IsA("vtkImageData")):
         raise TypeError(
             f"rays cannot be cast through a {type(image).__name__}; sample it on a grid first: "
@@ -252,17 +270,18 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
     if scalars is None or isinstance(scalars, str):
         array, of_cells = _vtk_array(image, scalars)
         name = array.GetName() or "values"
-        if array.GetNumberOfComponents() != 1:
-            n = array.GetNumberOfComponents()
+        values = vtk_to_numpy(array)
+        n = array.GetNumberOfComponents()
+        if n != 1 and not (n == 4 and values.dtype == np.uint8 and not of_cells and not uneven):
             colours = ", RGB colours perhaps" if n in (3, 4) else ""
             raise ValueError(
-                f"the image's array {name!r} has {n} numbers per voxel{colours}; one is needed: take a column, or a "
-                "norm, first"
+                f"the image's array {name!r} has {n} numbers per voxel{colours}; one is needed, or four of type uint8, "
+                "RGBA, for each point of an ImageData: take a column, or a norm, first"
             )
-        values = vtk_to_numpy(array)
     else:
         values, name = np.asarray(scalars), "values"
-        if values.shape not in ((n_points,), (n_cells,)):
+        rgba = values.shape == (n_points, 4) and values.dtype == np.uint8 and not uneven
+        if values.shape not in ((n_points,), (n_cells,)) and not rgba:
             raise ValueError(
                 f"scalars have the shape {values.shape}; expected one number for each of the image's {n_points} points "
                 f"or {n_cells} cells"
@@ -271,7 +290,9 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
     if of_cells:
         values = _at_points(values.reshape([max(n - 1, 1) for n in dims], order="F"), dims)
     else:
-        values = values.reshape(dims, order="F")
+        rgba = values.ndim == 2
+        # Points run along the first axis first, and the components of each lie together.
+        values = values.reshape(*dims[::-1], 4).transpose(2, 1, 0, 3) if rgba else values.reshape(dims, order="F")
     if uneven:
         from .rectilinear import evenly
 

@@ -48,6 +48,8 @@ class RaycastVolume:
         ``(4, 4)`` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique. Default: identity.
     name : str, default: 'values'
         Of the numbers, for people.
+    colours : numpy.ndarray, optional
+        ``(nx, ny, nz, 3)`` uint8, the voxels' own RGB: `values` are then alpha, and light has these colours.
 
     Raises
     ------
@@ -60,6 +62,7 @@ class RaycastVolume:
     values: npt.NDArray[Any]
     affine: Array = None  # type: ignore[assignment]
     name: str = field(default="values", kw_only=True)
+    colours: npt.NDArray[np.uint8] | None = field(default=None, kw_only=True)
     inverse: Array = field(init=False, repr=False)  # (4, 4) mm to voxel indices
     missing: npt.NDArray[np.bool_] | None = field(init=False, repr=False)  # (nx, ny, nz) where NaN was; None: nowhere
 
@@ -67,6 +70,13 @@ class RaycastVolume:
         values = _checked_values(self.values)
         affine, inverse = _checked_affine(self.affine)
         values, missing = _finite(values)
+        if self.colours is not None and (
+            self.colours.shape != (*values.shape, 3) or self.colours.dtype != np.uint8
+        ):
+            raise ValueError(
+                f"the voxels' colours have the shape {self.colours.shape} and the type {self.colours.dtype}; expected "
+                f"{(*values.shape, 3)} and uint8"
+            )
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "missing", missing)
         object.__setattr__(self, "affine", affine)
@@ -101,7 +111,7 @@ class RaycastVolume:
     @property
     def nbytes(self) -> int:
         """Bytes of the voxels."""
-        return self.values.nbytes
+        return self.values.nbytes + (0 if self.colours is None else self.colours.nbytes)
 
     @cached_property
     def n_missing(self) -> int:
@@ -112,6 +122,12 @@ class RaycastVolume:
     def value_range(self) -> tuple[float, float]:
         """Least and greatest finite value; (0, 0) where there is none."""
         return _range(self.values)
+
+    @cached_property
+    def least_positive(self) -> float:
+        """Least value above 0, where a logarithmic scale may begin; 1e-6 where there is none."""
+        found = [float(slab[slab > 0].min()) for slab in _slabs(self.values) if (slab > 0).any()]
+        return min(found, default=1e-6)
 
     @cached_property
     def spacing(self) -> Array:

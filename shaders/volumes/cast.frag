@@ -28,7 +28,9 @@ layout(location = 2) out uvec2 out_ids;
 layout(location = 3) out vec2 out_position;
 
 // bool cast_ray(pixel, ray, step, start, out hit, out value): what the mode shows along a ray; false for nothing.
-#if FEATURE_VOLUME_SURFACE
+#if FEATURE_VOLUME_LAYERS
+#include "volumes/cast_layers.glsl"
+#elif FEATURE_VOLUME_SURFACE
 #include "volumes/cast_surface.glsl"
 #elif FEATURE_VOLUME_COMPOSITE
 #include "volumes/cast_composite.glsl"

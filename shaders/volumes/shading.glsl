@@ -7,6 +7,14 @@
 //
 // Places are mm from the eye in the scene's own coordinates, which lamps and actors' matrices are given in.
 
+// Of a voxel that has one; the table of colours is white then.
+#if FEATURE_VOLUME_COLOURS
+uniform sampler3D voxel_colours;
+vec3 own_colour(vec3 voxel) { return textureLod(voxel_colours, (voxel + 0.5) / volume_shape, 0.0).rgb; }
+#else
+vec3 own_colour(vec3 voxel) { return vec3(1.0); }
+#endif
+
 #if FEATURE_VOLUME_SHADED
 const int LAMPS = {{ lamps }};
 uniform mat3 seen_from_voxels;        // of directions
@@ -22,15 +30,11 @@ uniform vec3 lamp_highlights[LAMPS];
 uniform vec4 reflection;              // ambient, diffuse, specular, power
 uniform float weakest;                // change by mm of the scene
 
-vec4 shaded(Ray ray, float t, vec4 part) {
-    vec3 voxel = at(ray, t);
-    vec3 low = max(voxel - 1.0, 0.0), high = min(voxel + 1.0, volume_shape - 1.0);
-    vec3 g = normal_from_voxels * (vec3(value_at(vec3(high.x, voxel.yz)) - value_at(vec3(low.x, voxel.yz)),
-                                        value_at(vec3(voxel.x, high.y, voxel.z)) - value_at(vec3(voxel.x, low.y, voxel.z)),
-                                        value_at(vec3(voxel.xy, high.z)) - value_at(vec3(voxel.xy, low.z))) / (high - low));
-    float size = length(g);
-    vec3 n = g / max(size, 1e-30), place = seen_from_voxels * voxel + seen_start;
-    vec3 v = mix(normalize(-place), towards_eye.xyz, towards_eye.w), diffuse = vec3(0.0), specular = vec3(0.0);
+// What all lamps add, at a place in voxels, on a normal of length 1; from both of its sides, or from that which it points to.
+void shine(vec3 voxel, vec3 n, bool both, out vec3 diffuse, out vec3 specular) {
+    vec3 place = seen_from_voxels * voxel + seen_start;
+    vec3 v = mix(normalize(-place), towards_eye.xyz, towards_eye.w);
+    diffuse = specular = vec3(0.0);
     for (int k = 0; k < lamp_count; ++k) {
         vec3 way = lamp_places[k].xyz - lamp_places[k].w * place;
         float far = length(way);
@@ -41,12 +45,32 @@ vec4 shaded(Ray ray, float t, vec4 part) {
         if (lamp_cones[k].w > -1.5) strength *= inside >= lamp_cones[k].w ? pow(max(inside, 1e-6), fading.w) : 0.0;
         float nl = dot(n, l);
         vec3 r = 2.0 * nl * n - l;
-        diffuse += strength * abs(nl) * lamp_colours[k];
-        specular += strength * pow(max(dot(r, v), 1e-6), reflection.w) * lamp_highlights[k];
+        diffuse += strength * (both ? abs(nl) : max(nl, 0.0)) * lamp_colours[k];
+        specular += (both || nl > 0.0 ? strength : 0.0) * pow(max(dot(r, v), 1e-6), reflection.w) * lamp_highlights[k];
     }
+}
+
+// The colour of a surface, whose normal by voxels points to the viewer.
+vec3 lit_surface(vec3 colour, vec3 voxel, vec3 gradient) {
+    vec3 n = normal_from_voxels * gradient, diffuse, specular;
+    shine(voxel, n / max(length(n), 1e-30), false, diffuse, specular);
+    return clamp(colour * (reflection.x + reflection.y * diffuse) + reflection.z * specular, 0.0, 1.0);
+}
+
+vec4 shaded(Ray ray, float t, vec4 part) {
+    vec3 voxel = at(ray, t);
+    part.rgb *= own_colour(voxel);
+    vec3 low = max(voxel - 1.0, 0.0), high = min(voxel + 1.0, volume_shape - 1.0);
+    vec3 g = normal_from_voxels * (vec3(value_at(vec3(high.x, voxel.yz)) - value_at(vec3(low.x, voxel.yz)),
+                                        value_at(vec3(voxel.x, high.y, voxel.z)) - value_at(vec3(voxel.x, low.y, voxel.z)),
+                                        value_at(vec3(voxel.xy, high.z)) - value_at(vec3(voxel.xy, low.z))) / (high - low));
+    float size = length(g);
+    vec3 diffuse, specular;
+    shine(voxel, g / max(size, 1e-30), true, diffuse, specular);
     vec3 lit = part.rgb * (reflection.x + reflection.y * diffuse) + part.a * reflection.z * specular;
     return vec4(mix(part.rgb, min(lit, vec3(part.a)), smoothstep(0.0, 1.0, size / max(weakest, 1e-30))), part.a);
 }
 #else
-vec4 shaded(Ray ray, float t, vec4 part) { return part; }
+vec3 lit_surface(vec3 colour, vec3 voxel, vec3 gradient) { return colour; }
+vec4 shaded(Ray ray, float t, vec4 part) { return vec4(part.rgb * own_colour(at(ray, t)), part.a); }
 #endif

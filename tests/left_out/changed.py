@@ -367,6 +367,12 @@ CHANGED = {
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels, engine.volumes.shading",
     ),
+    "volume: translucent surfaces": What(
+        features="VOLUME_LAYERS, VOLUME_SHADED, VOLUME_SURFACE",
+        resolve="-colour_point_scalar, colour_point_rgba, own_light",
+        buffers="-fibletTable",
+        modules="engine.volumes.shading",
+    ),
     "volume: minimum": What(
         features="VOLUME_MINIMUM",
     ),

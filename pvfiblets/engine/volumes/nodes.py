@@ -92,7 +92,8 @@ class NodeList:
         self.skipped = float(np.mean(numbers[0] == SKIP)) if looked_into else 0.0
         self._put("nodes", numbers)
         visited = np.count_nonzero(numbers[0] != SKIP) if looked_into else 0
-        even = np.count_nonzero(numbers[0] == HOMOGENEOUS) if _may_take_means(casting) else 0
+        own = self._volume.colours is not None  # of which nothing is known by nodes
+        even = np.count_nonzero(numbers[0] == HOMOGENEOUS) if _may_take_means(casting) and not own else 0
         self.takes_means = bool(even > 0 and even >= WORTH * visited)
         if self.takes_means:
             self._put("means", [level.mean for level in octree.levels])

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import moderngl
+import numpy as np
 
+from ...volumes.raycast_options import MAX_VALUES
 from ..bindings import BLOCKS, VOLUME_COARSE, VOLUMES
 from ..drawable import Drawable
 from ..gbuffer import GBuffer
@@ -15,7 +17,7 @@ from ..work_limits import WorkLimits
 from .nodes import NodeList
 from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
-from .textures import VolumeTexture
+from .textures import ColourTexture, VolumeTexture
 from .transfer_textures import TransferTextures
 from .uniform_blocks import CONSTANTS, RayBlock
 
@@ -69,7 +71,7 @@ class VolumeStyle(Style):
     @property
     def relief(self) -> str | None:
         """Normals of surfaces."""
-        return "normal" if self.casting.mode == "isosurface" else None
+        return "normal" if self.casting.mode == "isosurface" and not self.casting.layered else None
 
 
 class VolumeRenderer(Drawable[VolumeStyle]):
@@ -111,9 +113,13 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         super().__init__(ctx, CONSTANTS)
         self._volume = volume
         self._shading: Shading | None = None
-        self._clim: tuple[float, float] | None = None
+        self._clim: tuple[float, float] = (0.0, 1.0)
+        self._surfaces: tuple[tuple[float, ...], ...] | None = None
+        self._colours: ColourTexture | None = None
         with self._making():
             self._voxels = self._keep(VolumeTexture(ctx, volume), "voxels")
+            if volume.colours is not None:
+                self._colours = self._keep(ColourTexture(ctx, volume.colours), "colours of voxels")
             self._block = self._keep(RayBlock(ctx, volume, (self._voxels.scale, self._voxels.shift)))
             self._nodes = self._keep(NodeList(ctx, self._gl, volume))
             self._tables = self._keep(TransferTextures(ctx, volume))
@@ -123,17 +129,20 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
         casting = style.casting
         self._nodes.make(casting)
-        self._clim = None if casting.transfer is None else casting.transfer.clim
+        self._clim = self._volume.value_range if casting.transfer is None else casting.transfer.clim
+        self._surfaces = casting.surfaces if casting.layered else None
         step = self._block.step_mm(casting)
         self._tables.make(casting, step)
         self._samples = self._volume.diagonal / step * _TAPS.get(casting.filter, 1)
         target = self._ray_target("gbuffer", view.size, style, marked=casting.sparse > 1)
-        shaded = casting.mode == "composite" and style.shading is not None
+        shaded = casting.coloured and style.shading is not None
         features = [*self._features_of(casting, outside is not None), *self._cuts.update(view)]
         features += ["VOLUME_SHADED"] if shaded else []
         self._shading = style.shading if shaded else None
         self._block.write(view, casting, self._nodes.levels)
         self._voxels.filter(casting.filter != "nearest")
+        if self._colours is not None:
+            self._colours.filter(casting.filter != "nearest")
         if casting.sparse > 1:
             self._cast_sparsely(target, features, style, outside)
         else:
@@ -155,7 +164,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         with self._passes.timed("sparse rays"):
             self._cast(coarse_target, features, stride, size, outside)
         with self._passes.timed("between"):
-            program, array = self._programs.screen("volumes/fill.frag", [*_OF_MODE[casting.mode]])
+            kind = "composite" if casting.coloured else casting.mode
+            program, array = self._programs.screen("volumes/fill.frag", [*_OF_MODE[kind]])
             coarse = coarse_target.buffer
             textures = {
                 "coarse_depth": coarse.depth,
@@ -202,7 +212,14 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         self._tables.bind(program)
         self._nodes.bind(program)
         self._cuts.bind(program)
-        if self._shading is not None and self._clim is not None:
+        if self._colours is not None:
+            self._colours.bind(program)
+        if self._surfaces is not None and "surface_colours" in program:
+            rows = np.zeros((MAX_VALUES, 4), "<f4")
+            rows[: len(self._surfaces)] = self._surfaces
+            table: Any = program["surface_colours"]
+            table.write(rows.tobytes())
+        if self._shading is not None:
             self._shading.set_uniforms(program, self._volume, self._clim)
         self._place(program, stride, size)
         self._ctx.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
@@ -234,7 +251,9 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         features = [*_OF_MODE[casting.mode], *self.field_features(casting)]
         if casting.mode == "isosurface":
             features += _OF_REFINEMENT[casting.refine]
+            features += ["VOLUME_LAYERS"] if casting.layered else []
         if casting.mode == "composite":
+            features += ["VOLUME_COLOURS"] if self._colours is not None else []
             features += _OF_INTEGRATOR[casting.integrator]
             features += ["VOLUME_FINER"] if self._tables.finer else []
             features += ["VOLUME_EXACT"] if self._tables.exact else []
@@ -244,15 +263,13 @@ class VolumeRenderer(Drawable[VolumeStyle]):
 
     def _ray_target(self, name: str, size: tuple[int, int], style: VolumeStyle, *, marked: bool) -> RayTarget:
         """Return a target of that size and what the mode needs."""
-        relief, coloured = style.relief, style.casting.mode == "composite"
+        relief, coloured = style.relief, style.casting.coloured
         key = size, relief, coloured, marked
-        return self._fitting(
-            name, key, lambda: RayTarget(self._ctx, size, relief, coloured=coloured, marked=marked)
-        )
+        return self._fitting(name, key, lambda: RayTarget(self._ctx, size, relief, coloured=coloured, marked=marked))
 
     def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
         """Say whether rays shall end at opaque things: surfaces hide and are hidden by depth alone."""
-        return isinstance(style, VolumeStyle) and style.casting.mode != "isosurface"
+        return isinstance(style, VolumeStyle) and (style.casting.mode != "isosurface" or style.casting.layered)
 
     def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
         return {

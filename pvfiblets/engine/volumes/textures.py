@@ -15,7 +15,7 @@ from ..errors import EngineError
 from ..passes import is_software
 from .bricks import MOST_PAGES, BrickLayout, Range, lay_out, pieces, voxels_of_page
 
-__all__ = ["Limits", "VolumeTexture"]
+__all__ = ["ColourTexture", "Limits", "VolumeTexture"]
 
 _FORMATS: dict[Any, tuple[str, float, float]] = {
     np.uint8: ("f1", 255.0, 0.0),
@@ -206,6 +206,62 @@ class VolumeTexture:
         for page in self._pages:
             page.release()
         self._pages.clear()
+
+
+class ColourTexture:
+    """The voxels' own colours.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    colours : numpy.ndarray
+        ``(nx, ny, nz, 3)`` uint8.
+
+    Raises
+    ------
+    EngineError
+        If memory does not suffice, or an axis has more voxels than 3-D textures have.
+    """
+
+    def __init__(self, ctx: moderngl.Context, colours: npt.NDArray[np.uint8]) -> None:
+        nx, ny, nz = colours.shape[:3]
+        limit = Limits.of(ctx).cube
+        size = f"{nx} x {ny} x {nz} voxels"
+        if max(nx, ny, nz) > limit:
+            raise EngineError(
+                f"a volume of {size} with colours has more than {limit} along an axis, the most of this OpenGL's "
+                "textures; take every second voxel, a part of it, or one number for each voxel"
+            )
+        try:
+            self._texture = ctx.texture3d((nx, ny, nz), 3, None, alignment=1, dtype="f1")
+        except moderngl.Error as error:
+            raise EngineError(f"no memory for the colours of {size}: {error}") from error
+        if ctx.error != "GL_NO_ERROR":
+            self.release()
+            raise EngineError(f"no memory for the colours of {size}")
+        self._texture.repeat_x = self._texture.repeat_y = self._texture.repeat_z = False
+        axis = int(np.argmax(np.abs(colours.strides[:3])))
+        for piece in pieces((slice(0, nx), slice(0, ny), slice(0, nz)), axis):
+            part = colours[piece]
+            start = tuple(cut.start for cut in piece)
+            data = np.ascontiguousarray(part.transpose(2, 1, 0, 3))
+            self._texture.write(data, viewport=(*start, *part.shape[:3]), alignment=1)
+        self.nbytes = 3 * nx * ny * nz
+
+    def bind(self, program: moderngl.Program) -> None:
+        """Bind it, if a program looks at it, and tell where it is."""
+        if "voxel_colours" in program:
+            self._texture.use(VOLUMES["voxel_colours"])
+            program["voxel_colours"] = VOLUMES["voxel_colours"]
+
+    def filter(self, linear: bool) -> None:
+        """Choose how it is sampled."""
+        kind = moderngl.LINEAR if linear else moderngl.NEAREST
+        self._texture.filter = kind, kind
+
+    def release(self) -> None:
+        """Give it back; twice is harmless."""
+        self._texture.release()
 
 
 def _name(page: int) -> str:

@@ -25,7 +25,13 @@ MAX_LEVELS = 12
 MOST_LAMPS = 8
 """Lamps of a scene that shine on light through a volume: the first ones that are on."""
 
-CONSTANTS: dict[str, Any] = {"adaptive_error": ALLOWED, "finest": FINEST, "parts": PARTS, "lamps": MOST_LAMPS}
+CONSTANTS: dict[str, Any] = {
+    "adaptive_error": ALLOWED,
+    "finest": FINEST,
+    "parts": PARTS,
+    "lamps": MOST_LAMPS,
+    "surfaces": MAX_VALUES,
+}
 """Of the shaders."""
 
 MAX_PLANES = MAX_CLIP_PLANES + 2

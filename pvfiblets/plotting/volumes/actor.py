@@ -247,10 +247,11 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
 
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
-        surface = self.mode == SURFACE
+        surface = self.mode == SURFACE and not self.casting.layered
         for name, effect in self._of_surfaces.items():
             self._mapper.set_effect(name, effect if surface else None)
         self.prop.lighting = self._lit and surface
+        self._mapper.lit_surfaces = self._lit
         opacity = float(self.opacity) if surface and is_number(self.opacity) else 1.0
         if opacity != self._see_through:  # what was set of the property itself stays
             self._see_through = self.prop.opacity = opacity
@@ -271,8 +272,8 @@ def _smoothed(volume: RaycastVolume, sigma: Any) -> RaycastVolume:
 
 
 def _scalars(volume: RaycastVolume) -> Scalars:
-    """The volume's values, whose range is not empty even if all are one."""
-    low, high = volume.value_range
+    """The volume's values, whose range is not empty even if all are one; of voxels with colours all of alpha's."""
+    low, high = volume.value_range if volume.colours is None else (0.0, 255.0)
     if low == high:
         high = max(low + 1.0, float(np.nextafter(low, np.inf)))
     return Scalars(volume.name, "point_scalar", None, (low, high))

@@ -10,7 +10,16 @@ import pyvista as pv
 
 from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.colours import make_colouring, update_table
-from pvfiblets.plotting.volumes.opacity import number, opacities, surface_values, value_limits
+from pvfiblets.plotting.volumes.opacity import (
+    along_logarithm,
+    from_logarithm,
+    number,
+    opacities,
+    surface_colours,
+    surface_opacities,
+    surface_values,
+    value_limits,
+)
 from pvfiblets.plotting.volumes.settings import CASTING, CHOSEN, VolumeSettings
 from pvfiblets.volumes import Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
@@ -59,6 +68,12 @@ class RaySettings(VolumeSettings, Coloured):
     def _read_values(self) -> tuple[float, ...]:
         return surface_values(self._choices["values"], self._volume.value_range)
 
+    def _read_surface_opacity(self) -> tuple[float, ...] | None:
+        return surface_opacities(self._choices["surface_opacity"], len(self.values))
+
+    def _read_surface_color(self) -> list[pv.Color] | None:
+        return surface_colours(self._choices["surface_color"], len(self.values))
+
     def _read_thresholds(self) -> Any:
         return self._choices["thresholds"]
 
@@ -84,7 +99,9 @@ class RaySettings(VolumeSettings, Coloured):
     @property
     def scalars_title(self) -> str | None:
         """What a scalar bar says; ``None`` where there is one colour."""
-        return None if self._settings.color is not None or self._scalars is None else self._scalars.title
+        own = self._settings.color is not None or self._volume.colours is not None
+        own |= self.casting.layered and self._choices["surface_color"] is not None
+        return None if own or self._scalars is None else self._scalars.title
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -137,13 +154,20 @@ class RaySettings(VolumeSettings, Coloured):
         settings, mode = self._settings, wanted.get("mode", self._casting.mode)
         low, high = value_limits(self.thresholds)
         own = {"values": self.values, "threshold": self.peak, "low": low, "high": high, **wanted}
-        update_table(self._table, settings, self._scalars, self._theme, None)
+        scalars = self._scalars
+        if settings.log_scale and scalars.range[0] <= 0.0:
+            scalars = replace(scalars, positive=self._volume.least_positive)
+        update_table(self._table, settings, scalars, self._theme, None)
         if mode != SURFACE:
             _widen(self._table, max(int(settings.n_colors), 2))
+        self._check_colours(mode)
         alpha = opacities(self.opacity, self._table.n_values)
         if settings.color is not None:
             self._table.values[:, :3] = pv.Color(settings.color).int_rgb
-        self._table.values[:, 3] = 255 if mode == SURFACE else np.round(255.0 * alpha)
+        clim = tuple(self._table.scalar_range)
+        seen = along_logarithm(alpha, clim) if settings.log_scale else alpha
+        self._table.values[:, 3] = 255 if mode == SURFACE else np.round(255.0 * seen)
+        own["surfaces"] = self._surfaces() if mode == SURFACE else None
         if mode == LIGHT:
             own["transfer"] = self._transfer(alpha)
         casting = replace(self._casting, **own)
@@ -154,17 +178,45 @@ class RaySettings(VolumeSettings, Coloured):
                     "colours at most: give fewer, or integrator='exponential'"
                 )
             return casting, None
+        if casting.layered:
+            return casting, None
         solid = mode == SURFACE and settings.color is not None
         return casting, make_colouring(settings, None if solid else self._scalars, self._table, self._theme)
 
     def _transfer(self, alpha: np.ndarray) -> Transfer:
         """Return the table as a transfer function, the one that there is if it says the same."""
-        table = np.column_stack([np.asarray(self._table.values, np.float32)[:, :3] / 255.0, alpha]).astype(np.float32)
         clim, unit = tuple(self._table.scalar_range), self.opacity_unit_distance
+        colours = np.asarray(self._table.values, np.float32)[:, :3] / 255.0
+        if self._volume.colours is not None:
+            colours = np.ones_like(colours)
+        elif self._settings.log_scale:
+            colours = from_logarithm(colours, clim)
+        table = np.column_stack([colours, alpha]).astype(np.float32)
         held = self._casting.transfer
         if held is not None and (held.clim, held.unit) == (clim, unit) and np.array_equal(held.table, table):
             return held
         return Transfer(table, clim, unit)
+
+    def _surfaces(self) -> tuple[tuple[float, ...], ...] | None:
+        """Return RGBA of each surface where there is to be seen more than the first of a ray."""
+        opacity, colours = self.surface_opacity, self.surface_color
+        if opacity is None and colours is None:
+            return None
+        values = self.values
+        if colours is None:
+            one = self._settings.color
+            of_map = [self._table.map_value(value, opacity=False) for value in values]
+            rgb = of_map if one is None else [one.float_rgb] * len(values)
+        else:
+            rgb = [colour.float_rgb for colour in colours]
+        return tuple((*own, alpha) for own, alpha in zip(rgb, opacity or (1.0,) * len(values), strict=True))
+
+    def _check_colours(self, mode: str) -> None:
+        if self._volume.colours is not None and mode != LIGHT:
+            raise ValueError(
+                f"mode is {mode!r}, and the voxels are RGBA: show them as mode 'composite', in their own colours, or "
+                "give one number for each voxel"
+            )
 
 
 def _widen(table: pv.LookupTable, count: int) -> None:

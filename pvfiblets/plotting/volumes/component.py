@@ -7,6 +7,7 @@ name. :class:`RaycastVolumesComponent` lives as long as its plotter; its life cy
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -23,11 +24,16 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
     from pvfiblets.volumes import RaycastVolume
 
-    Source: TypeAlias = str | PathLike[str] | pv.ImageData | np.ndarray | tuple[Any, Any] | RaycastVolume
+    Source: TypeAlias = (
+        str | PathLike[str] | pv.ImageData | pv.MultiBlock | np.ndarray | tuple[Any, Any] | RaycastVolume
+    )
 
 
 BLENDING = {"composite": "composite", "maximum": "mip", "minimum": "minimum", "average": "average"}
 """Modes by the words of ``Plotter.add_volume``."""
+
+MULTI_COLOURS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
+"""Maps of blocks with ``multi_colors``, as of ``Plotter.add_volume``."""
 
 
 @pv.register_plotter_component("raycast_volumes")
@@ -52,6 +58,28 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
     _SETTINGS = VolumeSettings
     NAME, ADD = "raycast_volumes", "add_raycast_volume"
 
+    def add(self, /, source: Any, **arguments: Any) -> Any:
+        """Make an actor and add it to the plotter; of a MultiBlock one for each block."""
+        if not (hasattr(source, "IsA") and source.IsA("vtkMultiBlockDataSet")):
+            arguments.pop("multi_colors", None)
+            return super().add(source, **arguments)
+        blocks = [block for block in map(source.GetBlock, range(source.GetNumberOfBlocks())) if block is not None]
+        if not blocks:
+            raise ValueError("the MultiBlock has no blocks; give images in it")
+        several, name = arguments.pop("multi_colors", False), arguments.pop("name", None)
+        cmaps = itertools.cycle(MULTI_COLOURS if several else [arguments.pop("cmap", None)])
+        actors: list[VolumeActor] = []
+        try:
+            for number, block in enumerate(blocks):
+                own = None if name is None else f"{name}-{number}"
+                added = self.add(pv.wrap(block), **{**arguments, "name": own, "cmap": next(cmaps)})
+                actors += added if isinstance(added, list) else [added]
+        except Exception:
+            for actor in actors:
+                self._plotter.remove_actor(actor, render=False)
+            raise
+        return actors
+
     def _make(
         self,
         source: Source,
@@ -66,6 +94,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         dtype: Any = None,
         blending: str | None = None,
         resolution: Any = None,
+        multi_colors: bool = False,  # noqa: ARG002 - `add` looks at it
     ) -> VolumeActor:
         """Add a volume to the scene, through which a ray is cast for each pixel.
 
@@ -74,10 +103,11 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
 
         Parameters
         ----------
-        source : ImageData, array, (array, affine), nibabel image, RaycastVolume or path
+        source : ImageData, MultiBlock, array, (array, affine), nibabel image, RaycastVolume or path
             Numbers on a regular grid, and where it lies; see
             :func:`pvfiblets.volumes.as_raycast_volume`. Paths are of NIfTI, MGH, NRRD, MetaImage and
-            ``.vti`` files, or of bare numbers.
+            ``.vti`` files, or of bare numbers. Voxels of four numbers of type uint8 are RGBA: their
+            light has their own colours, and ``opacity`` is of alpha.
         scalars : str or array, optional
             Of VTK's images: the name of an array, or numbers. The active ones by default.
         spacing, origin, direction, affine : array_like, optional
@@ -89,11 +119,13 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             ``"average"``.
         resolution : array_like, optional
             ``add_volume``'s word for ``spacing``.
+        multi_colors : bool, default: False
+            Of a MultiBlock: a map of colours of its own for each block.
 
         Returns
         -------
         VolumeActor
-            Its properties may be changed at any time.
+            Its properties may be changed at any time. Of a MultiBlock, a list of one for each block.
 
         Raises
         ------

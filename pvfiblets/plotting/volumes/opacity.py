@@ -8,9 +8,20 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 from pyvista.plotting.tools import opacity_transfer_function
 
-__all__ = ["is_number", "number", "opacities", "surface_values", "value_limits"]
+__all__ = [
+    "along_logarithm",
+    "from_logarithm",
+    "is_number",
+    "number",
+    "opacities",
+    "surface_colours",
+    "surface_opacities",
+    "surface_values",
+    "value_limits",
+]
 
 
 def is_number(given: Any) -> bool:
@@ -85,6 +96,56 @@ def surface_values(given: Any, bounds: tuple[float, float]) -> tuple[float, ...]
     if values.dtype.kind not in "buif" or values.ndim > 1:
         raise ValueError(f"values is {given!r}; give the value of a surface, or a list of values")
     return tuple(values.astype(np.float64).ravel().tolist())
+
+
+def surface_opacities(given: Any, count: int) -> tuple[float, ...] | None:
+    """Return an opacity for each of some surfaces, or None where none is given.
+
+    Raises
+    ------
+    ValueError
+        If it is neither a number from 0 to 1 nor one for each.
+    """
+    if given is None:
+        return None
+    numbers = np.asarray([given] * count if is_number(given) else given)
+    fine = numbers.dtype.kind in "buif" and numbers.shape == (count,) and bool(((numbers >= 0) & (numbers <= 1)).all())
+    if not fine:
+        raise ValueError(
+            f"surface_opacity is {given!r}; give a number from 0 to 1, or one for each of the {count} values"
+        )
+    return tuple(numbers.astype(np.float64).tolist())
+
+
+def surface_colours(given: Any, count: int) -> list[pv.Color] | None:
+    """Return a colour for each of some surfaces, or None where none is given.
+
+    Raises
+    ------
+    ValueError
+        If there is not one for each.
+    """
+    if given is None:
+        return None
+    if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != count:
+        raise ValueError(f"surface_color is {given!r}; give a list of a colour for each of the {count} values")
+    return [pv.Color(colour) for colour in given]
+
+
+def along_logarithm(entries: np.ndarray, clim: tuple[float, ...]) -> np.ndarray:
+    """Return entries that lie evenly by value at places that lie evenly by its logarithm."""
+    low, high = clim
+    places = np.arange(len(entries)) / (len(entries) - 1.0)
+    values = low * np.exp(places * np.log(high / low))
+    return np.interp((values - low) / (high - low), places, entries)
+
+
+def from_logarithm(rows: np.ndarray, clim: tuple[float, ...]) -> np.ndarray:
+    """Return rows that lie evenly by the values' logarithm at places that lie evenly by value."""
+    low, high = clim
+    places = np.arange(len(rows)) / (len(rows) - 1.0)
+    wanted = np.log1p(places * (high - low) / low) / np.log(high / low)
+    return np.column_stack([np.interp(wanted, places, column) for column in rows.T])
 
 
 def value_limits(given: Any) -> tuple[float, float]:

@@ -79,7 +79,6 @@ def _unit_limits(volume: Any) -> tuple[float, float]:
 class VolumeSettings(Settings):
     """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that is set, in the order of the page."""
 
-    log_scale = NoSetting(_MISSING + "colours lie evenly; take the logarithm of the values first")
     nan_color = NoSetting(_MISSING + "missing voxels count as the least value")
     below_color = NoSetting(_MISSING + "opacity=[0, ...] or thresholds hide values below others")
     above_color = NoSetting(_MISSING + "opacity=[..., 0] or thresholds hide values above others")
@@ -106,6 +105,25 @@ class VolumeSettings(Settings):
         row=Row("Surface at", "Values of surfaces; empty: the middle.", type="numbers", optional=True,
                 read=lambda actor: list(actor.values), span=_values_span, matters=_mode("isosurface")),
     )  # fmt: skip
+    surface_opacity: Setting[Any] = Setting(
+        None,
+        "How opaque each of the surfaces of ``values`` is, 0 to 1: rays then pass through all that they meet.\n\n"
+        "One number is of all of them. ``None`` shows the first surface of each ray, which ``opacity``\n"
+        "makes translucent where that is one number.",
+        kind="float | Any",
+        header="float or list of float, optional",
+        where=CHOSEN,
+        row=Row("Surfaces' opacity", "Of each surface, 0 to 1; empty: rays end at the first.", type="numbers",
+                optional=True, span=lambda _actor: (0.0, 1.0), read=lambda actor: list(actor.surface_opacity or ()),
+                matters=_mode("isosurface")),
+    )  # fmt: skip
+    surface_color: Setting[Any] = Setting(
+        None,
+        "A colour for each of the surfaces of ``values``; ``None`` has that of the map, or ``color``.",
+        kind="Any",
+        header="list of color-like, optional",
+        where=CHOSEN,
+    )
     color: Setting[Any] = Setting(
         None,
         "One colour for all in place of the map; ``None`` for the map.",
@@ -118,10 +136,15 @@ class VolumeSettings(Settings):
         row=Row("Map", "Colours from the low end of the range to the high one.", type="choice", default="gray",
                 choices=shared.MAPS, matters=lambda s: s["color"] is None),
     )  # fmt: skip
-    clim = shared.CLIM.but(
-        row=replace(shared.CLIM_ROW, span=_values_span, matters=None)
-    )
+    clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_values_span, matters=None))
     n_colors = shared.N_COLORS.but(argument_doc="Number of colours in the map, between which light is linear.")
+    log_scale = shared.LOG_SCALE.but(
+        __doc__="Whether colours spread over the logarithm of the values; opacities do not, as in ``add_volume``.",
+        argument_doc="Spread colours, and not opacities, over the logarithm of the values, as ``add_volume`` does.",
+        row=Row(
+            "Logarithmic", "Spread the colours over the logarithm of the values.", matters=lambda s: s["color"] is None
+        ),
+    )
     annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity: Setting[Any] = Setting(
@@ -194,9 +217,7 @@ class VolumeSettings(Settings):
         where=CASTING,
         row=Row("Refine surfaces", "How a surface's place is found.", "Rays", matters=_mode("isosurface")),
     )
-    iterations: Setting[int] = Setting(
-        5, "Steps of that refinement, 1 to 64.", kind="int", where=CASTING
-    )
+    iterations: Setting[int] = Setting(5, "Steps of that refinement, 1 to 64.", kind="int", where=CASTING)
     integrator: Setting[str] = Setting(
         "adaptive",
         'How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '

@@ -1,0 +1,295 @@
+"""Several translucent surfaces of a volume, the logarithm of its values, blocks and voxels with colours of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from scipy.interpolate import RegularGridInterpolator
+
+from pvfiblets.volumes import as_raycast_volume
+
+N = 32
+LOOK = {"show_scalar_bar": False}
+
+
+def ball(dtype=np.float32):
+    """Distance from the middle, of which surfaces are spheres."""
+    image = pv.ImageData(dimensions=(N, N, N), origin=[-(N - 1) / 2] * 3)
+    image["far"] = np.linalg.norm(image.points, axis=1).astype(dtype)
+    return image
+
+
+@pytest.fixture
+def shot():
+    def draw(add, background="black", size=(96, 96), view="xy", peel=False):
+        plotter = pv.Plotter(off_screen=True, window_size=size)
+        plotter.set_background(background)
+        if peel:
+            plotter.disable_anti_aliasing()
+            plotter.enable_depth_peeling(16)
+        add(plotter)
+        plotter.camera_position = view
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = 18
+        picture = np.array(plotter.screenshot(return_img=True))[..., :3].astype(int)
+        plotter.close()
+        return picture
+
+    return draw
+
+
+def over(layers, behind=(0.0, 0.0, 0.0)):
+    """What (colour, opacity) of layers from the eye on add up to."""
+    light, left = np.zeros(3), 1.0
+    for colour, alpha in layers:
+        light, left = light + left * alpha * np.array(colour), left * (1 - alpha)
+    return 255 * (light + left * np.array(behind))
+
+
+RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+
+def test_each_ray_passes_through_all_surfaces_in_order(shot):
+    picture = shot(
+        lambda p: p.add_raycast_volume(
+            ball(), mode="isosurface", values=[5, 10, 14], surface_opacity=[0.5, 0.3, 0.2],
+            surface_color=["red", (0.0, 1.0, 0.0), "blue"], lighting=False, **LOOK,
+        )
+    )  # fmt: skip
+    pixel = 96 / 36  # a mm
+    for far, layers in (
+        (0, [(BLUE, 0.2), (GREEN, 0.3), (RED, 0.5), (RED, 0.5), (GREEN, 0.3), (BLUE, 0.2)]),
+        (7.5, [(BLUE, 0.2), (GREEN, 0.3), (GREEN, 0.3), (BLUE, 0.2)]),
+        (12, [(BLUE, 0.2), (BLUE, 0.2)]),
+        (16, []),
+    ):
+        assert np.abs(picture[48, 48 + round(far * pixel)] - over(layers)).max() <= 2
+
+
+def test_they_look_as_contours_with_depth_peeling(shot):
+    look = {"smooth_shading": True, "show_scalar_bar": False, "clim": (0, 20), "cmap": "coolwarm"}
+
+    def contours(plotter):
+        for value, opacity in ((6, 0.6), (12, 0.35)):
+            surface = ball().contour([value])
+            surface = surface.compute_normals(point_normals=True)
+            plotter.add_mesh(surface, scalars="far", opacity=opacity, **look)
+
+    def ours(plotter):
+        plotter.add_raycast_volume(
+            ball(),
+            mode="isosurface",
+            values=[6, 12],
+            surface_opacity=[0.6, 0.35],
+            cmap="coolwarm",
+            clim=(0, 20),
+            **LOOK,
+        )
+
+    right, found = shot(contours, peel=True), shot(ours)
+    inside = right.sum(axis=-1) > 0
+    off = np.abs(right - found).max(axis=-1)[inside]
+    assert inside.sum() > 1500
+    assert np.median(off) <= 3
+    assert np.quantile(off, 0.95) <= 16  # normals of contours are those of triangles
+
+
+def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
+    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacity=0.4, lighting=False,
+                                              cmap=["red", "blue"], clim=(4, 13), n_colors=2, **LOOK))  # fmt: skip
+    layers = [(BLUE, 0.4), (RED, 0.4), (RED, 0.4), (BLUE, 0.4)]
+    assert np.abs(one[48, 48] - over(layers)).max() <= 2
+
+
+def test_opaque_things_end_rays_and_cuts_open_surfaces(shot):
+    def add(plotter, cut=False):
+        actor = plotter.add_raycast_volume(
+            ball(), mode="isosurface", values=[5, 12], surface_opacity=[0.5, 0.25], surface_color=["red", "blue"],
+            lighting=False, **LOOK,
+        )  # fmt: skip
+        plotter.add_mesh(pv.Plane(i_size=60, j_size=60), color="white", lighting=False)
+        if cut:
+            actor.clip(pv.Box((-20, 20, -20, 20, -20, 8)))
+
+    white = (1.0, 1.0, 1.0)
+    assert np.abs(shot(add)[48, 48] - over([(BLUE, 0.25), (RED, 0.5)], white)).max() <= 2
+    assert np.abs(shot(lambda p: add(p, cut=True))[48, 48] - over([(RED, 0.5)], white)).max() <= 2
+
+
+def test_picks_sparse_rays_and_copies(shot):
+    found = {}
+
+    def add(plotter, sparse=1, copied=False):
+        actor = plotter.add_raycast_volume(
+            ball(), mode="isosurface", values=[5, 12], surface_opacity=[0.5, 0.0], surface_color=["red", "blue"],
+            lighting=False, sparse=sparse, **LOOK,
+        )  # fmt: skip
+        if copied:
+            twin = actor.copy()
+            plotter.remove_actor(actor)
+            plotter.add_actor(twin)
+            actor = twin
+        plotter.camera_position = "xy"
+        plotter.show(auto_close=False)
+        found["hit"] = actor.pick_at(48, 48)
+        found["layered"] = actor.casting.layered
+
+    whole = shot(add)
+    assert found["layered"]
+    assert found["hit"].value == 5
+    assert abs(np.linalg.norm(found["hit"].position) - 5) < 0.6
+    assert np.mean(np.abs(shot(lambda p: add(p, sparse=2)) - whole) > 4) < 0.05
+    assert np.array_equal(shot(lambda p: add(p, copied=True)), whole)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"surface_opacity": [0.1]}, "surface_opacity is .*one for each of the 2 values"),
+        ({"surface_opacity": [0.1, 1.2]}, "surface_opacity"),
+        ({"surface_opacity": "linear"}, "surface_opacity is 'linear'"),
+        ({"surface_color": "red"}, "surface_color is 'red'; give a list"),
+        ({"surface_color": ["red"]}, "each of the 2 values"),
+    ],
+)
+def test_wrong_ones_are_named(words, message):
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises(ValueError, match=message):
+        plotter.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], **words)
+    plotter.close()
+
+
+# Logarithm -----------------------------------------------------------------------------------------
+
+
+def powers():
+    image = pv.ImageData(dimensions=(N, 8, 8))
+    values = np.broadcast_to(10.0 ** np.linspace(0, 4, N)[:, None, None], (N, 8, 8)).astype(np.float32)
+    image["value"] = values.ravel(order="F")
+    return image
+
+
+@pytest.mark.parametrize("blending", ["composite", "maximum"])
+def test_log_scale_looks_as_in_add_volume(shot, blending):
+    def theirs(plotter):
+        shown = plotter.add_volume(powers(), mapper="gpu", opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
+                                   log_scale=True, cmap="viridis", **LOOK)  # fmt: skip
+        shown.prop.interpolation_type = "linear"
+
+    def ours(plotter):
+        plotter.add_raycast_volume(powers(), opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
+                                   log_scale=True, cmap="viridis", **LOOK)  # fmt: skip
+
+    right, found = shot(theirs), shot(ours)
+    there = (right.sum(axis=-1) > 30) & (found.sum(axis=-1) > 30)
+    assert there.mean() > 0.1
+    off = np.abs(right - found).max(axis=-1)[there]
+    assert np.median(off) <= 6
+    assert np.quantile(off, 0.9) <= 24
+    linear = shot(lambda p: p.add_raycast_volume(powers(), opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
+                                                 cmap="viridis", **LOOK))  # fmt: skip
+    assert np.median(np.abs(right - linear).max(axis=-1)[there]) > 40
+
+
+def test_log_scale_begins_above_zero_and_shows_in_the_bar():
+    image = powers()
+    image["value"] = np.where(image["value"] < 5, 0, image["value"]).astype(np.float32)
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_raycast_volume(image, log_scale=True)
+    low, high = actor.clim
+    assert low == image["value"][image["value"] > 0].min()
+    assert high == pytest.approx(1e4)
+    assert plotter.scalar_bar.GetLookupTable().GetScale() == 1  # VTK_SCALE_LOG10
+    with pytest.raises(ValueError, match="logarithmic scale needs values above zero"):
+        actor.clim = (0, 1)
+    actor.log_scale = False
+    assert plotter.scalar_bar.GetLookupTable().GetScale() == 0
+    plotter.close()
+
+
+# Blocks --------------------------------------------------------------------------------------------
+
+
+def test_blocks_are_added_as_by_add_volume(shot):
+    left, right = ball(), ball()
+    right.origin = (30.0, 0.0, 0.0)
+    blocks = pv.MultiBlock([left, None, pv.MultiBlock([right])])
+    plotter = pv.Plotter(off_screen=True)
+    actors = plotter.add_raycast_volume(blocks, name="both", multi_colors=True, **LOOK)
+    assert [actor.name for actor in actors] == ["both-0", "both-1-0"]
+    assert [actor.cmap for actor in actors] == ["Reds", "Greens"]
+    assert list(plotter.raycast_volumes) == actors
+    plotter.close()
+    picture = shot(lambda p: p.add_raycast_volume(blocks, cmap="gray", **LOOK))
+    assert (picture.sum(axis=-1) > 0).mean() > 0.3
+
+
+def test_a_block_that_is_refused_leaves_none_behind():
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises(TypeError, match="rays cannot be cast through a PolyData"):
+        plotter.add_raycast_volume(pv.MultiBlock([ball(), pv.Sphere()]))
+    assert not list(plotter.raycast_volumes)
+    with pytest.raises(ValueError, match="no blocks"):
+        plotter.add_raycast_volume(pv.MultiBlock())
+    plotter.close()
+
+
+# RGBA ----------------------------------------------------------------------------------------------
+
+
+def rgba():
+    image = pv.ImageData(dimensions=(N, N, N), origin=[-(N - 1) / 2] * 3)
+    far = np.linalg.norm(image.points, axis=1)
+    colours = np.clip(128 + 8 * image.points, 0, 255)
+    image["rgba"] = np.column_stack([colours, np.where(far < 13, 12 * (13 - far), 0)]).astype(np.uint8)
+    return image
+
+
+def light_of_rgba(x, y, unit):
+    """What a ray along z sees of `rgba`, by a sum of short steps; VTK takes opacity_unit_distance for 1, and doubles thin alpha."""
+    image, far = rgba(), np.arange((N - 1) / 2, -(N - 1) / 2, -0.02)
+    axis = np.arange(N) - (N - 1) / 2
+    field = RegularGridInterpolator(
+        (axis,) * 3, image["rgba"].reshape(N, N, N, 4).transpose(2, 1, 0, 3).astype(float) / 255
+    )
+    found = field(np.column_stack([np.full_like(far, x), np.full_like(far, y), far]))
+    depth = -np.log1p(-found[:, 3]) * 0.02 / unit
+    left = np.exp(-(np.cumsum(depth) - depth))
+    return 255 * ((left * -np.expm1(-depth))[:, None] * found[:, :3]).sum(axis=0)
+
+
+@pytest.mark.parametrize("unit", [2.0, 8.0])
+def test_rgba_shows_its_own_colours_and_alpha(shot, unit):
+    values = rgba()["rgba"].reshape(N, N, N, 4).transpose(2, 1, 0, 3)
+    for source in (rgba(), (values, np.array(rgba().index_to_physical_matrix))):
+        found = shot(lambda p, source=source: p.add_raycast_volume(source, opacity_unit_distance=unit))
+        for column, row in ((48, 48), (70, 40), (30, 60), (60, 25)):
+            x, y = (np.array([column, 95 - row]) + 0.5 - 48) * 36 / 96
+            assert np.abs(found[row, column] - light_of_rgba(x, y, unit)).max() <= 4
+
+
+def test_rgba_is_light_and_nothing_else():
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_raycast_volume(rgba())
+    assert actor.volume.colours.shape == (N, N, N, 3)
+    assert actor.clim == (0, 255)
+    assert len(plotter.scalar_bars) == 0
+    with pytest.raises(ValueError, match="voxels are RGBA: show them as mode 'composite'"):
+        actor.mode = "mip"
+    assert actor.mode == "composite"
+    actor.smooth = 1.0
+    plotter.show(auto_close=False)
+    actor.shade = True
+    plotter.render()
+    assert "VOLUME_COLOURS" in actor.explain()["features"]
+    plotter.close()
+
+
+def test_four_numbers_of_another_type_are_refused():
+    image = rgba()
+    image["rgba"] = image["rgba"].astype(np.float32)
+    with pytest.raises(ValueError, match="four of type uint8, RGBA"):
+        as_raycast_volume(image, scalars="rgba")
+    with pytest.raises(ValueError, match="RGBA of type uint8 is drawn as it is"):
+        as_raycast_volume(np.zeros((4, 4, 4, 4)))
