@@ -1,4 +1,4 @@
-"""Several translucent surfaces of a volume, the logarithm of its values, blocks and voxels with colours of their own."""
+"""Several translucent surfaces of a volume, the logarithm of its values, blocks, and voxels that have colours."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ def test_they_look_as_contours_with_depth_peeling(shot):
 
 
 def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
-    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacity=0.4, lighting=False,
-                                              cmap=["red", "blue"], clim=(4, 13), n_colors=2, **LOOK))  # fmt: skip
+    look = {"cmap": ["red", "blue"], "clim": (4, 13), "n_colors": 2, "lighting": False, **LOOK}
+    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacity=0.4, **look))
     layers = [(BLUE, 0.4), (RED, 0.4), (RED, 0.4), (BLUE, 0.4)]
     assert np.abs(one[48, 48] - over(layers)).max() <= 2
 
@@ -172,14 +172,14 @@ def powers():
 
 @pytest.mark.parametrize("blending", ["composite", "maximum"])
 def test_log_scale_looks_as_in_add_volume(shot, blending):
+    look = {"opacity": [0.3, 1.0], "opacity_unit_distance": 3.0, "blending": blending, "cmap": "viridis", **LOOK}
+
     def theirs(plotter):
-        shown = plotter.add_volume(powers(), mapper="gpu", opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
-                                   log_scale=True, cmap="viridis", **LOOK)  # fmt: skip
+        shown = plotter.add_volume(powers(), mapper="gpu", log_scale=True, **look)
         shown.prop.interpolation_type = "linear"
 
     def ours(plotter):
-        plotter.add_raycast_volume(powers(), opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
-                                   log_scale=True, cmap="viridis", **LOOK)  # fmt: skip
+        plotter.add_raycast_volume(powers(), log_scale=True, **look)
 
     right, found = shot(theirs), shot(ours)
     there = (right.sum(axis=-1) > 30) & (found.sum(axis=-1) > 30)
@@ -187,8 +187,7 @@ def test_log_scale_looks_as_in_add_volume(shot, blending):
     off = np.abs(right - found).max(axis=-1)[there]
     assert np.median(off) <= 6
     assert np.quantile(off, 0.9) <= 24
-    linear = shot(lambda p: p.add_raycast_volume(powers(), opacity=[0.3, 1.0], opacity_unit_distance=3.0, blending=blending,
-                                                 cmap="viridis", **LOOK))  # fmt: skip
+    linear = shot(lambda p: p.add_raycast_volume(powers(), **look))
     assert np.median(np.abs(right - linear).max(axis=-1)[there]) > 40
 
 
@@ -247,12 +246,14 @@ def rgba():
 
 
 def light_of_rgba(x, y, unit):
-    """What a ray along z sees of `rgba`, by a sum of short steps; VTK takes opacity_unit_distance for 1, and doubles thin alpha."""
+    """What a ray along z sees of `rgba`, by a sum of short steps.
+
+    In VTK's picture the unit distance is always 1, and thin alpha twice as dense.
+    """
     image, far = rgba(), np.arange((N - 1) / 2, -(N - 1) / 2, -0.02)
     axis = np.arange(N) - (N - 1) / 2
-    field = RegularGridInterpolator(
-        (axis,) * 3, image["rgba"].reshape(N, N, N, 4).transpose(2, 1, 0, 3).astype(float) / 255
-    )
+    colours = image["rgba"].reshape(N, N, N, 4).transpose(2, 1, 0, 3) / 255.0
+    field = RegularGridInterpolator((axis,) * 3, colours)
     found = field(np.column_stack([np.full_like(far, x), np.full_like(far, y), far]))
     depth = -np.log1p(-found[:, 3]) * 0.02 / unit
     left = np.exp(-(np.cumsum(depth) - depth))
