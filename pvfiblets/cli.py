@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from pvfiblets.cli_scene import add_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import FibletsError
 
@@ -366,9 +367,12 @@ def _serve(parser: argparse.ArgumentParser) -> None:
 
 
 def _scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("paths", metavar="FILE", nargs="+", help="tractograms of any format; meshes are drawn too")
     parser.add_argument(
-        "--view", choices=VIEWS, default="oblique", help="from where (default: oblique; coronal is seen from the front)"
+        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
+        "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json"
+    )  # fmt: skip
+    parser.add_argument(
+        "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"
     )
     parser.add_argument(
         "--scalars", metavar="NAME", help="orientation, length, curvature, arc_length, an array of the file, or a file "
@@ -380,9 +384,10 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     _look(parser)
     parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="of lines (default: 1)")
     parser.add_argument("--opacity", type=float, metavar="SHARE", help="0 to 1 (default: 1)")
-    parser.add_argument("--background", default="black", metavar="COLOR", help="behind it all (default: %(default)s)")
+    parser.add_argument("--background", metavar="COLOR", help="behind it all (default: black)")
     parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
     _antialias(parser)
+    add_options(parser)
 
 
 def _look(parser: argparse.ArgumentParser) -> None:

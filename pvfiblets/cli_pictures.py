@@ -14,6 +14,8 @@ from pvfiblets.formats.registry import UnknownFormatError, suffix_of
 from pvfiblets.web.values import plain
 
 # Where a scalar bar covers nothing of a brain.
+NOTHING: dict[str, Any] = {"clip": [], "clip_away": [], "include": [], "exclude": [], "criterion": [], "groups": None,
+                           "subset": None}  # fmt: skip
 UPRIGHT = {"vertical": True, "height": 0.5, "position_x": 0.9, "position_y": 0.25}
 
 
@@ -22,11 +24,16 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
     suffix = Path(output).suffix.lower()
     if suffix not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
         raise ValueError(f"{output}: pictures are written as .png, .jpg, .bmp or .tif; name the output so")
-    plotter = make_plotter(off_screen=True, size=size)
+    plotter, scene = make_plotter(off_screen=True, size=size), None
     try:
-        fill(plotter, paths, **looks)
-        plotter.screenshot(output, transparent_background=transparent, return_img=False)
+        scene = fill(plotter, paths, **looks)
+        if scene is None:
+            plotter.screenshot(output, transparent_background=transparent, return_img=False)
+        else:
+            scene.screenshot(output, transparent=transparent)
     finally:
+        if scene is not None:
+            scene.close()
         plotter.close()
 
 
@@ -35,9 +42,13 @@ def show(paths: list[str], **looks: Any) -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise OSError("there is no display to show a window on; use `pvfiblets screenshot`")
     plotter = make_plotter(off_screen=False, size=None)
-    fill(plotter, paths, **looks)
+    scene = fill(plotter, paths, **looks)
     plotter.add_axes()
-    plotter.show(title="pvfiblets")
+    try:
+        plotter.show(title="pvfiblets")
+    finally:
+        if scene is not None:
+            scene.close()
 
 
 def make_plotter(*, off_screen: bool, size: tuple[int, int] | None) -> Any:
@@ -53,62 +64,98 @@ def fill(
     plotter: Any,
     paths: list[str],
     *,
-    view: str,
+    view: str | None,
     scalars: str | None,
     color: str | None,
     cmap: str | None,
     clim: list[float] | None,
     line_width: float | None,
     opacity: float | None,
-    background: str,
+    background: str | None,
     no_lighting: bool,
     look: str | None = None,
     antialias: str | int | None = None,
-) -> None:
-    """Put files into a plotter's scene and point the camera."""
+    **wishes: Any,
+) -> Any:
+    """Put files into a plotter's scene and point the camera; of a session, return the scene that keeps it."""
+    from pvfiblets.cli_scene import cut_and_filter, open_session, options_of, read_mesh
     from pvfiblets.plotting.viewpoints import point_camera
 
     if antialias is not None:
         plotter.picture.antialias = antialias
-    plotter.set_background(background)
+    for path in paths:
+        if not Path(path).exists():
+            raise FileNotFoundError(2, "No such file or directory", path)
+    if any(path.lower().endswith(".json") for path in paths):
+        said = {"scalars": scalars, "color": color, "cmap": cmap, "clim": clim, "line_width": line_width,
+                "opacity": opacity, "background": background, "no_lighting": no_lighting, "look": look,
+                **wishes}  # fmt: skip
+        if len(paths) > 1:
+            raise ValueError(f"{' '.join(paths)}: a session has all of its files; give it alone")
+        if named := [name for name, value in said.items() if value not in (None, False, [])]:
+            raise ValueError(f"{paths[0]} says itself what is shown, and how: leave --{named[0].replace('_', '-')} out")
+        scene = open_session(plotter, paths[0])
+        if view is not None:
+            point_camera(plotter, view)
+        return scene
+    plotter.set_background("black" if background is None else background)
     text = "black" if sum(plotter.background_color.float_rgb) > 1.5 else "white"
     # What is not said is left to the look.
     said = {"look": look, "line_width": line_width, "opacity": opacity, "lighting": False if no_lighting else None}
     said = {name: value for name, value in said.items() if value is not None}
+    said |= {"scalars": scalars, "color": color, "cmap": cmap, "clim": clim}
+    bars = {"color": text, **UPRIGHT}
+    of = {kind: options_of(wishes.get(kind, []), f"--{kind}") for kind in ("lines", "volumes", "meshes")}
+    actors: dict[str, list[Any]] = {kind: [] for kind in of}
     for path in paths:
-        if not Path(path).exists():
-            raise FileNotFoundError(2, "No such file or directory", path)
-        if is_mesh(path):
-            import pyvista
-
-            plotter.add_mesh(pyvista.read(path), color="lightgray")
-            continue
-        plotter.add_fiblets(
-            path,
-            scalars=scalars,
-            color=color,
-            cmap=cmap,
-            clim=clim,
-            **said,
-            scalar_bar_args={"color": text, **UPRIGHT},
-            render=False,
-            progress=sys.stderr.isatty(),
-        )
-    point_camera(plotter, view)
+        kind = kind_of(path)
+        if kind == "meshes":
+            added = plotter.add_mesh(read_mesh(path), **{"color": "lightgray", **of[kind]})
+        elif kind == "volumes":
+            usual = {"cmap": "gray", "show_scalar_bar": False, "render": False}
+            added = plotter.add_raycast_volume(read_volume(path), **{**usual, **of[kind]})
+        else:
+            usual = {**said, "scalar_bar_args": bars, "render": False, "progress": sys.stderr.isatty()}
+            added = plotter.add_fiblets(path, **{**usual, **of[kind]})
+        actors[kind].append(added)
+    for kind, given in of.items():
+        if given and not actors[kind]:
+            raise ValueError(f"--{kind} is about {kind}, and no FILE has any")
+    cut_and_filter(actors, {**NOTHING, **wishes})
+    point_camera(plotter, view or "oblique")
+    return None
 
 
-def is_mesh(path: str) -> bool:
-    """Return whether a file is a surface rather than lines: VTK's formats may be either."""
+def kind_of(path: str) -> str:
+    """Return whether a file is of lines, a volume or a mesh: VTK's formats may be any of them."""
+    from pvfiblets.volumes.sources import SUFFIXES as IMAGES
+
+    lower = path.lower()
+    if lower.endswith(IMAGES):
+        return "volumes"
     try:
         suffix = suffix_of(path)
     except UnknownFormatError:
-        return Path(path).suffix.lower() in (".ply", ".stl", ".obj", ".vtu")
+        if lower.endswith((".ply", ".stl", ".obj", ".vtu", ".off", ".gii", ".gii.gz")):
+            return "meshes"
+        raise
     if suffix not in (".vtk", ".vtp"):
-        return False
+        return "lines"
     import pyvista
 
     data = pyvista.read(path)
-    return not (isinstance(data, pyvista.PolyData) and data.n_lines)
+    if isinstance(data, (pyvista.ImageData, pyvista.RectilinearGrid)):
+        return "volumes"
+    return "lines" if isinstance(data, pyvista.PolyData) and data.n_lines else "meshes"
+
+
+def read_volume(path: str) -> Any:
+    """Return what ``add_raycast_volume`` takes of a file: its path, but of VTK's own format the image."""
+    if not path.lower().endswith(".vtk"):
+        return path
+    import pyvista
+
+    return pyvista.read(path)
 
 
 def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -> None:

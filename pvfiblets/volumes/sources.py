@@ -173,9 +173,9 @@ def _three_axes(values: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
 def _check_axes(shape: tuple[int, ...], what: str) -> None:
     if len(shape) < 3 or any(n != 1 for n in shape[3:]):
         colours = ", as RGB colours have" if len(shape) == 4 and shape[3] in (3, 4) else ""
-        if colours:
-            colours += " (RGBA of type uint8 is drawn as it is)"
         volumes = ": give one of its volumes, such as image[..., 0]" if len(shape) > 3 else ""
+        if colours:
+            volumes += "; RGBA of type uint8 is drawn as it is"
         raise ValueError(
             f"{what} has the shape {tuple(shape)}{colours}; three axes (nx, ny, nz) with one number per voxel are "
             f"needed{volumes}"

@@ -381,7 +381,7 @@ def test_a_refused_change_leaves_all_as_it_was(name, value):
 def test_settings_that_others_have_are_refused_by_name():
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.add_raycast_volume(BALL)
-    for name in ("log_scale", "nan_color", "below_color", "above_color"):
+    for name in ("nan_color", "below_color", "above_color"):
         with pytest.raises(AttributeError, match=f"have no {name}: "):
             setattr(actor, name, 1)
     assert repr(actor).endswith("21 x 21 x 21 voxels, composite>")

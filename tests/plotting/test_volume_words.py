@@ -133,8 +133,3 @@ def test_even_ones_keep_their_numbers_and_others_are_bounded():
     folded["values"] = np.arange(64.0)
     with pytest.raises(ValueError, match="x coordinates do not increase"):
         as_raycast_volume(folded)
-
-
-def test_blocks_are_added_one_by_one(plotter, noise):
-    with pytest.raises(TypeError, match="add each of its blocks by itself"):
-        plotter.add_raycast_volume(pv.MultiBlock([noise]))

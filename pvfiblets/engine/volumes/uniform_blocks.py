@@ -19,8 +19,8 @@ from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]
 
-MAX_LEVELS = 12
-"""Levels of an octree: leaves of 8 voxels in a volume of up to 16,384 along an axis."""
+MAX_LEVELS = 16
+"""Levels of an octree: leaves of 8 voxels in a volume of up to 262,144 along an axis."""
 
 MOST_LAMPS = 8
 """Lamps of a scene that shine on light through a volume: the first ones that are on."""
@@ -123,7 +123,10 @@ class RayBlock:
         if (low > high).any() or not direction.any():  # beside the volume, or there is no depth: nothing is there
             planes = [np.array([0.0, 0.0, 0.0, -1.0])]
         if len(levels) > MAX_LEVELS:
-            raise EngineError(f"an octree of {len(levels)} levels; this program has {MAX_LEVELS} at most")
+            raise EngineError(
+                f"a volume of {max(volume.shape)} voxels along an axis, of whose octree this program has "
+                f"{8 << (MAX_LEVELS - 1)} at most; give octree=False, or a part of it"
+            )
         transfer = volume.value_range if casting.transfer is None else casting.transfer.clim
         self.buffer.write(
             RAYCAST_BLOCK.pack(
