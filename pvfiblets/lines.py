@@ -298,6 +298,19 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
     return lines, attachments.name_of(path)
 
 
+def told_lines(source: Any) -> Any:
+    """Return the Streamlines of another library's object or a MultiBlock, whose data then have names; all else as it is.
+
+    PolyData and grids stay: their lines may share points, as at bifurcations.
+    """
+    from pvfiblets.other_libraries import streamlines_of
+
+    if hasattr(source, "IsA") and not source.IsA("vtkMultiBlockDataSet"):
+        return source
+    found = streamlines_of(source)
+    return source if found is None else found
+
+
 def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
     """The array with its one column as numbers, as tractograms store them."""
     if array.dtype.kind not in "fiub":

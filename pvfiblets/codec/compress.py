@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..invalid_points import Invalid, valid_points
 from ..streamlines import Streamlines
 from . import parameters as limits
 from .exact import plain_records, raw_bytes
@@ -55,6 +56,7 @@ def compress(
     per_point: PerPoint = (),
     per_point_bits: int = 8,
     exact: bool | None = None,
+    nan: Invalid = "error",
     progress: bool = False,
 ) -> FibletSet:
     """Compress streamlines into fiblets.
@@ -100,6 +102,9 @@ def compress(
         Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
         `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
         a gigabyte of them. False codes in any case.
+    nan : {'error', 'drop', 'split'}
+        What becomes of points that are not finite: an error, none, so that the line goes straight on, or the end of the
+        line, which goes on as another streamline with the same data. ``dropped`` counts them.
     progress : bool
         Show a progress bar.
 
@@ -111,9 +116,9 @@ def compress(
     Raises
     ------
     ValueError
-        For points that are not finite, a step or promise that is not a positive number, an angle that is not between 0
-        and 90, an unknown effort or order, or a per-point name that the streamlines do not have (the error lists those
-        they have).
+        For points that are not finite, unless `nan` says otherwise, a step or promise that is not a positive number, an
+        angle that is not between 0 and 90, an unknown effort or order, or a per-point name that the streamlines do not
+        have (the error lists those they have).
 
     Notes
     -----
@@ -125,6 +130,7 @@ def compress(
             f"compress takes pvfiblets.Streamlines, got {type(streamlines).__name__}; "
             "pvfiblets.read(path) or Streamlines.from_list(arrays) makes one"
         )
+    streamlines = valid_points(streamlines, nan)
     per_point = choose_per_point(streamlines, per_point, per_point_bits)
     check_order(order)
     plain = is_plain(step, max_error, max_angle, effort, order)

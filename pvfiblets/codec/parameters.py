@@ -98,7 +98,8 @@ class Survey:
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
             bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
             raise ValueError(
-                f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair it"
+                f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair it, "
+                "or give nan='drop' or nan='split'"
             )
         if max(float(np.abs(lower).max()), float(np.abs(upper).max())) > LARGEST:
             raise ValueError(

@@ -17,6 +17,7 @@ from pvfiblets.codec.point_arrays import with_coded_values
 from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
+from pvfiblets.invalid_points import valid_points
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
@@ -116,6 +117,12 @@ def as_fiblets(
             streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
             keep.append(UNNAMED)
             scalars = UNNAMED
+    nan = options.pop("nan", "error")
+    per_line = isinstance(scalars, np.ndarray) and len(scalars) == len(streamlines) and scalars.dtype.kind in "buif"
+    if nan == "split" and per_line:  # there may be more streamlines then
+        streamlines.per_streamline = {**streamlines.per_streamline, UNNAMED: scalars}
+        scalars = UNNAMED
+    streamlines = valid_points(streamlines, nan)
     fiblets = compress(
         streamlines,
         max_error=max_error,

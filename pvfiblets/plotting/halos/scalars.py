@@ -12,7 +12,7 @@ import numpy as np
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
-from pvfiblets.lines import with_values
+from pvfiblets.lines import told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
@@ -297,9 +297,9 @@ def _filter_name(filter_by: Any) -> str | None:
 
 
 def _read_lines(source: Any) -> Any:
-    """Return the data of a file; anything else as it is."""
+    """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
-        return source
+        return told_lines(source)
     from pvfiblets import formats
     from pvfiblets.codec.fibletset import FibletSet
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
-from pvfiblets.lines import with_values
+from pvfiblets.lines import told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
@@ -276,9 +276,9 @@ def _slopes(tubes: SplineTubes, rows: np.ndarray) -> np.ndarray:
 
 
 def _read(source: Any) -> Any:
-    """Return the data of a file; anything else as it is."""
+    """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
-        return source
+        return told_lines(source)
     from pvfiblets import formats
     from pvfiblets.codec.fibletset import FibletSet
 
