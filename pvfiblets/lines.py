@@ -299,7 +299,7 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
 
 
 def told_lines(source: Any) -> Any:
-    """Return the Streamlines of another library's object or a MultiBlock, whose data then have names; all else as it is.
+    """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is.
 
     PolyData and grids stay: their lines may share points, as at bifurcations.
     """
