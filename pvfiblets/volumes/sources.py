@@ -273,10 +273,10 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
         values = vtk_to_numpy(array)
         n = array.GetNumberOfComponents()
         if n != 1 and not (n == 4 and values.dtype == np.uint8 and not of_cells and not uneven):
-            colours = ", RGB colours perhaps" if n in (3, 4) else ""
+            colours = {2: ", complex numbers perhaps", 3: ", RGB colours perhaps", 4: ", RGBA perhaps"}.get(n, "")
             raise ValueError(
                 f"the image's array {name!r} has {n} numbers per voxel{colours}; one is needed, or four of type uint8, "
-                "RGBA, for each point of an ImageData: take a column, or a norm, first"
+                "RGBA, for each point of an ImageData: take a column, or a norm such as numpy.abs, first"
             )
     else:
         values, name = np.asarray(scalars), "values"

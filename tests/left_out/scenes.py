@@ -226,7 +226,7 @@ SCENES = {
     "volume: light": made("volume", mode="composite", opacity=[0, 0.5]),
     "volume: dense light": made("volume", mode="composite"),
     "volume: shaded light": made("volume", mode="composite", shade=True),
-    "volume: translucent surfaces": made("volume", mode="isosurface", values=0.7, surface_opacity=0.5),
+    "volume: translucent surfaces": made("volume", mode="isosurface", values=0.7, surface_opacities=0.5),
     "volume: minimum": made("volume", mode="minimum"),
     "volume: average": made("volume", mode="average"),
     "volume: nearest": made("volume", filter="nearest"),

@@ -422,7 +422,7 @@ def test_the_octree_and_what_it_costs_are_told(plotter):
 
 
 def test_sparse_rays_are_a_setting(plotter):
-    actor = plotter.add_raycast_volume(np.zeros((8, 8, 8), np.float32), sparse=2, sparse_threshold=0.1)
+    actor = plotter.add_raycast_volume(np.zeros((8, 8, 8), np.float32), sparse=2, sparse_threshold=0.1, clim=(-1, 1))
     assert (actor.casting.sparse, actor.casting.sparse_threshold) == (2, 0.1)
     actor.sparse = 4
     assert actor.copy().sparse == 4

@@ -53,8 +53,8 @@ RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 def test_each_ray_passes_through_all_surfaces_in_order(shot):
     picture = shot(
         lambda p: p.add_raycast_volume(
-            ball(), mode="isosurface", values=[5, 10, 14], surface_opacity=[0.5, 0.3, 0.2],
-            surface_color=["red", (0.0, 1.0, 0.0), "blue"], lighting=False, **LOOK,
+            ball(), mode="isosurface", values=[5, 10, 14], surface_opacities=[0.5, 0.3, 0.2],
+            surface_colors=["red", (0.0, 1.0, 0.0), "blue"], lighting=False, **LOOK,
         )
     )  # fmt: skip
     pixel = 96 / 36  # a mm
@@ -81,7 +81,7 @@ def test_they_look_as_contours_with_depth_peeling(shot):
             ball(),
             mode="isosurface",
             values=[6, 12],
-            surface_opacity=[0.6, 0.35],
+            surface_opacities=[0.6, 0.35],
             cmap="coolwarm",
             clim=(0, 20),
             **LOOK,
@@ -97,7 +97,7 @@ def test_they_look_as_contours_with_depth_peeling(shot):
 
 def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
     look = {"cmap": ["red", "blue"], "clim": (4, 13), "n_colors": 2, "lighting": False, **LOOK}
-    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacity=0.4, **look))
+    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacities=0.4, **look))
     layers = [(BLUE, 0.4), (RED, 0.4), (RED, 0.4), (BLUE, 0.4)]
     assert np.abs(one[48, 48] - over(layers)).max() <= 2
 
@@ -105,7 +105,7 @@ def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
 def test_opaque_things_end_rays_and_cuts_open_surfaces(shot):
     def add(plotter, cut=False):
         actor = plotter.add_raycast_volume(
-            ball(), mode="isosurface", values=[5, 12], surface_opacity=[0.5, 0.25], surface_color=["red", "blue"],
+            ball(), mode="isosurface", values=[5, 12], surface_opacities=[0.5, 0.25], surface_colors=["red", "blue"],
             lighting=False, **LOOK,
         )  # fmt: skip
         plotter.add_mesh(pv.Plane(i_size=60, j_size=60), color="white", lighting=False)
@@ -122,7 +122,7 @@ def test_picks_sparse_rays_and_copies(shot):
 
     def add(plotter, sparse=1, copied=False):
         actor = plotter.add_raycast_volume(
-            ball(), mode="isosurface", values=[5, 12], surface_opacity=[0.5, 0.0], surface_color=["red", "blue"],
+            ball(), mode="isosurface", values=[5, 12], surface_opacities=[0.5, 0.0], surface_colors=["red", "blue"],
             lighting=False, sparse=sparse, **LOOK,
         )  # fmt: skip
         if copied:
@@ -146,11 +146,11 @@ def test_picks_sparse_rays_and_copies(shot):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"surface_opacity": [0.1]}, "surface_opacity is .*one for each of the 2 values"),
-        ({"surface_opacity": [0.1, 1.2]}, "surface_opacity"),
-        ({"surface_opacity": "linear"}, "surface_opacity is 'linear'"),
-        ({"surface_color": "red"}, "surface_color is 'red'; give a list"),
-        ({"surface_color": ["red"]}, "each of the 2 values"),
+        ({"surface_opacities": [0.1]}, "surface_opacities is .*one for each of the 2 values"),
+        ({"surface_opacities": [0.1, 1.2]}, "surface_opacities"),
+        ({"surface_opacities": "linear"}, "surface_opacities is 'linear'"),
+        ({"surface_colors": "red"}, "surface_colors is 'red'; give a list"),
+        ({"surface_colors": ["red"]}, "each of the 2 values"),
     ],
 )
 def test_wrong_ones_are_named(words, message):

@@ -104,7 +104,7 @@ def test_words_that_contradict_or_have_no_meaning(plotter, noise):
     ):
         with pytest.raises(ValueError, match=message):
             plotter.add_raycast_volume(noise, **words)
-    actor = plotter.add_raycast_volume(np.zeros((3, 4, 5)), resolution=(1, 2, 3))
+    actor = plotter.add_raycast_volume(np.zeros((3, 4, 5)), clim=(-1, 1), resolution=(1, 2, 3))
     assert np.allclose(actor.volume.spacing, (1, 2, 3))
 
 
@@ -133,3 +133,93 @@ def test_even_ones_keep_their_numbers_and_others_are_bounded():
     folded["values"] = np.arange(64.0)
     with pytest.raises(ValueError, match="x coordinates do not increase"):
         as_raycast_volume(folded)
+
+
+def shown(plotter):
+    plotter.camera_position = "iso"
+    plotter.show(auto_close=False)
+    plotter.render()
+    return np.array(plotter.screenshot(return_img=True)).astype(int)
+
+
+def test_a_time_series_is_updated_in_place_or_by_other_sources(plotter, noise):
+    right = pv.Plotter(off_screen=True, window_size=(80, 60))
+    right.set_background("black")
+    later = noise.copy()
+    later["values"] = 0.3 * np.array(noise["values"])
+    look = {"clim": (0, 1), "cmap": "hot", "show_scalar_bar": False}
+    right.add_raycast_volume(later, **look)
+    expected = shown(right)
+    right.close()
+    actor = plotter.add_raycast_volume(noise, scalars="values", **look)
+    first = shown(plotter)
+    noise["values"][:] *= 0.3
+    actor.update()
+    assert np.abs(shown(plotter) - expected).max() <= 1
+    noise["values"][:] /= 0.3
+    actor.update(noise.copy())
+    assert np.abs(shown(plotter) - first).max() <= 1
+    actor.update(np.asarray(later["values"]).reshape(N, N, N, order="F"), scalars=None)
+    assert np.abs(shown(plotter) - expected).max() <= 1
+    with pytest.raises(ValueError, match="2-D image"):
+        actor.update(np.zeros((4, 4, 1)), scalars=None)
+    assert np.abs(shown(plotter) - expected).max() <= 1
+
+
+def test_an_actor_made_by_hand_is_updated_too(noise):
+    from pvfiblets.plotting.volumes.actor import VolumeActor
+
+    values = np.zeros((4, 4, 4), np.float32)
+    actor = VolumeActor(as_raycast_volume(values))
+    values[:] = np.arange(4)
+    actor.update()
+    assert actor.clim == (0.0, 3.0)
+    actor.volume = as_raycast_volume(noise)
+    actor.update()
+    assert actor.volume.shape == (N, N, N)
+
+
+def test_other_names_of_add_volume(plotter, noise):
+    actor = plotter.add_raycast_volume(noise, colormap="bone", rng=(0, 2), categories=5)
+    assert (actor.cmap, actor.clim, actor.n_colors) == ("bone", (0, 2), 5)
+    labels = pv.ImageData(dimensions=(3, 3, 3))
+    labels["a"] = np.arange(27) % 3
+    labels.cell_data["a"] = np.full(8, 9.0)
+    assert plotter.add_raycast_volume(labels, scalars="a", categories=True).n_colors == 3
+    assert plotter.add_raycast_volume(labels, scalars="a", preference="cell", clim=(0, 9)).volume.value_range == (9, 9)
+    for words, message in (
+        ({"mapper": "gpu"}, "mapper of add_volume chooses among VTK's"),
+        ({"culling": "back"}, "culling of add_volume"),
+        ({"preference": "row"}, "preference is 'row'"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            plotter.add_raycast_volume(noise, **words)
+
+
+def test_a_table_of_opacities_is_taken(plotter, noise):
+    table = pv.LookupTable("viridis", scalar_range=(0.2, 0.8))
+    table.apply_opacity([0, 0.2, 0.8])
+    alpha = plotter.add_raycast_volume(noise, cmap=table).casting.transfer.table[:, 3]
+    assert np.allclose(alpha, table.values[:, 3] / 255)
+    assert np.allclose(plotter.add_raycast_volume(noise, cmap=table, opacity=0.5).casting.transfer.table[:, 3], 0.5)
+    plain = pv.LookupTable("viridis", scalar_range=(0.2, 0.8))
+    alpha = plotter.add_raycast_volume(noise, cmap=plain).casting.transfer.table[:, 3]
+    assert np.allclose(alpha, np.linspace(0, 1, 256), atol=3e-3)
+
+
+def test_opacities_of_bytes(plotter, noise):
+    steps = np.r_[np.zeros(128), np.full(128, 255)]
+    for given in (steps, steps.tolist(), steps.astype(np.uint8)):
+        alpha = plotter.add_raycast_volume(noise, opacity=given).casting.transfer.table[:, 3]
+        assert np.array_equal(alpha, steps / 255)
+    with pytest.raises(ValueError, match="opacity is 255 at place 1"):
+        plotter.add_raycast_volume(noise, opacity=[0, 255])
+
+
+def test_one_value_that_does_not_show_is_told(plotter):
+    flat = np.full((4, 4, 4), 7.0)
+    with pytest.warns(UserWarning, match="all voxels have the value 7, where opacity is 0"):
+        plotter.add_raycast_volume(flat)
+    plotter.add_raycast_volume(flat, opacity=0.5)
+    plotter.add_raycast_volume(flat, clim=(0, 10))
+    plotter.add_raycast_volume(flat, mode="isosurface", values=3.0)

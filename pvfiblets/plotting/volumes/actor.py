@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -60,6 +61,8 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         What to draw.
     settings : mapping, optional
         Arguments of ``plotter.add_raycast_volume`` that are settings, by name.
+    given : tuple of object and dict, optional
+        Of what the volume was made, and what was said of it, for :meth:`update`.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
@@ -75,29 +78,31 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         volume: RaycastVolume,
         *,
         settings: Mapping[str, Any] | None = None,
+        given: tuple[Any, dict[str, Any]] | None = None,
         name: str | None = None,
         theme: Any = None,
     ) -> None:
-        given = Given(VolumeSettings, settings)
-        coarser = InteractiveQuality.of_quality(given["interactive_quality"])
+        self._given = given
+        chosen = Given(VolumeSettings, settings)
+        coarser = InteractiveQuality.of_quality(chosen["interactive_quality"])
         theme = pv.global_theme if theme is None else theme
-        self._source, self._smooth = _checked(volume), given["smooth"]
+        self._source, self._smooth = _checked(volume), chosen["smooth"]
         self._volume = _smoothed(volume, self._smooth)
-        self._lit = theme.lighting if given["lighting"] is None else given["lighting"]
-        self._init_colours(None, given, theme)
+        self._lit = theme.lighting if chosen["lighting"] is None else chosen["lighting"]
+        self._init_colours(None, chosen, theme)
         self._init_shading()
         self._of_surfaces: dict[str, Any] = {}
         self._clips: dict[str, Region] = {}
         self._see_through = 1.0
         self._scalars = _scalars(self._volume)
-        made, colouring = self._init_rays(given)
+        made, colouring = self._init_rays(chosen)
         mapper = PlottedRaycast(self._volume, made, colouring=colouring)
         super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, given)
-        self._quality, mapper.coarser = given["interactive_quality"], coarser
-        mapper.shaded = bool(given["shade"])
+        self._finish(mapper, chosen)
+        self._quality, mapper.coarser = chosen["interactive_quality"], coarser
+        mapper.shaded = bool(chosen["shade"])
         self._look()
-        self._take(given)
+        self._take(chosen)
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, self._volume.shape))
@@ -113,6 +118,40 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     @volume.setter
     def volume(self, volume: RaycastVolume) -> None:
         self._hold(_checked(volume), self._smooth)
+        self._given = None
+
+    def update(self, source: Any = None, **where: Any) -> None:
+        """Draw other numbers from the next render on, as they change with time; settings stay.
+
+        Parameters
+        ----------
+        source : ImageData, array, (array, affine), nibabel image, RaycastVolume or path, optional
+            As for ``plotter.add_raycast_volume``. By default what was added or given last, read anew: of an image or
+            array that was written to in place.
+        **where
+            Of :func:`pvfiblets.volumes.as_raycast_volume`, such as ``scalars`` and ``spacing``. By default what was
+            said of the source before.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As of ``plotter.add_raycast_volume``; nothing is changed then.
+
+        Notes
+        -----
+        ``clim=None`` is the range of the new values; give ``clim`` to have the same colours at all times.
+        """
+        from pvfiblets.volumes.sources import as_raycast_volume
+
+        before, words = (self._source, {}) if self._given is None else self._given
+        source = before if source is None else source
+        words = {**words, **where}
+        if isinstance(source, RaycastVolume) and not words:  # the object is the same, and its numbers may not be
+            volume = replace(source) if source is self._source else source
+        else:
+            volume = as_raycast_volume(source, **words)
+        self._hold(volume, self._smooth)
+        self._given = source, words
 
     def _read_smooth(self) -> Any:
         return self._smooth
@@ -201,7 +240,7 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         VolumeActor
             Not in any plotter yet.
         """
-        twin = VolumeActor(self._source, settings=self._kept(), theme=self._theme)
+        twin = VolumeActor(self._source, settings=self._kept(), given=self._given, theme=self._theme)
         twin._be_like(self, deep)
         twin._cut(self._clips)
         return twin

@@ -68,11 +68,11 @@ class RaySettings(VolumeSettings, Coloured):
     def _read_values(self) -> tuple[float, ...]:
         return surface_values(self._choices["values"], self._volume.value_range)
 
-    def _read_surface_opacity(self) -> tuple[float, ...] | None:
-        return surface_opacities(self._choices["surface_opacity"], len(self.values))
+    def _read_surface_opacities(self) -> tuple[float, ...] | None:
+        return surface_opacities(self._choices["surface_opacities"], len(self.values))
 
-    def _read_surface_color(self) -> list[pv.Color] | None:
-        return surface_colours(self._choices["surface_color"], len(self.values))
+    def _read_surface_colors(self) -> list[pv.Color] | None:
+        return surface_colours(self._choices["surface_colors"], len(self.values))
 
     def _read_thresholds(self) -> Any:
         return self._choices["thresholds"]
@@ -100,7 +100,7 @@ class RaySettings(VolumeSettings, Coloured):
     def scalars_title(self) -> str | None:
         """What a scalar bar says; ``None`` where there is one colour."""
         own = self._settings.color is not None or self._volume.colours is not None
-        own |= self.casting.layered and self._choices["surface_color"] is not None
+        own |= self.casting.layered and self._choices["surface_colors"] is not None
         return None if own or self._scalars is None else self._scalars.title
 
     # Inside -------------------------------------------------------------------------------------
@@ -161,7 +161,7 @@ class RaySettings(VolumeSettings, Coloured):
         if mode != SURFACE:
             _widen(self._table, max(int(settings.n_colors), 2))
         self._check_colours(mode)
-        alpha = opacities(self.opacity, self._table.n_values)
+        alpha = self._opacities()
         if settings.color is not None:
             self._table.values[:, :3] = pv.Color(settings.color).int_rgb
         clim = tuple(self._table.scalar_range)
@@ -197,9 +197,18 @@ class RaySettings(VolumeSettings, Coloured):
             return held
         return Transfer(table, clim, unit)
 
+    def _opacities(self) -> np.ndarray:
+        """Return an opacity for each entry of the table: of a table of the user's own, where it has any, its own."""
+        cmap = self._settings.cmap
+        if isinstance(cmap, pv.LookupTable) and isinstance(self.opacity, str) and self.opacity == "linear":
+            own = np.asarray(cmap.values, np.float64)[:, 3] / 255.0
+            if (own < 1.0).any():
+                return np.interp(np.linspace(0.0, 1.0, self._table.n_values), np.linspace(0.0, 1.0, len(own)), own)
+        return opacities(self.opacity, self._table.n_values)
+
     def _surfaces(self) -> tuple[tuple[float, ...], ...] | None:
         """Return RGBA of each surface where there is to be seen more than the first of a ray."""
-        opacity, colours = self.surface_opacity, self.surface_color
+        opacity, colours = self.surface_opacities, self.surface_colors
         if opacity is None and colours is None:
             return None
         values = self.values

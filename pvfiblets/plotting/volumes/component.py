@@ -8,6 +8,7 @@ name. :class:`RaycastVolumesComponent` lives as long as its plotter; its life cy
 from __future__ import annotations
 
 import itertools
+import warnings
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -60,6 +61,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
 
     def add(self, /, source: Any, **arguments: Any) -> Any:
         """Make an actor and add it to the plotter; of a MultiBlock one for each block."""
+        arguments = _in_our_words(arguments)
         if not (hasattr(source, "IsA") and source.IsA("vtkMultiBlockDataSet")):
             arguments.pop("multi_colors", None)
             return super().add(source, **arguments)
@@ -95,6 +97,8 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         blending: str | None = None,
         resolution: Any = None,
         multi_colors: bool = False,  # noqa: ARG002 - `add` looks at it
+        categories: bool | int = False,
+        preference: str | None = None,
     ) -> VolumeActor:
         """Add a volume to the scene, through which a ray is cast for each pixel.
 
@@ -121,6 +125,11 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             ``add_volume``'s word for ``spacing``.
         multi_colors : bool, default: False
             Of a MultiBlock: a map of colours of its own for each block.
+        categories : bool or int, default: False
+            ``add_volume``'s word for as many ``n_colors`` as there are values, or so many.
+        preference : {"point", "cell"}, optional
+            Which of an image's arrays is meant if points and cells both have one of the name ``scalars``; that of the
+            points by default.
 
         Returns
         -------
@@ -173,17 +182,56 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             spacing = resolution
         if settings["mode"] not in MODES:  # before the slow part
             raise ValueError(f"mode is {settings['mode']!r}; choose one of {MODES}")
-        volume = as_raycast_volume(
-            source,
-            scalars=scalars,
-            spacing=spacing,
-            origin=origin,
-            direction=direction,
-            affine=affine,
-            shape=shape,
-            dtype=dtype,
+        if preference is not None:
+            scalars = _preferred(source, scalars, preference)
+        where = {
+            "scalars": scalars, "spacing": spacing, "origin": origin, "direction": direction, "affine": affine,
+            "shape": shape, "dtype": dtype,
+        }  # fmt: skip
+        where = {name: value for name, value in where.items() if value is not None}
+        volume = as_raycast_volume(source, **where)
+        if categories:
+            settings["n_colors"] = len(np.unique(volume.values)) if categories is True else int(categories)
+        actor = VolumeActor(volume, settings=settings, given=(source, where), theme=self._plotter.theme)
+        _warn_of_nothing(actor)
+        return actor
+
+
+def _in_our_words(arguments: dict[str, Any]) -> dict[str, Any]:
+    """Return arguments of which those of ``add_volume``'s that have other names here have these."""
+    found = dict(arguments)
+    for theirs, ours in (("colormap", "cmap"), ("rng", "clim")):
+        if theirs in found:
+            value = found.pop(theirs)
+            found[ours] = value if value is not None else found.get(ours)
+    for name, why in (
+        ("mapper", "chooses among VTK's mappers of volumes"),
+        ("culling", "is of faces, and volumes have none"),
+    ):
+        if found.pop(name, None) is not None:
+            raise ValueError(f"{name} of add_volume {why}; leave it out")
+    return found
+
+
+def _preferred(source: Any, scalars: Any, preference: str) -> Any:
+    """Return the array of an image's points or cells that a name stands for."""
+    if preference not in ("point", "cell"):
+        raise ValueError(f"preference is {preference!r}; choose 'point' or 'cell'")
+    data = getattr(source, f"{preference}_data", None)
+    return data[scalars] if isinstance(scalars, str) and data is not None and scalars in data else scalars
+
+
+def _warn_of_nothing(actor: VolumeActor) -> None:
+    """Say so if all voxels have one value, which is as good as invisible."""
+    low, high = actor.volume.value_range
+    transfer = actor.casting.transfer
+    if low == high and transfer is not None and float(transfer.lookup(low)[3]) == 0.0:
+        warnings.warn(
+            f"all voxels have the value {low:g}, where opacity is 0: nothing shows; give clim=(low, high) around it or "
+            "one number as opacity",
+            UserWarning,
+            stacklevel=6,
         )
-        return VolumeActor(volume, settings=settings, theme=self._plotter.theme)
 
 
 def _mode_of(blending: str, settings: Given) -> str:

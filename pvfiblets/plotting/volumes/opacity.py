@@ -49,7 +49,8 @@ def opacities(given: Any, n_colors: int) -> np.ndarray:
     ----------
     given : str, float or array_like
         A name of PyVista's (``"linear"``, ``"geom"``, ``"sigmoid"``, ``"foreground"``, with ``"_r"`` reversed, ...);
-        one number for all; or numbers from 0 to 1, linear between. Those of uint8 are from 0 to 255.
+        one number for all; or numbers from 0 to 1, linear between. Those of uint8 are from 0 to 255, and so are as many
+        numbers as there are colours, if one is above 1, as of ``add_volume``.
     n_colors : int
 
     Returns
@@ -72,7 +73,8 @@ def opacities(given: Any, n_colors: int) -> np.ndarray:
         raise TypeError(f"opacity is a {type(given).__name__}; give a name, a number from 0 to 1, or a list of them")
     if table.ndim > 1 or table.size == 0:
         raise ValueError(f"opacity has the shape {table.shape}; give one number from 0 to 1, or a list of them")
-    table = table.astype(np.float64).ravel() / (255.0 if table.dtype == np.uint8 and table.ndim else 1.0)
+    bytes_ = table.ndim == 1 and (table.dtype == np.uint8 or (len(table) == n_colors and table.max() > 1))
+    table = table.astype(np.float64).ravel() / (255.0 if bytes_ else 1.0)
     wrong = np.flatnonzero(~((table >= 0.0) & (table <= 1.0)))  # and not of NaN
     if len(wrong):
         where = "" if table.size == 1 else f" at place {wrong[0]}"
@@ -112,7 +114,7 @@ def surface_opacities(given: Any, count: int) -> tuple[float, ...] | None:
     fine = numbers.dtype.kind in "buif" and numbers.shape == (count,) and bool(((numbers >= 0) & (numbers <= 1)).all())
     if not fine:
         raise ValueError(
-            f"surface_opacity is {given!r}; give a number from 0 to 1, or one for each of the {count} values"
+            f"surface_opacities is {given!r}; give a number from 0 to 1, or one for each of the {count} values"
         )
     return tuple(numbers.astype(np.float64).tolist())
 
@@ -128,7 +130,7 @@ def surface_colours(given: Any, count: int) -> list[pv.Color] | None:
     if given is None:
         return None
     if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != count:
-        raise ValueError(f"surface_color is {given!r}; give a list of a colour for each of the {count} values")
+        raise ValueError(f"surface_colors is {given!r}; give a list of a colour for each of the {count} values")
     return [pv.Color(colour) for colour in given]
 
 

@@ -105,7 +105,7 @@ class VolumeSettings(Settings):
         row=Row("Surface at", "Values of surfaces; empty: the middle.", type="numbers", optional=True,
                 read=lambda actor: list(actor.values), span=_values_span, matters=_mode("isosurface")),
     )  # fmt: skip
-    surface_opacity: Setting[Any] = Setting(
+    surface_opacities: Setting[Any] = Setting(
         None,
         "How opaque each of the surfaces of ``values`` is, 0 to 1: rays then pass through all that they meet.\n\n"
         "One number is of all of them. ``None`` shows the first surface of each ray, which ``opacity``\n"
@@ -114,10 +114,10 @@ class VolumeSettings(Settings):
         header="float or list of float, optional",
         where=CHOSEN,
         row=Row("Surfaces' opacity", "Of each surface, 0 to 1; empty: rays end at the first.", type="numbers",
-                optional=True, span=lambda _actor: (0.0, 1.0), read=lambda actor: list(actor.surface_opacity or ()),
+                optional=True, span=lambda _actor: (0.0, 1.0), read=lambda actor: list(actor.surface_opacities or ()),
                 matters=_mode("isosurface")),
     )  # fmt: skip
-    surface_color: Setting[Any] = Setting(
+    surface_colors: Setting[Any] = Setting(
         None,
         "A colour for each of the surfaces of ``values``; ``None`` has that of the map, or ``color``.",
         kind="Any",
@@ -153,7 +153,8 @@ class VolumeSettings(Settings):
         'A name as for :meth:`pyvista.Plotter.add_volume` (``"linear"``, ``"sigmoid"``, ...), numbers\n'
         "from 0 to 1, or one number for all. Of light it is the opacity of ``opacity_unit_distance``\n"
         "mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not\n"
-        "touch them.",
+        "touch them. A :class:`pyvista.LookupTable` as ``cmap`` that has opacities of its own has those in\n"
+        "place of ``\"linear\"``.",
         kind="str | float | Any",
         header='str, float or list of float, default: "linear"',
         where=CHOSEN,
