@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOME = {
+    "Bundles": "query.bundles.bundle_list",
     "CodingError": "codec.error",
     "DensityMap": "query.density_map",
     "FibletSet": "codec.fibletset",
@@ -28,6 +29,7 @@ _HOME = {
     "plot": "plotting.plot",
     "read": "formats",
     "read_volume": "plotting.read_volume",
+    "recognise": "query.bundles.recognise",
     "similar": "query.bundles.similar",
     "table": "query.table",
     "write": "formats",
@@ -50,7 +52,9 @@ if TYPE_CHECKING:
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot
     from .plotting.read_volume import read_volume as read_volume
+    from .query.bundles.bundle_list import Bundles as Bundles
     from .query.bundles.clusters import clusters as clusters
+    from .query.bundles.recognise import recognise as recognise
     from .query.bundles.similar import similar as similar
     from .query.connectome import connectome as connectome
     from .query.density import density as density

@@ -1,6 +1,8 @@
 """Bundles of streamlines: found by similarity, listed, named, measured.
 
-``clusters(fiblets)`` puts streamlines that run alike together, ``similar(fiblets, ids)`` finds more like some.
+``clusters(fiblets)`` puts streamlines that run alike together, ``similar(fiblets, ids)`` finds more like some, and
+``recognise(fiblets, folder)`` finds those of models. ``fiblets.bundles`` is the list of a set's groups, to be edited.
+``tract_profile`` averages values along a bundle, ``bundle_table`` measures all of them.
 """
 
 from __future__ import annotations
@@ -10,18 +12,47 @@ from typing import TYPE_CHECKING
 from .lazy_imports import names_from
 
 if TYPE_CHECKING:
+    from .query.bundles.bundle_list import Bundle, Bundles
     from .query.bundles.clusters import Cluster, Clusters, clusters
+    from .query.bundles.recognise import recognise
     from .query.bundles.similar import Similar, mdf, similar
+    from .query.bundles.statistics import bundle_table
+    from .query.bundles.tract_profile import TractProfile, average_profiles, core_weights, profile_table, tract_profile
 
-__all__ = ["Cluster", "Clusters", "Similar", "clusters", "mdf", "similar"]
+__all__ = [
+    "Bundle",
+    "Bundles",
+    "Cluster",
+    "Clusters",
+    "Similar",
+    "TractProfile",
+    "average_profiles",
+    "bundle_table",
+    "clusters",
+    "core_weights",
+    "mdf",
+    "profile_table",
+    "recognise",
+    "similar",
+    "tract_profile",
+]
 
 _HOME = {
+    "Bundle": ".query.bundles.bundle_list",
+    "Bundles": ".query.bundles.bundle_list",
     "Cluster": ".query.bundles.clusters",
     "Clusters": ".query.bundles.clusters",
     "Similar": ".query.bundles.similar",
+    "TractProfile": ".query.bundles.tract_profile",
+    "average_profiles": ".query.bundles.tract_profile",
+    "bundle_table": ".query.bundles.statistics",
     "clusters": ".query.bundles.clusters",
+    "core_weights": ".query.bundles.tract_profile",
     "mdf": ".query.bundles.similar",
+    "profile_table": ".query.bundles.tract_profile",
+    "recognise": ".query.bundles.recognise",
     "similar": ".query.bundles.similar",
+    "tract_profile": ".query.bundles.tract_profile",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from ..query.bundles.bundle_list import Bundles
     from ..query.bundles.clusters import Clusters
     from ..query.bundles.similar import Similar
     from ..query.connectome import Connectome
@@ -86,6 +87,32 @@ class SetQueries:
         from .. import connectome
 
         return connectome(self, labels, **options)
+
+    @property
+    def bundles(self: Any) -> Bundles:
+        """The set's groups as an ordered list that can be edited; see :class:`pvfiblets.bundles.Bundles`."""
+        from .. import Bundles
+
+        return Bundles(self)
+
+    def recognise(self: Any, models: Any, **options: Any) -> dict[str, npt.NDArray[np.int64]]:
+        """Recognise bundles by a folder of models, by dipy's RecoBundles; see :func:`pvfiblets.recognise`.
+
+        Parameters
+        ----------
+        models : path or dict
+            A folder with a tractogram for each bundle, or streamlines by name.
+        **options
+            Of that function.
+
+        Returns
+        -------
+        dict of str to numpy.ndarray
+            Streamlines of each bundle, which ``bundles.add_all`` takes.
+        """
+        from .. import recognise
+
+        return recognise(self, models, **options)
 
     def clusters(self: Any, threshold: float = 10.0, **options: Any) -> Clusters:
         """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`.

@@ -122,6 +122,8 @@ def update_table(
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None
     usual = label_colours(len(scalars.categories)) if scalars.categories else theme.cmap
+    if scalars.category_colours is not None:
+        usual = [pv.Color(colour).hex_rgb for colour in scalars.category_colours]
     cmap = usual if settings.cmap is None else settings.cmap
     if isinstance(cmap, (list, tuple)) and not cmap:
         raise ValueError("cmap is an empty list; give at least one colour, or the name of a colour map")

@@ -21,8 +21,9 @@ from .measures import CHUNK, mean_curvatures
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
-__all__ = ["Table", "table"]
+__all__ = ["Table", "check_parquet", "table"]
 
+PARQUET = (".parquet", ".pq")
 _SHOWN = 10  # rows in a notebook
 _MEAN = "mean_"  # of values along a streamline
 
@@ -39,19 +40,38 @@ class Table(dict[str, npt.NDArray[Any]]):
         return len(next(iter(self.values()), ()))
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write comma-separated values, with a line of names first; numbers that are missing are left empty.
+        """Write the table to a file; its suffix says in which format.
 
         Parameters
         ----------
         path : str or PathLike
-            ``-`` for standard output.
+            ``.tsv`` has tabs between values, ``.parquet`` is Apache Parquet, and all else is comma-separated; ``-`` is
+            that to standard output. Texts begin with a line of names, and leave numbers that are missing empty.
+
+        Raises
+        ------
+        ImportError
+            If it is to be Parquet, and pyarrow is not installed.
+        OSError
+            If it cannot be written.
         """
-        columns = [_texts(column) for column in self.values()]
         target = None if str(path) == "-" else Path(path).expanduser()
+        suffix = "" if target is None else target.suffix.lower()
+        if suffix in PARQUET and target is not None:
+            self._save_parquet(target)
+            return
+        columns = [_texts(column) for column in self.values()]
         with nullcontext(sys.stdout) if target is None else target.open("w", newline="", encoding="utf-8") as to:
-            writer = csv.writer(to, lineterminator="\n")
+            writer = csv.writer(to, lineterminator="\n", delimiter="\t" if suffix == ".tsv" else ",")
             writer.writerow(self)
             writer.writerows(zip(*columns, strict=True))
+
+    def _save_parquet(self, target: Path) -> None:
+        check_parquet(target)
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        parquet.write_table(pa.table(dict(self)), target)
 
     def _repr_html_(self) -> str:
         heads = "".join(f"<th>{html.escape(name)}</th>" for name in self)
@@ -59,7 +79,20 @@ class Table(dict[str, npt.NDArray[Any]]):
         rows = "".join(
             f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in zip(*columns, strict=True)
         )
-        return f"<table><tr>{heads}</tr>{rows}</table><p>{self.n_rows:,} streamlines</p>"
+        noun = "streamlines" if "streamline" in self else "rows"
+        return f"<table><tr>{heads}</tr>{rows}</table><p>{self.n_rows:,} {noun}</p>"
+
+
+def check_parquet(path: str | PathLike[str]) -> None:
+    """Raise an ImportError, before any work is done, if a file is to be Parquet and pyarrow is not installed."""
+    if Path(path).suffix.lower() not in PARQUET:
+        return
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError as error:
+        raise ImportError(
+            f"{path} needs pyarrow, which is not installed; run `pip install pyarrow`, or write a .csv or .tsv file"
+        ) from error
 
 
 def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = None) -> Table:

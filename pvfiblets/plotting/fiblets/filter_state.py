@@ -71,6 +71,7 @@ class Choices:
     clips: dict[str, Region] = field(default_factory=dict)
     subset: np.ndarray | None = None
     groups: tuple[str, ...] | None = None
+    ungrouped: bool = False  # streamlines in no group too, where only some groups are shown
     ids: np.ndarray | None = None
     # Bits of the points, and the criteria that they are of: these stay while others change.
     _words: tuple[tuple[Criterion, ...], np.ndarray] | None = None
@@ -93,7 +94,8 @@ class Choices:
             masks.append(streamline_mask(fiblets, [c.within() for c in per_streamline]))
         masks += [mask for mask in (self.subset, self.ids) if mask is not None]
         if self.groups is not None:
-            masks.append(in_groups(fiblets, self.groups))
+            shown = in_groups(fiblets, self.groups)
+            masks.append(shown | ~in_groups(fiblets, fiblets.groups) if self.ungrouped else shown)
         return reduce(operator.and_, masks) if masks else None
 
     def points(self, fiblets: FibletSet) -> np.ndarray | None:

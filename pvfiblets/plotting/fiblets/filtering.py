@@ -23,6 +23,7 @@ from pvfiblets.plotting.fiblets.filter_state import (
     unique_name,
 )
 from pvfiblets.plotting.region_sources import as_region
+from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
 from pvfiblets.query.predicates import select
 
 if TYPE_CHECKING:
@@ -189,7 +190,23 @@ class Filtering(Clipping):
         wanted = None if names is None else tuple([names] if isinstance(names, str) else names)
         if wanted is not None:
             in_groups(self._data, wanted)
-        self._choose(groups=wanted)
+        self._choose(groups=wanted, ungrouped=False)
+
+    @property
+    def bundles(self) -> Bundles:
+        """The groups as an ordered list; what is changed there shows: who is hidden, and colours by ``"group"``.
+
+        Streamlines in no bundle stay shown whichever bundles are hidden.
+        """
+        return Bundles(self._data, self._bundles_changed)
+
+    def _bundles_changed(self) -> None:
+        hidden = hidden_groups(self._data.per_group) & set(self._data.groups)
+        shown = tuple(name for name in self._data.groups if name not in hidden) if hidden else None
+        self._choose(groups=shown, ungrouped=hidden != set())
+        actor = cast("Any", self)
+        if isinstance(actor.scalars, str) and actor.scalars == "group":
+            actor.scalars = "group" if self._data.groups else None
 
     def show_only(self, ids: Any) -> None:
         """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
@@ -284,6 +301,7 @@ class Filtering(Clipping):
             conditions=conditions,
             clips=old.clips,
             groups=groups,
+            ungrouped=old.ungrouped,
             subset=old.subset if same else None,
             ids=old.ids if same else None,
         )

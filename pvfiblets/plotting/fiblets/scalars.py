@@ -15,6 +15,7 @@ import numpy as np
 
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
+from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups, own_colour
 from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.query.endpoints import anchor_points, end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
@@ -68,6 +69,8 @@ class Scalars:
         Least value above zero, where a logarithmic scale may begin.
     categories : dict, optional
         Of numbers that are labels: what each stands for.
+    category_colours : tuple, optional
+        Colours that the labels have by themselves, in their order.
     volume : VolumeSource, optional
         To be sampled at the points, where ``kind`` is ``"point_scalar"``.
     has_alpha : bool
@@ -83,6 +86,7 @@ class Scalars:
     positive: float = 1e-6
     volume: VolumeSource | None = None
     categories: dict[int, str] | None = None
+    category_colours: tuple[Any, ...] | None = None
     has_alpha: bool = False
     percentile: float | None = None
 
@@ -244,6 +248,8 @@ def _end_directions(fiblets: FibletSet) -> np.ndarray:
 def by_group(fiblets: FibletSet) -> Scalars:
     """Number the streamlines by the first of the groups that they are in; NaN for those in none.
 
+    Groups that are hidden come last. A group whose data hold a colour has that one.
+
     Raises
     ------
     KeyError
@@ -252,11 +258,16 @@ def by_group(fiblets: FibletSet) -> Scalars:
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
     numbers = np.full(fiblets.n_streamlines, np.nan)
-    for index, members in reversed(list(enumerate(fiblets.groups.values()))):
-        numbers[np.asarray(members)] = index
+    hidden = hidden_groups(fiblets.per_group)
+    order = sorted(enumerate(fiblets.groups), key=lambda item: item[1] in hidden)
+    for index, name in reversed(order):
+        numbers[np.asarray(fiblets.groups[name])] = index
     found = per_streamline(GROUP, numbers, fiblets.n_streamlines)
     names = dict(enumerate(fiblets.groups))
-    return replace(found, range=(-0.5, len(names) - 0.5), categories=names)
+    own = None
+    if any(own_colour(fiblets.per_group.get(name, {})) for name in fiblets.groups):
+        own = tuple(group_colours(fiblets.groups, fiblets.per_group).values())
+    return replace(found, range=(-0.5, len(names) - 0.5), categories=names, category_colours=own)
 
 
 def without_outliers(scalars: Scalars) -> Scalars:

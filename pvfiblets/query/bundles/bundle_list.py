@@ -1,0 +1,445 @@
+"""The bundles of a set as one ordered list that can be edited: its groups, with a colour each, shown or not.
+
+A bundle *is* a group of the set, so that what is done here is saved in ``.fiblets`` and ``.trx`` files, colours by
+``scalars="group"`` and is chosen by ``groups_shown``. Colour and visibility are data of the group (``per_group``):
+``color``, three uint8, and ``visible``, one uint8 that is there where the bundle is hidden.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...codec.decompress import select_streamlines
+from ..predicates import Predicate
+from .colours import as_colour, distinct_colours
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+    from ...streamlines import Streamlines
+
+__all__ = ["Bundle", "Bundles", "group_colours", "hidden_groups", "own_colour"]
+
+Ints = npt.NDArray[np.int64]
+Colour = tuple[float, float, float]
+COLOR, VISIBLE = "color", "visible"
+
+
+class Bundle:
+    """One bundle of a list; takes the place of its streamlines' numbers: ``fiblets[bundle]``.
+
+    Its ``name``, ``color`` and ``visible`` can be set.
+    """
+
+    def __init__(self, bundles: Bundles, name: str) -> None:
+        self._bundles, self._name = bundles, name
+
+    def __repr__(self) -> str:
+        return f"<Bundle {self.name!r}: {self.count:,} streamlines{'' if self.visible else ', hidden'}>"
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        del copy  # numbers are small, and a copy is never wrong
+        return np.array(self.ids, dtype)
+
+    @property
+    def name(self) -> str:
+        """Its name; another one renames it."""
+        return self._name
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self._bundles.rename(self._name, name)
+        self._name = name
+
+    @property
+    def ids(self) -> Ints:
+        """``(k,)`` int64: its streamlines, rising, each once."""
+        return self._bundles.ids(self._name)
+
+    @property
+    def count(self) -> int:
+        """Number of streamlines."""
+        return len(self.ids)
+
+    @property
+    def color(self) -> Colour:
+        """Red, green, blue, from 0 to 1."""
+        return self._bundles.colors[self._name]
+
+    @color.setter
+    def color(self, color: Any) -> None:
+        self._bundles.set_color(self._name, color)
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is shown."""
+        return self._name not in hidden_groups(self._bundles.data.per_group)
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
+        self._bundles.set_visible(self._name, visible)
+
+
+class Bundles:
+    """The groups of a set as an ordered list.
+
+    Parameters
+    ----------
+    data : FibletSet or Streamlines
+        Whose ``groups`` and ``per_group`` are read and changed.
+    on_change : callable, optional
+        Called after each change, without arguments.
+    """
+
+    def __init__(self, data: FibletSet | Streamlines, on_change: Callable[[], None] | None = None) -> None:
+        self.data = data
+        self._on_change = on_change
+
+    def __len__(self) -> int:
+        return len(self.data.groups)
+
+    def __iter__(self) -> Iterator[Bundle]:
+        return (Bundle(self, name) for name in list(self.data.groups))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.data.groups
+
+    def __getitem__(self, key: str | int) -> Bundle:
+        if isinstance(key, str):
+            return Bundle(self, self._known(key))
+        if not -len(self) <= key < len(self):
+            raise IndexError(f"bundle {key} is not among the {len(self)} bundles")
+        return Bundle(self, self.names[key])
+
+    def __repr__(self) -> str:
+        return f"Bundles({', '.join(f'{name!r}: {len(self.ids(name)):,}' for name in self.names)})"
+
+    # ------------------------------------------------------------------------------------------------------ what it has
+
+    @property
+    def names(self) -> list[str]:
+        """Names in their order."""
+        return list(self.data.groups)
+
+    def ids(self, name: str) -> Ints:
+        """Return the streamlines of a bundle, ``(k,)`` int64, rising, each once."""
+        return np.unique(np.asarray(self.data.groups[self._known(name)], np.int64))
+
+    @property
+    def colors(self) -> dict[str, Colour]:
+        """Colour of each, red, green, blue from 0 to 1; those that have none of their own get one by their place."""
+        return group_colours(self.data.groups, self.data.per_group)
+
+    @property
+    def rest(self) -> Ints:
+        """``(k,)`` int64: streamlines that are in no bundle."""
+        free = np.ones(len(self.data), bool)
+        for members in self.data.groups.values():
+            free[np.asarray(members, np.int64)] = False
+        return np.flatnonzero(free)
+
+    # -------------------------------------------------------------------------------------------------------- changes
+
+    def add(self, name: str, ids: Any, *, color: Any = None, visible: bool = True) -> Bundle:
+        """Add a bundle at the end of the list.
+
+        Parameters
+        ----------
+        name : str
+            Of no other bundle.
+        ids : array_like, slice, Predicate, Similar, Cluster or Bundle
+            Its streamlines: numbers, a mask, what was found, or a condition such as ``regions.passes(region)``.
+        color : color-like, optional
+        visible : bool, default: True
+
+        Returns
+        -------
+        Bundle
+
+        Raises
+        ------
+        ValueError
+            If the name is taken or empty, or the colour is none.
+        IndexError
+            If a streamline is out of range.
+        """
+        self._free(name)
+        members = self._members(ids)
+        given = None if color is None else as_colour(color)
+        self.data.groups[name] = members
+        self.data.per_group.pop(name, None)
+        if given is not None:
+            self._put(name, COLOR, _bytes(given))
+        if not visible:
+            self._put(name, VISIBLE, np.zeros(1, np.uint8))
+        self._changed()
+        return Bundle(self, name)
+
+    def add_all(self, groups: Mapping[str, Any]) -> None:
+        """Add several bundles by name, such as :meth:`.Clusters.groups` gives; none if one cannot be added."""
+        members = {}
+        for name, ids in groups.items():
+            self._free(name)
+            members[name] = self._members(ids)
+        self.data.groups.update(members)
+        for name in members:
+            self.data.per_group.pop(name, None)
+        self._changed()
+
+    def remove(self, name: str) -> None:
+        """Take a bundle off the list; its streamlines stay in the set."""
+        self._known(name)
+        del self.data.groups[name]
+        self.data.per_group.pop(name, None)
+        self._changed()
+
+    def rename(self, name: str, new: str) -> None:
+        """Give a bundle another `new` name, in its place of the list."""
+        self._known(name)
+        if new == name:
+            return
+        self._free(new)
+        for held in (self.data.groups, self.data.per_group):
+            rows = {new if key == name else key: value for key, value in held.items()}
+            held.clear()
+            held.update(rows)  # type: ignore[arg-type]  # of the same dict
+        self._changed()
+
+    def merge(self, names: Iterable[str], into: str, *, keep: bool = False) -> Bundle:
+        """Join bundles: streamlines that are in any.
+
+        Parameters
+        ----------
+        names : iterable of str
+        into : str
+            Name of the result, which takes the place and colour of the first of them; it may be one of `names`.
+        keep : bool, default: False
+            Keep the bundles that were joined, and put the result at the end.
+
+        Returns
+        -------
+        Bundle
+        """
+        parts = [self._known(name) for name in names]
+        if not parts:
+            raise ValueError("there is nothing to merge; give the names of bundles")
+        if into not in parts or keep:
+            self._free(into)
+        ids = np.unique(np.concatenate([self.ids(name) for name in parts]))
+        if keep:
+            self.data.groups[into] = ids
+        else:
+            first = parts[0]
+            facts = self.data.per_group.get(first)
+            order = [into if name == first else name for name in self.names if name == first or name not in parts]
+            groups = {name: ids if name == into else self.data.groups[name] for name in order}
+            for name in parts:
+                self.data.per_group.pop(name, None)
+            if facts:
+                self.data.per_group[into] = facts
+            self.data.groups.clear()
+            self.data.groups.update(groups)
+        self._changed()
+        return Bundle(self, into)
+
+    def subtract(self, name: str, others: str | Iterable[str], *, into: str | None = None) -> Bundle:
+        """Take the streamlines of other bundles out of one.
+
+        Parameters
+        ----------
+        name : str
+        others : str or iterable of str
+        into : str, optional
+            A new bundle for the result; without it, the bundle itself is changed.
+
+        Returns
+        -------
+        Bundle
+        """
+        left = self.ids(name)
+        for other in [others] if isinstance(others, str) else others:
+            left = np.setdiff1d(left, self.ids(other))
+        if into is not None:
+            return self.add(into, left)
+        self.data.groups[name] = left
+        self._changed()
+        return Bundle(self, name)
+
+    def set_ids(self, name: str, ids: Any) -> None:
+        """Give a bundle other streamlines; `ids` as for :meth:`add`."""
+        self.data.groups[self._known(name)] = self._members(ids)
+        self._changed()
+
+    def reorder(self, names: Iterable[str]) -> None:
+        """Put the bundles named first, in this order; the others follow in theirs."""
+        first = [self._known(name) for name in names]
+        if len(set(first)) != len(first):
+            raise ValueError(f"the order {first} names a bundle twice")
+        groups = {name: self.data.groups[name] for name in [*first, *(n for n in self.names if n not in first)]}
+        self.data.groups.clear()
+        self.data.groups.update(groups)
+        self._changed()
+
+    def set_color(self, name: str, color: Any) -> None:
+        """Give a bundle a `color`: ``"#rrggbb"``, a name, or three numbers."""
+        self._put(self._known(name), COLOR, _bytes(as_colour(color)))
+        self._changed()
+
+    def set_visible(self, name: str, visible: bool) -> None:
+        """Show or hide a bundle."""
+        self._known(name)
+        if visible:
+            self.data.per_group.get(name, {}).pop(VISIBLE, None)
+        else:
+            self._put(name, VISIBLE, np.zeros(1, np.uint8))
+        self._changed()
+
+    def show_only(self, names: str | Iterable[str]) -> None:
+        """Hide all bundles but some."""
+        wanted = {self._known(name) for name in ([names] if isinstance(names, str) else names)}
+        for name in self.names:
+            if name in wanted:
+                self.data.per_group.get(name, {}).pop(VISIBLE, None)
+            else:
+                self._put(name, VISIBLE, np.zeros(1, np.uint8))
+        self._changed()
+
+    # --------------------------------------------------------------------------------------------------------- files
+
+    def export(self, path: str | os.PathLike[str], *, suffix: str = ".tck", hidden: bool = True) -> list[Path]:
+        """Write the bundles: a file for each, or one file that has them as groups.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            A file with the suffix of a format that keeps groups (``.trx``, ``.fiblets``) gets all streamlines that
+            are in a bundle. Anything else is a folder, made if need be, for a file of each bundle.
+        suffix : str, default: ".tck"
+            Format of the files in a folder.
+        hidden : bool, default: True
+            Write those that are hidden as well.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+
+        Raises
+        ------
+        ValueError
+            If there is no bundle, or a format of one file keeps no groups.
+        UnknownFormatError
+            If no format that can be written has this suffix.
+        """
+        from ...formats import registry
+
+        chosen = [bundle for bundle in self if hidden or bundle.visible]
+        if not chosen:
+            raise ValueError("there is no bundle to write")
+        target = Path(path).expanduser()
+        if target.suffix and not target.is_dir():
+            if target.suffix.lower() not in (".trx", ".fiblets"):
+                raise ValueError(f"{target.suffix} files keep no groups; give a .trx or .fiblets file, or a folder")
+            ids = np.unique(np.concatenate([bundle.ids for bundle in chosen]))
+            _save(self._part(ids, [bundle.name for bundle in chosen]), target)
+            return [target]
+        if suffix != ".fiblets":
+            registry.module_for(f"bundle{suffix}", "write")
+        target.mkdir(parents=True, exist_ok=True)
+        written: list[Path] = []
+        for bundle in chosen:
+            file = target / f"{_file_name(bundle.name, [p.stem for p in written])}{suffix}"
+            _save(self._part(bundle.ids, [bundle.name]), file)
+            written.append(file)
+        return written
+
+    def _part(self, ids: Ints, names: list[str]) -> Any:
+        part: Any = self.data[ids]
+        for held in (part.groups, part.per_group):
+            for name in [name for name in held if name not in names]:
+                del held[name]
+        return part
+
+    # -------------------------------------------------------------------------------------------------------- inside
+
+    def _known(self, name: str) -> str:
+        if name not in self.data.groups:
+            there = ", ".join(map(repr, self.names)) or "none"
+            raise KeyError(f"there is no bundle {name!r}; there are: {there}")
+        return name
+
+    def _free(self, name: str) -> None:
+        if not isinstance(name, str) or not name.strip():
+            raise ValueError(f"a bundle's name is {name!r}; give some text")
+        if name in self.data.groups:
+            raise ValueError(f"there is a bundle {name!r} already; give another name, or remove that one first")
+
+    def _members(self, ids: Any) -> Ints:
+        if isinstance(ids, Predicate):
+            ids = self.data.select(ids)  # type: ignore[union-attr]  # conditions are asked of sets
+        return np.unique(select_streamlines(len(self.data), getattr(ids, "ids", ids)))
+
+    def _put(self, name: str, key: str, value: npt.NDArray[Any]) -> None:
+        self.data.per_group.setdefault(name, {})[key] = value
+
+    def _changed(self) -> None:
+        if self._on_change is not None:
+            self._on_change()
+
+
+def group_colours(groups: Iterable[str], per_group: Mapping[str, Mapping[str, Any]]) -> dict[str, Colour]:
+    """Colour of each group: its own, or one by its place, red, green, blue from 0 to 1."""
+    names = list(groups)
+    found: dict[str, Colour] = {}
+    for name, usual in zip(names, distinct_colours(len(names)).tolist(), strict=True):
+        own = own_colour(per_group.get(name, {}))
+        found[name] = (usual[0], usual[1], usual[2]) if own is None else own
+    return found
+
+
+def own_colour(facts: Mapping[str, Any]) -> Colour | None:
+    """Colour that a group's data say, None for none; what is no colour is none."""
+    values = np.asarray(facts.get(COLOR, ())).ravel()
+    if values.size < 3 or values.dtype.kind not in "iuf":
+        return None
+    parts = values[:3].astype(np.float64) / (255.0 if values.dtype.kind in "iu" or values.max() > 1.0 else 1.0)
+    red, green, blue = np.clip(parts, 0.0, 1.0).tolist()
+    return (red, green, blue) if np.isfinite(parts).all() else None
+
+
+def hidden_groups(per_group: Mapping[str, Mapping[str, Any]]) -> set[str]:
+    """Names of the groups that are hidden."""
+    return {
+        name
+        for name, facts in per_group.items()
+        if VISIBLE in facts and not np.asarray(facts[VISIBLE]).ravel()[:1].any()
+    }
+
+
+def _bytes(colour: Colour) -> npt.NDArray[np.uint8]:
+    return np.round(np.array(colour) * 255.0).astype(np.uint8)
+
+
+def _file_name(name: str, taken: list[str]) -> str:
+    """A name that every file system takes, and no other bundle has."""
+    stem = re.sub(r"[^\w.+-]+", "_", name).strip("._") or "bundle"
+    candidates = [stem, *(f"{stem}_{i}" for i in range(2, len(taken) + 3))]
+    return next(candidate for candidate in candidates if candidate.lower() not in [t.lower() for t in taken])
+
+
+def _save(part: Any, path: Path) -> None:
+    if hasattr(part, "save"):
+        part.save(path)
+        return
+    from ...formats import write
+
+    write(path, part)
