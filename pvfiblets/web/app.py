@@ -39,7 +39,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "regions.js")
+SCRIPTS = ("pvfiblets.js", "regions.js", "connection.js")
 
 
 class Explorer(TrameApp):
@@ -70,6 +70,8 @@ class Explorer(TrameApp):
         self.page = bind(self.state)
         self.page.shared = options.shared
         self.page.upload_limit = options.upload
+        self.page.keep = float(options.timeout)
+        self.state.trame__template_error_reconnect = "<div></div>"  # client/connection.js shows what happens, and tries
         self.state.trame__title = "pvfiblets"
         self.doors = AllowedCalls(WRITABLE, self._is_trigger, self.complain)
         self.stream = PictureStream(

@@ -81,6 +81,7 @@ class FrontServer:
         app.router.add_post("/paraview/", self._connection)
         app.router.add_post(UPLOAD, self._upload)
         app.router.add_get("/begin", self._begin)
+        app.router.add_get("/status", self._status)
         app.router.add_get("/ws", self._socket)
         app.router.add_get("/{path:.*}", self._pass_on)
         self._runner = web.AppRunner(app, handle_signals=False)
@@ -263,6 +264,17 @@ class FrontServer:
         if session is None or session.ended:
             raise RefusedError(404, "no session")
         return web.json_response({"sessionURL": "ws://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
+
+    async def _status(self, request: web.Request) -> web.StreamResponse:
+        """Tell a page that lost its connection how its session is."""
+        session = self._session(request)
+        told: dict[str, object] = {"state": "none"}
+        if session is not None and session.ended:
+            told = {"state": "ended", "reason": session.failure}
+        elif session is not None:
+            session.seen = time.monotonic()
+            told = {"state": "running" if session.port is not None else "starting", "connected": session.connections}
+        return web.json_response(told, headers=HEADERS)
 
     def _first_page(self, request: web.Request) -> web.StreamResponse:
         """Answer a browser that opens the page: with the application, or with why not yet or not at all.

@@ -63,6 +63,7 @@ class Page:
     script: str = ""
     shared: bool = False
     upload_limit: int = 0
+    keep: float = 300.0  # seconds that a session waits for its browser
 
 
 WRITABLE: dict[str, type] = {

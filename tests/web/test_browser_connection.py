@@ -2,7 +2,65 @@
 
 from __future__ import annotations
 
+import os
+import re
+import signal
+from urllib.parse import urlsplit
+
 import numpy as np
+import pytest
+
+from tests.web.cable import Cable
+
+
+@pytest.fixture
+def cable(served):
+    cable = Cable(urlsplit(served("lines.fiblets").base).port)
+    yield cable
+    cable.close()
+
+
+def test_a_cut_cable_leaves_the_dimmed_picture_and_a_countdown_until_it_is_mended(visit, cable):
+    here = visit("lines.fiblets", opened=False)
+    here.page.goto(here.served.url.replace(str(urlsplit(here.served.base).port), str(cable.port), 1))
+    here.ready()
+    here.choose("scalars", "length")
+    before = here.rests()
+    cable.cut()
+    lost = here.page.locator("#pv-lost")
+    lost.wait_for()
+    # trame's own client gives up after ten attempts in five seconds, and shows a button alone.
+    here.wait(lambda: cable.refused > 3 and "Trying again in" in lost.inner_text(), "a countdown")
+    said = re.search(r"kept for (\d+):(\d\d) more", lost.inner_text())
+    assert 200 < 60 * int(said[1]) + int(said[2]) <= 300
+    assert lost.locator("img[src^=blob]").evaluate("image => image.naturalWidth") == before.shape[1]
+    cable.mend()
+    lost.locator("button:has-text('Try now')").click()
+    here.wait(lambda: lost.count() == 0, "the page again")
+    here.ready()
+    assert np.abs(here.rests() - before).mean() < 0.5
+    assert "scalars" in here.state("undo_label")
+    here.press("2")  # and what is done next is done there
+    here.changed(before)
+    assert all("ERR_" in error or "Bad Gateway" in error for error in here.errors), here.errors
+    here.errors.clear()  # Chromium logs what could not be reached
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_a_dead_session_says_so_at_once_and_another_begins(visit):
+    here = visit("lines.fiblets", opened=False)
+    here.open()
+    process = int(re.findall(r"started as process (\d+)", here.served.log.read_text())[-1])
+    os.kill(process, signal.SIGKILL)
+    lost = here.page.locator("#pv-lost")
+    here.wait(lambda: lost.count() and "The session has ended" in lost.inner_text(), "that it has ended")
+    assert "It failed" in lost.inner_text()
+    assert lost.locator("img[src^=blob]").count() == 1
+    lost.locator("button:has-text('Open a new one')").click()
+    here.page.wait_for_selector("#pv-lost", state="detached")
+    here.page.wait_for_selector("#pv-view img[src^=blob]")
+    assert "The session failed" not in here.page.content()
+    here.errors.clear()
 
 
 def test_a_lost_connection_is_taken_up_again(visit):
