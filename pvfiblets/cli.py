@@ -15,15 +15,11 @@ from importlib import import_module
 
 from pvfiblets.cli_scene import add_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
-from pvfiblets.errors import FibletsError
+from pvfiblets.errors import EXPECTED, sentence
 
 # Those of pvfiblets.plotting.fiblets.looks, without loading it.
 LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
-
-# What bad input and a bad environment raise. Anything else is a mistake in this program, and its
-# traceback is worth more than a sentence.
-EXPECTED = (FibletsError, OSError, ValueError, KeyError, TypeError, ImportError, MemoryError)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,17 +51,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         print(f"pvfiblets: {sentence(error)}", file=sys.stderr)
         return 1
-
-
-def sentence(error: BaseException) -> str:
-    """Return an error's message as one line."""
-    if isinstance(error, OSError) and error.filename and error.strerror:
-        text = f"{error.filename}: {error.strerror}"
-    elif isinstance(error, KeyError) and error.args:
-        text = str(error.args[0])
-    else:
-        text = str(error)
-    return " ".join(text.split()) or type(error).__name__
 
 
 def make_parser() -> argparse.ArgumentParser:

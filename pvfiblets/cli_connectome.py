@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from pvfiblets.cli_density import numbers
 from pvfiblets.cli_files import print_json
+from pvfiblets.formats.attachments import numbers_or_name as numbers
 from pvfiblets.query.connectome import Connectome, check_target
 from pvfiblets.query.connectome import connectome as put_together
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.cli_files import print_json, show_progress
+from pvfiblets.formats.attachments import numbers_or_name as numbers
 from pvfiblets.query.density import CONTRASTS
 from pvfiblets.query.density import density as add_up
 from pvfiblets.query.density_map import DensityMap, check_target
@@ -104,12 +105,3 @@ def _image(path: str | None) -> Any:
     from pvfiblets.volumes.sources import as_raycast_volume
 
     return as_raycast_volume(path)
-
-
-def numbers(given: str | None) -> Any:
-    """Return the numbers of a file; a text that names none is the name of an array."""
-    from pvfiblets.formats import attachments
-
-    if given is None or Path(given).suffix.lower() not in attachments.SUFFIXES:
-        return given
-    return attachments.read_values(given)

@@ -5,25 +5,18 @@ from __future__ import annotations
 import json as json_
 import math
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pvfiblets import formats
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
-from pvfiblets.errors import FibletsError, FormatError
-from pvfiblets.formats.spool import gathered
+from pvfiblets.formats.rewrite import rewrite
 from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint
 
 COMPRESSED = ".fiblets"
-REWRITTEN_POINTS = 1 << 20  # larger pieces are no faster
-
-
-class VerificationError(FibletsError):
-    """A file is damaged, or farther from its original than it promises."""
 
 
 def convert(
@@ -82,32 +75,6 @@ def which_per_point(given: list[str]) -> PerPoint:
     return "none" if words else given or "fit"
 
 
-def rewrite(source: str, target: str, max_points: int = REWRITTEN_POINTS) -> dict[str, Any]:
-    """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
-    begin = time.perf_counter()
-    with gathered(formats.iter_chunks(source, max_points), Path(target).resolve().parent) as streamlines:
-        lost = formats.write(target, streamlines)
-        n_streamlines, n_points = len(streamlines), streamlines.n_points
-        dropped = dict(streamlines.dropped)
-        for part in lost:
-            dropped[f"{part}: {Path(target).suffix} cannot hold it"] = len(getattr(streamlines, part))
-    seconds = time.perf_counter() - begin
-    size = Path(target).stat().st_size
-    return {
-        "streamlines": n_streamlines,
-        "points": n_points,
-        "fiblets": None,
-        "bytes": size,
-        "bytes_per_point": size / max(n_points, 1),
-        "error_mm": None,
-        "error_steps": None,
-        "error_degrees": None,
-        "seconds": seconds,
-        "points_per_second": n_points / max(seconds, 1e-9),
-        "dropped": dropped,
-    }
-
-
 def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
     facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
@@ -135,43 +102,15 @@ def table(source: str, target: str, *, group: str | None) -> None:
 
 def verify(path: str, original: str | None, *, max_angle: float | None, quiet: bool, json: bool) -> None:
     """Check a compressed file's checksums and, given the original, every point and direction."""
-    from pvfiblets.codec.convert import measure_file_error
-    from pvfiblets.codec.fiblets_format import verify_file
-    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.codec.verify import refuse_broken_promise, verified
 
-    if Path(path).suffix.lower() != COMPRESSED:
-        raise ValueError(f"{path} is no {COMPRESSED} file; give the compressed file first, then its original")
-    verify_file(path)
-    fiblets = FibletSet.open(path)
-    result: dict[str, Any] = {
-        "file": path,
-        "checksums": "good",
-        "streamlines": fiblets.n_streamlines,
-        "points": fiblets.n_points,
-        "exact": fiblets.exact is not None,
-        "promise_mm": fiblets.promise,
-    }
-    if original is not None:
-        try:
-            error = measure_file_error(path, original, progress=show_progress(quiet, json))
-        except FormatError:
-            raise
-        except ValueError as mismatch:
-            raise VerificationError(f"{path} was not made from {original} as it is: {mismatch}") from mismatch
-        result.update(original=original, **error.summary())
-        result["kept"] = bool(error.max_mm <= fiblets.promise)
-        # Files do not say which angle they were made for, so that this is told and fails nothing.
-        result["directions_kept"] = max_angle is None or not error.max_degrees > max_angle
+    result = verified(path, original, max_angle=max_angle, progress=show_progress(quiet, json))
     if json:
         print_json(result)
     else:
         for key, value in result.items():
             print(f"{key:<16} {readable(value)}")
-    if not result.get("kept", True):
-        raise VerificationError(
-            f"{path}: a point is {result['error_mm']['max']:.3g} mm from its original in {original}, more than "
-            f"the {fiblets.promise:.3g} mm that the file promises"
-        )
+    refuse_broken_promise(result)
 
 
 def summary(source: str, target: str, result: dict[str, Any]) -> str:

@@ -48,3 +48,19 @@ class FormatError(FibletsError, ValueError):
     def __str__(self) -> str:
         place = "" if self.position is None else f", byte {self.position}"
         return f"{self.path}{place}: found {self.found}, expected {self.expected}"
+
+
+EXPECTED = (FibletsError, OSError, ValueError, KeyError, TypeError, ImportError, MemoryError)
+"""What bad input and a bad environment raise. Anything else is a mistake in this program, and its traceback is worth
+more than a sentence."""
+
+
+def sentence(error: BaseException) -> str:
+    """Return an error's message as one line."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        text = f"{error.filename}: {error.strerror}"
+    elif isinstance(error, KeyError) and error.args:
+        text = str(error.args[0])
+    else:
+        text = str(error)
+    return " ".join(text.split()) or type(error).__name__

@@ -111,6 +111,13 @@ def read_values(path: str | PathLike[str]) -> Array:
     return values
 
 
+def numbers_or_name(given: str | None) -> Any:
+    """Return the numbers of a file of values; a text that names no such file is the name of an array."""
+    if given is None or Path(given).suffix.lower() not in SUFFIXES:
+        return given
+    return read_values(given)
+
+
 def _read_rows(path: str, suffix: str) -> Array:
     if suffix == ".npy":
         return _read_npy(path)
