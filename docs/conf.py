@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from argparse import ArgumentParser
 from pathlib import Path
 
 import pyvista
@@ -67,10 +68,18 @@ shutil.copytree(HERE.parent / "examples", COPIES, ignore=shutil.ignore_patterns(
 
 def commands() -> str:
     """Return what ``pvfiblets --help`` says of each command, as a page."""
-    parser = make_parser()
-    choices = next(action.choices for action in parser._actions if isinstance(action.choices, dict))  # noqa: SLF001
-    parts = [f"## pvfiblets {name}\n\n```text\n{choices[name].format_help()}```\n" for name in choices]
-    return "\n".join(parts)
+    return "\n".join(told(make_parser(), 2))
+
+
+def told(parser: ArgumentParser, depth: int) -> list[str]:
+    """Return the help of each command of a parser, and of theirs."""
+    parts = []
+    for action in parser._actions:  # noqa: SLF001
+        if isinstance(action.choices, dict):
+            for choice in action.choices.values():
+                parts.append(f"{'#' * depth} {choice.prog}\n\n```text\n{choice.format_help()}```\n")
+                parts += told(choice, depth + 1)
+    return parts
 
 
 os.environ["COLUMNS"] = "80"  # as many as the page is wide

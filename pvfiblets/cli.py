@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from pvfiblets.cli_batch import add_options as add_batch_options
 from pvfiblets.cli_scene import add_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.errors import EXPECTED, sentence
@@ -176,6 +177,9 @@ def make_parser() -> argparse.ArgumentParser:
     table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
     table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
     table.set_defaults(run="pvfiblets.cli_files:table")
+
+    batch = commands.add_parser("batch", help="do one of these to each file of a cohort, on all cores or on a cluster")
+    add_batch_options(batch, positive, angle, count)
 
     screenshot = commands.add_parser(
         "screenshot",

@@ -32,9 +32,11 @@ __all__ = [
     "limited_to",
     "of_machine",
     "parse",
+    "resident",
     "room",
     "shown",
     "taken",
+    "unlimit",
     "within",
 ]
 
@@ -140,6 +142,13 @@ def limit(size: int) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (size, hardest))
 
 
+def unlimit(size: int | None) -> None:
+    """Set the limit that :func:`limit` lowered to some bytes again, or take it away, as far as the system allows it."""
+    assert resource is not None
+    hardest = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    resource.setrlimit(resource.RLIMIT_DATA, (hardest if size is None else size, hardest))
+
+
 def limited_to() -> int | None:
     """Return how many bytes this process may have; ``None`` without a limit."""
     if not CAN_LIMIT:
@@ -152,6 +161,13 @@ def taken() -> int:
     """Return how much of it this process has."""
     text = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
     match = re.search(r"^VmData:\s+(\d+) kB$", text, re.MULTILINE)
+    return 0 if match is None else 1024 * int(match[1])
+
+
+def resident() -> int:
+    """Return how many bytes of memory this process uses: of what it has taken, and of files."""
+    text = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
+    match = re.search(r"^VmRSS:\s+(\d+) kB$", text, re.MULTILINE)
     return 0 if match is None else 1024 * int(match[1])
 
 

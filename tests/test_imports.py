@@ -32,6 +32,19 @@ def test_importing_formats_and_streamlines_imports_nothing_heavy():
     assert not loaded & set(HEAVY)
 
 
+def test_one_machine_pays_nothing_for_clusters(tmp_path):
+    """Neither the commands nor a file that is written and read load anything of them."""
+    loaded = modules_after(
+        "import pvfiblets, pvfiblets.cli, pvfiblets.cluster, numpy\n"
+        "pvfiblets.cli.make_parser()\n"
+        f"path = {str(tmp_path / 'a.fiblets')!r}\n"
+        "pvfiblets.write(path, pvfiblets.Streamlines.from_list([numpy.eye(3)]))\n"
+        "pvfiblets.cli.main(['info', path])\n"
+        "pvfiblets.read(path)"
+    )
+    assert not loaded & {"dask", "distributed", "pyarrow", "fsspec", "pandas", "pvfiblets.cluster.cohort"}
+
+
 def test_the_codec_needs_no_drawing():
     loaded = modules_after("import pvfiblets.codec")
     assert not loaded & {"vtkmodules", "vtk", "pyvista", "moderngl"}

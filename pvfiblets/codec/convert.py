@@ -247,7 +247,7 @@ def _keep_exactly(
 
 
 def measure_file_error(
-    fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: bool = False
+    fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: Progress = False
 ) -> CodingError:
     """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
 

@@ -103,6 +103,7 @@ atlas = nibabel.Nifti1Image(np.ones((8, 8, 8), np.int16), image.affine)
 COLOURED = {"docs/tutorial.md": {"first.png", "length.png", "fa.png", "some.png"}}
 # Pages whose commands are no program of this kind, and what runs them.
 RUN_ELSEWHERE = {
+    "docs/clusters.md": "tests/cluster/test_page.py runs it on workers that are there already",
     "docs/serving.md": "a server that waits, and a tunnel to it: tests/web starts servers and opens them in a browser",
     "docs/reference/fiblets-files.md": "test_fiblets_files.py runs the reader that it prints",
 }

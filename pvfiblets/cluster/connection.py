@@ -1,0 +1,103 @@
+"""Workers: a cluster of processes on this machine, or one that runs already."""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets import memory
+from pvfiblets.errors import FibletsError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["SHARE", "connected", "default_workers"]
+
+SHARE = 0.8
+"""Of the machine's memory, for all workers together."""
+DEATHS = 10
+"""Workers that may die with a task before it is given up."""
+DASHBOARD = 8787
+ANSWER_WITHIN = 30.0  # seconds
+
+
+class ClusterError(FibletsError):
+    """There is no cluster where one is said to be, or what it needs is not installed."""
+
+
+def default_workers(n_files: int) -> int:
+    """Return how many processes go through so many files: a core each."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(min(cores, n_files), 1)
+
+
+@contextmanager
+def connected(cluster: Any, workers: int, size: int | None, *, dashboard: bool = True) -> Iterator[Client]:
+    """Have workers meanwhile.
+
+    Parameters
+    ----------
+    cluster : None, str or distributed.Client
+        ``None`` starts processes on this machine; an address (``tcp://host:8786``) or the path of a scheduler's file
+        connects to workers that others started; a client is taken as it is, and stays open.
+    workers : int
+        How many processes are started.
+    size : int or None
+        Bytes that each of these may have; one that takes more is ended and started again.
+    dashboard : bool
+        Whether those that are started have a page that shows their work.
+
+    Raises
+    ------
+    ClusterError
+        If dask is not installed, or nothing answers at the address.
+    """
+    try:
+        import dask
+        import distributed
+    except ImportError as error:
+        raise ClusterError(f"{error}; a batch needs dask: pip install 'pvfiblets[cluster]'") from None
+    if isinstance(cluster, distributed.Client):
+        yield cluster
+        return
+    if cluster is not None:
+        where = {"scheduler_file": cluster} if str(cluster).endswith(".json") else {"address": cluster}
+        try:
+            client = distributed.Client(**where, timeout=ANSWER_WITHIN, set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ClusterError(
+                f"no scheduler of dask answers at {cluster} ({error}); start one by dask scheduler, or leave the "
+                "address out to use this machine"
+            ) from None
+        with client:
+            yield client
+        return
+    threads = max(default_workers(1 << 30) // workers, 1)
+    with (
+        dask.config.set({
+            "distributed.scheduler.allowed-failures": DEATHS,
+            "distributed.worker.multiprocessing-method": "spawn",  # compiled kernels have threads, which fork loses
+        }),
+        distributed.LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, memory_limit=size or 0,
+            dashboard_address=_dashboard() if dashboard else None,
+            env={"NUMBA_NUM_THREADS": str(threads), **memory.ENVIRONMENT}, silence_logs=logging.ERROR,
+            preload=["pvfiblets.cluster.worker_setup"],
+        ) as local,
+        distributed.Client(local, set_as_default=False) as client,
+    ):  # fmt: skip
+        yield client
+
+
+def _dashboard() -> str:
+    """The usual address of a dashboard, or any that is free."""
+    with socket.socket() as probe:
+        try:
+            probe.bind(("127.0.0.1", DASHBOARD))
+        except OSError:
+            return "127.0.0.1:0"
+    return f"127.0.0.1:{DASHBOARD}"

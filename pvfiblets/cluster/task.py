@@ -1,0 +1,140 @@
+"""One file as one task: what a worker does.
+
+A task works in a folder of its own below the batch's scratch folder, which lies beside the results on the same disk.
+What it made is renamed into its place when all of it is there. A worker that is killed leaves nothing but that folder,
+which the batch removes, and the task runs again elsewhere.
+
+Tasks of one process take turns: numba's threads serve one caller at a time, and the memory that is promised is that of
+one task.
+"""
+
+from __future__ import annotations
+
+import logging
+import shutil
+import threading
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pvfiblets import memory
+from pvfiblets.errors import EXPECTED, sentence
+
+from .operations import OPERATIONS
+from .record import Entry, Output, checksum, fingerprint
+from .tables import write_part
+
+__all__ = ["Job", "run"]
+
+logger = logging.getLogger(__name__)
+_TURN = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be done to one file.
+
+    Attributes
+    ----------
+    operation : str
+    source : str
+        Absolute path.
+    name : str
+        The source below the folder that all have in common.
+    target, rows : str
+        What is made, below `folder`; `target` is empty where there is no file.
+    folder, scratch : str
+        Where results go, and where they are made.
+    options : dict
+        Of the operation.
+    said : dict of str to str
+        What the source's name says.
+    asked : str
+        Hash of all that was asked.
+    memory : int or None
+        Bytes that the process may have meanwhile.
+    """
+
+    operation: str
+    source: str
+    name: str
+    target: str
+    rows: str
+    folder: str
+    scratch: str
+    options: dict[str, Any]
+    said: dict[str, str] = field(default_factory=dict)
+    asked: str = ""
+    memory: int | None = None
+
+
+def run(job: Job) -> Entry:
+    """Do it; whatever goes wrong becomes a sentence of the entry."""
+    begin = time.perf_counter()
+    error = ""
+    outputs: tuple[Output, ...] = ()
+    facts = (0, 0, "")
+    with _TURN:
+        try:
+            with _bounded(job.memory):
+                facts = (*fingerprint(Path(job.source)), checksum(Path(job.source)))
+                outputs = _done(job)
+        except EXPECTED as problem:
+            error = sentence(problem)
+            if isinstance(problem, MemoryError) and job.memory is not None:
+                error += f" (the worker may have {memory.shown(job.memory)})"
+        except Exception as problem:
+            logger.exception("%s: %s", job.operation, job.source)
+            error = f"unexpected {type(problem).__name__}: {sentence(problem)}"
+    return Entry(job.name, job.asked, *facts, outputs, error, time.perf_counter() - begin)
+
+
+def _done(job: Job) -> tuple[Output, ...]:
+    scratch, folder = Path(job.scratch), Path(job.folder)
+    if not scratch.is_dir():
+        raise FileNotFoundError(
+            f"this worker sees no folder {scratch}: workers need the disk that {folder} is on, under the same name"
+        )
+    own = scratch / uuid.uuid4().hex
+    own.mkdir()
+    try:
+        made = own / Path(job.target or "none").name
+        columns = OPERATIONS[job.operation].run(Path(job.source), made if job.target else None, **job.options)
+        part = own / "rows.parquet"
+        write_part(part, {"file": job.name, **job.said}, columns)
+        places = [(made, folder / job.target)] if job.target else []
+        places.append((part, folder / job.rows))
+        for there, place in places:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            _put(there, place)
+        return tuple(Output.of(folder, place) for _, place in places)
+    finally:
+        shutil.rmtree(own, ignore_errors=True)
+
+
+def _put(made: Path, place: Path) -> None:
+    """Rename into place; a folder takes the place of another one."""
+    if place.is_dir() and not place.is_symlink():
+        shutil.rmtree(place)
+    made.replace(place)
+
+
+@contextmanager
+def _bounded(size: int | None) -> Iterator[None]:
+    """Let this process have no more than some bytes meanwhile, where the system can hold it to that."""
+    if size is None or not memory.CAN_LIMIT:
+        yield
+        return
+    import pyarrow  # noqa: F401, ICN001 - which reserves a gigabyte that it does not use: before that is looked at
+
+    before = memory.limited_to()
+    # What is reserved and not used is in nobody's way, and counts for the system all the same.
+    memory.limit(max(memory.taken() - memory.resident(), 0) + size)
+    try:
+        yield
+    finally:
+        memory.unlimit(before)
