@@ -235,11 +235,20 @@ def _jobs(
 
 def _own(value: Any, file: SourceFile) -> Any:
     """An option's value for one source."""
-    if isinstance(value, str):
-        return filled(value, file.fields, file.name)
     if isinstance(value, (list, tuple)):
-        return [filled(v, file.fields, file.name) if isinstance(v, str) else v for v in value]
-    return value
+        return [_own(v, file) for v in value]
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    return _absolute(filled(value, file.fields, file.name)) if isinstance(value, str) else value
+
+
+def _absolute(text: str) -> str:
+    """A path, with or without labels behind a colon, as workers find it, who are in folders of their own."""
+    path, colon, labels = text.rpartition(":")
+    for name, rest in ((text, ""), (path, colon + labels)):
+        if name and Path(name).expanduser().exists():
+            return f"{Path(name).expanduser().absolute()}{rest}"
+    return text
 
 
 def _asked(name: str, options: dict[str, Any]) -> str:
