@@ -162,6 +162,7 @@ class Explorer(TrameApp):
             self.page.toast = " ".join(text.split())[:400]
             self.page.toast_kind = kind
             self.page.toast_open = True
+            self.page.toast_number += 1
 
     # Layers
 

@@ -30,6 +30,7 @@ class Entry:
     path: str  # relative to the root, with slashes
     folder: bool
     size: int
+    time: float  # of the last change, seconds since 1970
 
 
 class Confined:
@@ -124,8 +125,9 @@ class Confined:
                 path = self.resolve(relative)
                 if not (path.is_dir() or path.is_file()):
                     continue  # devices, sockets, links to nothing
-                size = 0 if path.is_dir() else path.stat().st_size
-                entries.append(Entry(item.name, relative, path.is_dir(), size))
+                status = path.stat()
+                size = 0 if path.is_dir() else status.st_size
+                entries.append(Entry(item.name, relative, path.is_dir(), size, status.st_mtime))
             except (ConfinedError, OSError):
                 continue
         entries.sort(key=lambda entry: (not entry.folder, entry.name.lower()))

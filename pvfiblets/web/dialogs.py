@@ -75,6 +75,13 @@ def _dialog(name: str, title: str, width: int) -> Any:
     return card
 
 
+# Folders come first, however files are sorted; sorting is stable, and the server's order is by name.
+LISTED = (
+    "entries.filter((e) => e.name.toLowerCase().includes((file_search || '').toLowerCase()))"
+    ".sort((a, b) => b.folder - a.folder || (file_sort === 'name' || a.folder ? 0 : b[file_sort] - a[file_sort]))"
+)
+
+
 def _files(app: Any) -> None:
     with _dialog("open", "Open a file", 620):
         with html.Div(classes="px-4 pb-1 pv-pair"):
@@ -87,19 +94,33 @@ def _files(app: Any) -> None:
             with html.Label(v_if="upload_limit > 0", classes="v-btn v-btn--density-default v-btn--size-small "
                             "v-btn--variant-tonal px-3 text-none", style=LABEL, **{"for": "pv-upload"}):  # fmt: skip
                 html.Span("Upload…")
+        with html.Div(classes="px-4 pb-1 pv-pair"):
+            v3.VTextField(
+                v_model=("file_search",), placeholder="Search", density="compact", variant="outlined",
+                hide_details=True, prepend_inner_icon="mdi-magnify", aria_label="Search",
+                data_field="search",
+            )  # fmt: skip
+            with v3.VBtnToggle(v_model=("file_sort",), mandatory=True, density="compact", style="height: 32px"):
+                for name, title in (("name", "Name"), ("bytes", "Size"), ("time", "Newest")):
+                    v3.VBtn(title, value=name, size="x-small", classes="text-none", data_sort=name)
         with v3.VCardText(classes="pa-0", style="max-height: 60vh"):
             with v3.VList(density="compact"):
                 with v3.VListItem(
-                    v_for="e in entries",
+                    v_for=f"e in {LISTED}",
                     key="e.path",
                     click=(app.files.take, "[e.path, e.folder]"),
                     title=("e.name",),
                     subtitle=("e.detail",),
-                    prepend_icon=("e.folder ? 'mdi-folder-outline' : 'mdi-file-outline'",),
+                    prepend_icon=("e.icon",),
                     data_entry=("e.name",),
                 ):
                     pass
             html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
+            html.Div(
+                "No file here has that in its name.",
+                v_if=f"entries.length && !{LISTED}.length",
+                classes="pv-small pa-4",
+            )
 
 
 def _sessions(app: Any) -> None:

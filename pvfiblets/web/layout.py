@@ -28,7 +28,8 @@ STYLE = """
 html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view { position: absolute; top: var(--v-layout-top); bottom: 0; left: var(--v-layout-left);
   right: var(--v-layout-right); touch-action: none; background: #000 }
-.pv-view img { width: 100%; height: 100%; object-fit: fill; display: block; user-select: none; -webkit-user-drag: none }
+.pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
+  user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
 .pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;
@@ -72,6 +73,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
 .pv-value { font-size: 13px; font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .pv-head { font-size: 11px; letter-spacing: .08em; text-transform: uppercase; opacity: .6; padding: 10px 12px 2px }
+.pv-fold { justify-content: space-between !important; margin-top: 6px; padding-inline: 12px !important; opacity: .8 }
 .pv-name { font-size: 13px; font-weight: 600; padding: 10px 12px 0 }
 .pv-num { width: 78px; flex: none; font: inherit; font-size: 13px; min-width: 0; color: inherit;
   background: transparent;

@@ -239,9 +239,10 @@ class FileActions(Actions):
         known = PURPOSES[self._for]
         entries = app.confined.listing(folder)
         app.page.folder = app.confined.relative(app.confined.resolve(folder)).removeprefix(".")
+        app.page.file_search = ""
         app.page.entries = [
-            {"name": entry.name, "path": entry.path, "folder": entry.folder,
-             "detail": "" if entry.folder else _size(entry.size)}
+            {"name": entry.name, "path": entry.path, "folder": entry.folder, "icon": _icon(entry),
+             "bytes": entry.size, "time": entry.time, "detail": "" if entry.folder else _size(entry.size)}
             for entry in entries
             if entry.folder or entry.name.lower().endswith(tuple(known))
         ]  # fmt: skip
@@ -412,6 +413,17 @@ def _place(part: Path, target: Path) -> None:
 
 def _is_lines(path: str) -> bool:
     return path.lower().endswith((".trk", ".trk.gz", ".tck", ".trx", ".tt.gz", ".fiblets"))
+
+
+def _icon(entry: Any) -> str:
+    name = entry.name.lower()
+    if entry.folder:
+        return "mdi-folder-outline"
+    kinds = {
+        "mdi-vector-polyline": tuple(suffixes()), "mdi-cube-outline": VOLUMES, "mdi-triangle-outline": MESHES,
+        "mdi-chart-line": VALUES, "mdi-content-save-outline": (SESSION,),
+    }  # fmt: skip
+    return next((icon for icon, ends in kinds.items() if name.endswith(tuple(ends))), "mdi-file-outline")
 
 
 def _size(size: int) -> str:

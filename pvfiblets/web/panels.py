@@ -6,6 +6,7 @@ from typing import Any
 
 from pvfiblets.web.elements import html, v3
 
+EXPERT = "Drawing"
 ICONS = {
     "tractogram": "mdi-vector-polyline",
     "tubes": "mdi-pipe",
@@ -76,8 +77,16 @@ def properties(app: Any) -> None:
             "Choose a layer to see what can be set of it.", v_if="layers.length && !chosen", classes="pv-small pa-3"
         )
         with html.Div(v_for="group in groups", key="chosen + group.title"):
-            html.Div("{{ group.title }}", classes="pv-head")
-            with html.Div(v_for="p in group.properties", key="p.name", data_property=("p.name",)):
+            html.Div("{{ group.title }}", classes="pv-head", v_if=f"group.title !== '{EXPERT}'")
+            v3.VBtn(  # folded: what experts set
+                EXPERT, v_else=True, variant="text", size="x-small", block=True, classes="pv-fold text-none",
+                append_icon=("expert_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",), data_action="expert",
+                click="expert_open = !expert_open", aria_expanded=("expert_open",),
+            )  # fmt: skip
+            with html.Div(
+                v_for="p in group.properties", key="p.name", data_property=("p.name",),
+                v_show=f"group.title !== '{EXPERT}' || expert_open",
+            ):  # fmt: skip
                 with html.Div(classes="pv-row", v_if="p.matters"):
                     html.Label("{{ p.label }}", title=("p.help",))
                     with html.Div(classes="pv-pair"):

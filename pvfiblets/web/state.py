@@ -25,12 +25,16 @@ class Page:
     toast_open: bool = False
     toast: str = ""
     toast_kind: str = "error"
+    expert_open: bool = False
+    file_search: str = ""
+    file_sort: str = "name"
     uploading: str = ""
     uploaded: float = 0.0  # per cent; below zero: nobody knows
     export_what: str = "selected"
     export_to: str = "folder"
     show_regions: bool = True
 
+    toast_number: int = 0  # of the sentence: pages remember which they have shown
     layers: list[Record] = field(default_factory=list)
     chosen: str = ""
     chosen_name: str = ""
@@ -76,6 +80,9 @@ WRITABLE: dict[str, type] = {
     "toast_open": bool,
     "toast": str,
     "toast_kind": str,
+    "expert_open": bool,
+    "file_search": str,
+    "file_sort": str,
     "uploading": str,
     "uploaded": float,
     "export_what": str,

@@ -117,6 +117,44 @@ def test_keys_are_listed_and_do_what_the_list_says(revisit):
     assert download.value.path().read_bytes().startswith(b"\x89PNG")
 
 
+def test_menus_close_files_are_found_and_sentences_are_said_once(visit):
+    here = visit("lines.fiblets")
+    assert here.page.locator("#pv-view img").evaluate("image => getComputedStyle(image).objectFit") == "contain"
+    detail = here.page.locator("[data-property=detail] label")  # what experts set is folded
+    assert not detail.is_visible()
+    here.page.click("[data-action=expert]")
+    detail.wait_for()
+    here.page.click("[data-action=more]")
+    menu = here.page.locator(".v-menu.v-overlay--active .v-list-item:has-text('Duplicate')")
+    menu.wait_for()
+    here.press("Escape")
+    menu.wait_for(state="hidden")
+    here.press("o")
+    names = here.page.locator("#dialog-open [data-entry]")
+    here.wait(lambda: names.count() > 4, "the files")
+
+    def listed():
+        return [one.get_attribute("data-entry") for one in names.all()]
+
+    here.page.click("[data-sort=bytes]")
+    sizes = {path.name: path.stat().st_size for path in here.served.root.iterdir()}
+    here.wait(lambda: listed() == sorted(listed(), key=lambda name: -sizes[name]), "the largest first")
+    here.page.fill("[data-field=search] input", "LINES")
+    here.wait(lambda: set(listed()) == {"lines.trk", "lines.fiblets"}, "those of that name")
+    icons = [names.nth(k).locator("i").first.get_attribute("class") for k in range(2)]
+    assert all("mdi-vector-polyline" in icon for icon in icons)
+    (here.served.root / "bad_lines.trk").write_bytes(b"TRACK" + bytes(2000))
+    here.press("Escape")
+    here.page.wait_for_selector("#dialog-open", state="hidden")
+    here.page.click("[data-action=open]")
+    here.page.click("[data-entry='bad_lines.trk']")
+    here.wait(lambda: here.state("toast_open") and "bad_lines.trk" in here.toast(), "why it was not opened")
+    here.page.reload()
+    here.ready()
+    here.wait(lambda: here.state("toast_open") is False, "no sentence that was said before")
+    (here.served.root / "bad_lines.trk").unlink()
+
+
 def test_the_script_of_a_page_makes_its_picture(revisit):
     from PIL import Image
 

@@ -33,6 +33,27 @@ async def gone(pid, seconds=10.0):
         await asyncio.sleep(0.05)
 
 
+def test_the_state_of_a_session_is_told_to_its_browser_alone(tmp_path):
+    import json
+
+    async def main():
+        async with gate(tmp_path) as server, Browser(server) as browser, Browser(server) as stranger:
+            await browser.enter()
+            told = json.loads((await browser.get("/status"))[1])
+            assert told == {"state": "running", "connected": 0}
+            async with browser.socket():
+                assert json.loads((await browser.get("/status"))[1])["connected"] == 1
+            status, text = await stranger.get("/status")
+            assert status == 401
+            assert "running" not in text
+            await stranger.get(f"/?token={TOKEN}")
+            assert json.loads((await stranger.get("/status"))[1]) == {"state": "none"}
+            await browser.post("/end")
+            assert json.loads((await browser.get("/status"))[1])["state"] == "none"
+
+    run(main())
+
+
 def test_nothing_is_shown_without_the_token(tmp_path, caplog):
     async def test():
         async with gate(tmp_path) as server, Browser(server) as browser:

@@ -16,6 +16,11 @@
     if (!state()) return setTimeout(begin, 50);
     if (window.innerWidth < 900) set("left_open", false);
     if (window.innerWidth < 1100) set("right_open", false);
+    // A sentence that was read is not said again after a reload.
+    try {
+      if (sessionStorage.getItem("pvfiblets-said") === String(get("toast_number"))) set("toast_open", false);
+      window.addEventListener("pagehide", () => sessionStorage.setItem("pvfiblets-said", String(get("toast_number"))));
+    } catch { /* a browser that keeps nothing */ }
     recall();
   };
 
@@ -66,6 +71,7 @@
       return;
     }
     if (event.altKey || get("dialog")) return;
+    if (key === "escape" && document.querySelector(".v-menu.v-overlay--active")) return; // a menu's own: it closes
     if (key === "escape") set("tool", "rotate");
     else if (KEYS[key]) KEYS[key]();
     else return;
