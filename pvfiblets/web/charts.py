@@ -62,11 +62,25 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
     band = " ".join(f"{a:.1f},{b:.1f}" for a, b in edge)
     line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(across(x[fine]), down(y[fine]), strict=True))
     ticks = "".join(_label(left - 4.0, float(down(value)) + 4.0, f"{value:.3g}", "end") for value in (least, most))
-    ends = _label(left, height - 4.0, "start", "start") + _label(width - 6.0, height - 4.0, "end", "end")
+    ends = "".join(
+        _label(float(across(share)), height - 4.0, text, anchor)
+        for share, text, anchor in (
+            (0.0, "start", "start"),
+            (0.5, "share of the length", "middle"),
+            (1.0, "end", "end"),
+        )
+    )
+    # Under the pointer: what is there, as browsers show it.
+    step = (width - left - 6.0) / max(len(x) - 1, 1)
+    told = "".join(
+        f'<rect x="{float(across(a)) - step / 2:.1f}" y="0" width="{step:.2f}" height="{height - bottom:g}" '
+        f'fill="transparent"><title>{100.0 * a:.0f} % of the way: {b:.4g} ({low:.4g} to {high:.4g})</title></rect>'
+        for a, b, low, high in zip(x[fine], y[fine], below[fine], above[fine], strict=True)
+    )
     return (
         f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="profile">'
         f'<polygon points="{band}" fill="{COLOURS[0]}" opacity=".3"/>'
-        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>{ticks}{ends}</svg>'
+        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>{ticks}{ends}{told}</svg>'
     )
 
 
