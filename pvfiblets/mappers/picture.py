@@ -78,6 +78,7 @@ class Picture:
         self._inside = False
         self._refinement: Refinement | None = None
         self._error: BaseException | None = None
+        self._untextured = weak(None)  # the render pass that does not draw into textures
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
         shown_pictures.add(self)
@@ -318,6 +319,8 @@ class Picture:
 
     def _state(self, renderer: Any) -> Hashable:
         """Return what the picture is made of; None while it changes from frame to frame, or cannot be refined."""
+        if renderer.GetPass() is not None and renderer.GetPass() is self._untextured.Get():
+            return None
         if not _refinable(renderer) or in_motion(renderer) or not self.focusing.settled:
             return None
         interactor = renderer.GetRenderWindow().GetInteractor()
@@ -356,15 +359,28 @@ class Picture:
         taken = refinement is not None and self._shift == (0, 0) and not refinement.idle
         if smooth or taken or self.has_effects:
             with context.foreign():
-                colour = attachment(context, COLOUR)
-                if smooth:
-                    smoothing.smooth(_smoother(context, slot), colour, attachment(context, DEPTH), viewport)
-                if self.has_effects:
-                    self._paint_effects(context, slot, colour, viewport)
-                if refinement is not None and taken:
-                    refinement.paint(context.ctx, slot, colour, viewport)
+                self._paint_into(context, slot, viewport, smooth, taken)
         if refinement is not None and self._shift == (0, 0):
             refinement.put_back()
+
+    def _paint_into(
+        self, context: WindowContext, slot: Slot, viewport: tuple[int, int, int, int], smooth: bool, taken: bool
+    ) -> None:
+        """Smooth edges, paint effects and add up samples, as far as VTK draws into textures."""
+        try:
+            colour = attachment(context, COLOUR)
+            depth = attachment(context, DEPTH) if smooth else None
+        except RuntimeError:
+            if self.has_effects:  # which somebody asked for
+                raise
+            self._untextured = weak(self.renderer.GetPass())
+            return
+        if smooth:
+            self._smoothing.smooth(_smoother(context, slot), colour, depth, viewport)
+        if self.has_effects:
+            self._paint_effects(context, slot, colour, viewport)
+        if taken and self._refinement is not None:
+            self._refinement.paint(context.ctx, slot, colour, viewport)
 
     def _paint_effects(
         self, context: WindowContext, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]

@@ -403,3 +403,18 @@ def test_memory_is_told_and_given_back(scene):
     scene.picture.antialias = "off"
     scene.render()
     assert scene.picture.explain() == {"buffers": []}
+
+
+def test_passes_that_draw_into_no_textures_leave_edges_as_they_are(three_lines):
+    """PyVista's blur: an effect that somebody asked for is an error there, smooth edges are not."""
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 120))
+    plotter.add_fiblets(three_lines, color="black")
+    sharp = plotter.screenshot()
+    plotter.add_blurring()
+    plotter.render()
+    blurred = plotter.screenshot()
+    assert 1 < len(np.unique(sharp)) < len(np.unique(blurred))
+    assert (blurred[..., 0] < 255).sum() > (sharp[..., 0] < 255).sum()
+    plotter.camera.azimuth += 20.0
+    plotter.render()
+    plotter.close()
