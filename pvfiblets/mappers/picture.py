@@ -371,7 +371,7 @@ class Picture:
             colour = attachment(context, COLOUR)
             depth = attachment(context, DEPTH) if smooth else None
         except RuntimeError:
-            if self.has_effects:  # which somebody asked for
+            if self.has_effects or self.renderer.GetPass() is None:  # asked for, or no render pass is the reason
                 raise
             self._untextured = weak(self.renderer.GetPass())
             return

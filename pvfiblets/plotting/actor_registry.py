@@ -9,7 +9,7 @@ plotter closes.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
@@ -139,9 +139,19 @@ class ActorRegistry(Generic[A]):
 
     def _check_known(self, own: dict[str, Any]) -> None:
         """Refuse arguments that are none, before they are said of a function that nobody called."""
-        unknown = next((name for name in own if name not in self.OWN), None)
-        if unknown is not None:
-            raise TypeError(f"{self.ADD}() got an unexpected keyword argument {unknown!r}")
+        self._refuse([name for name in own if name not in self.OWN])
+
+    def _refuse(self, unknown: Sequence[str]) -> None:
+        """Refuse arguments that are none; those of ``add_mesh`` that are the property's, with where they belong."""
+        if not unknown:
+            return
+        name = unknown[0]
+        if name in ("pbr", "smooth_shading"):
+            why = "set actor.prop.interpolation = 'pbr'" if name == "pbr" else "lines and tubes are smooth as they are"
+            raise TypeError(f"{self.ADD}() takes no {name}: {why}")
+        if isinstance(getattr(pv.Property, name, None), property):
+            raise TypeError(f"{self.ADD}() takes no {name}: set it on the actor it returns (actor.prop.{name} = ...)")
+        raise TypeError(f"{self.ADD}() got an unexpected keyword argument {name!r}")
 
     def __iter__(self) -> Iterator[A]:
         return iter(tuple(self._actors))

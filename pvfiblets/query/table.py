@@ -39,6 +39,18 @@ class Table(dict[str, npt.NDArray[Any]]):
         """How many rows there are."""
         return len(next(iter(self.values()), ()))
 
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of the same columns; needs pandas."""
+        import pandas as pd
+
+        return pd.DataFrame(self)
+
+    def to_arrow(self) -> Any:
+        """Return a ``pyarrow.Table`` of the same columns; needs pyarrow."""
+        import pyarrow as pa
+
+        return pa.table(dict(self))
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write the table to a file; its suffix says in which format.
 

@@ -151,8 +151,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         if live:
             sets = "; ".join(f"actor.{name} = ..." for name in live)
             raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
-        if unknown:
-            raise TypeError(f"add_fiblets() got an unexpected keyword argument {unknown[0]!r}")
+        self._refuse(unknown)
 
     def pipelines(self) -> PipelineTable:
         """Return every pipeline: whether the plotter's OpenGL has it, or why not.

@@ -6,6 +6,7 @@ component lives as long as its plotter; its life cycle is that of `pvfiblets.plo
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -125,6 +126,8 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+        if not getattr(held.drawn, "n_segments", 0):
+            warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
         return HaloLineActor(held, settings=settings, theme=self._plotter.theme)
 
 
@@ -213,6 +216,8 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         held = as_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+        if not held.drawn.n_points:
+            warnings.warn("the source holds no points: nothing is drawn", UserWarning, stacklevel=5)
         return HaloPointActor(held, settings=settings, theme=self._plotter.theme)
 
 

@@ -7,6 +7,7 @@ either name. :class:`SplineTubesComponent` lives as long as its plotter; its lif
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -151,6 +152,8 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             scalar_slopes=scalar_slopes,
             scaled=scaled,
         )
+        if not tubes.n_segments:
+            warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
         return TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme)
 
 

@@ -1,0 +1,50 @@
+"""Arguments of add_mesh that are the property's are told where they belong, and VTK's light follows them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+ADDS = ("add_fiblets", "add_spline_tubes", "add_halo_lines")
+LIGHT = {"ambient": 0.5, "diffuse": 0.3, "specular": 1.0, "interpolation": "pbr", "metallic": 0.9, "roughness": 0.1}
+
+
+@pytest.mark.parametrize("add", ADDS)
+def test_light_is_told_to_be_the_propertys(plotter, three_lines, add):
+    for name in ("specular", "ambient", "diffuse", "metallic", "roughness", "specular_power"):
+        with pytest.raises(TypeError, match=rf"{add}\(\) takes no {name}: .* actor\.prop\.{name} = "):
+            getattr(plotter, add)(three_lines, **{name: 0.5})
+    with pytest.raises(TypeError, match="prop.interpolation = 'pbr'"):
+        getattr(plotter, add)(three_lines, pbr=True)
+    with pytest.raises(TypeError, match="smooth as they are"):
+        getattr(plotter, add)(three_lines, smooth_shading=True)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'spekular'"):
+        getattr(plotter, add)(three_lines, spekular=1.0)
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes"])
+def test_light_of_the_property_is_drawn(plotter, three_lines, add):
+    looks = {"radius": 3.0} if add == "add_spline_tubes" else {"line_width": 6, "lighting": True}
+    actor = getattr(plotter, add)(three_lines, color="red", **looks)
+    before = plotter.screenshot()
+    for name, value in LIGHT.items():
+        setattr(actor.prop, name, value)
+        plotter.render()
+        after = plotter.screenshot()
+        assert np.abs(after.astype(int) - before).max() > 20, name
+        before = after
+
+
+@pytest.mark.parametrize("add", ADDS)
+def test_nothing_to_draw_is_told(plotter, add):
+    with pytest.warns(UserWarning, match="nothing is drawn"):
+        getattr(plotter, add)([])
+
+
+def test_tables_for_pandas_and_arrow(three_lines):
+    table = three_lines.table()
+    frame = pytest.importorskip("pandas").DataFrame(table)
+    assert table.to_pandas().equals(frame)
+    pytest.importorskip("pyarrow")
+    assert table.to_arrow().column_names == list(table)
+    np.testing.assert_array_equal(table.to_arrow()["weight"], three_lines.per_streamline["weight"])
