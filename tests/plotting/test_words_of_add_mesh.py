@@ -12,7 +12,7 @@ LIGHT = {"ambient": 0.5, "diffuse": 0.3, "specular": 1.0, "interpolation": "pbr"
 @pytest.mark.parametrize("add", ADDS)
 def test_light_is_told_to_be_the_propertys(plotter, three_lines, add):
     for name in ("specular", "ambient", "diffuse", "metallic", "roughness", "specular_power"):
-        with pytest.raises(TypeError, match=rf"{add}\(\) takes no {name}: .* actor\.prop\.{name} = "):
+        with pytest.raises(TypeError, match=rf"{add}\(\) takes no {name}: .*actor\.prop\.{name} = "):
             getattr(plotter, add)(three_lines, **{name: 0.5})
     with pytest.raises(TypeError, match="prop.interpolation = 'pbr'"):
         getattr(plotter, add)(three_lines, pbr=True)
