@@ -11,6 +11,9 @@ Shapes are combined by ``&`` (both), ``|`` (either), ``~`` (not) and ``-`` (with
 Streamlines are chosen by where their points lie: ``passes(region)``, ``ends_in(region)`` and ``stays_in(region)``,
 joined by ``&``, ``|`` and ``~``, for :meth:`.FibletSet.select`. ``Distance(region)`` measures how near they come.
 
+``RegionPainter`` paints regions on the voxels of an image, with undo, and ``LiveRegions`` tells which streamlines
+pass them after each stroke.
+
 Positions are mm. See :mod:`pvfiblets.query.shapes` for how a region is kept.
 """
 
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
     from .query.classify import classify
     from .query.labels import Labels
     from .query.measures import Distance
+    from .query.painting.fiblet_index import FibletIndex
+    from .query.painting.live import LiveRegion, LiveRegions
+    from .query.painting.painter import PaintedRegion, RegionPainter, Stroke
     from .query.predicates import Predicate, ends_in, passes, stays_in
     from .query.shapes import Box, Plane, Region, Shape, Slab, Sphere
     from .query.surfaces import Surface
@@ -31,13 +37,19 @@ if TYPE_CHECKING:
 __all__ = [
     "Box",
     "Distance",
+    "FibletIndex",
     "Labels",
+    "LiveRegion",
+    "LiveRegions",
+    "PaintedRegion",
     "Plane",
     "Predicate",
     "Region",
+    "RegionPainter",
     "Shape",
     "Slab",
     "Sphere",
+    "Stroke",
     "Surface",
     "classify",
     "ends_in",
@@ -48,13 +60,19 @@ __all__ = [
 _HOME = {
     "Box": ".query.shapes",
     "Distance": ".query.measures",
+    "FibletIndex": ".query.painting.fiblet_index",
     "Labels": ".query.labels",
+    "LiveRegion": ".query.painting.live",
+    "LiveRegions": ".query.painting.live",
+    "PaintedRegion": ".query.painting.painter",
     "Plane": ".query.shapes",
     "Predicate": ".query.predicates",
     "Region": ".query.shapes",
+    "RegionPainter": ".query.painting.painter",
     "Shape": ".query.shapes",
     "Slab": ".query.shapes",
     "Sphere": ".query.shapes",
+    "Stroke": ".query.painting.painter",
     "Surface": ".query.surfaces",
     "classify": ".query.classify",
     "ends_in": ".query.predicates",

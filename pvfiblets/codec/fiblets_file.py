@@ -36,6 +36,10 @@ VERSION = 3
 OF_CODES = 2
 """Version of files that hold records and codes, which older programs read too; that of exact sets is `VERSION`."""
 
+INDEX = "_spatial_index"
+"""Attribute of a set, no field of it: a set that is made of another has other fiblets."""
+INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/capsules.npy")
+
 _CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 _OPTIONAL = ("anchors_low", "rank_to_id")
 _SHAPES: dict[str, tuple[str, int]] = {
@@ -71,7 +75,16 @@ def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
         if getattr(fiblets, name) is not None:
             members[f"{name}.npy"] = array_member(np.asarray(getattr(fiblets, name)))
     header, more = make_header(fiblets, {k: array_member(np.asarray(v.codes)) for k, v in fiblets.per_point.items()})
-    write_archive(path, header, members | more)
+    write_archive(path, header, members | more | _index_members(fiblets))
+
+
+def _index_members(fiblets: FibletSet) -> dict[str, Member]:
+    """A spatial index over the fiblets, which the room of questions has put with the set; none is none."""
+    held: Any = fiblets.__dict__.get(INDEX)
+    if held is None:
+        return {}
+    arrays = held if isinstance(held, tuple) else (held.order, held.capsules)
+    return {name: array_member(np.asarray(array)) for name, array in zip(INDEX_MEMBERS, arrays, strict=True)}
 
 
 def _save_exact(fiblets: FibletSet, path: str | PathLike[str]) -> None:
@@ -223,13 +236,16 @@ def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, n
     b = [float(v) for v in header["bounds"]]
     plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in _CORE}
     plain |= {name: arrays.get(f"{name}.npy") for name in _OPTIONAL}
-    return kind(
+    made = kind(
         parameters=parameters,
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),
         n_streamlines=int(header["n_streamlines"]),
         **plain,
         **_data(header, arrays),
     )
+    if all(name in arrays for name in INDEX_MEMBERS):
+        made.__dict__[INDEX] = tuple(arrays[name] for name in INDEX_MEMBERS)
+    return made
 
 
 def _check_shapes(path: str | PathLike[str], f: FibletSet, n: int, n_points: int) -> None:

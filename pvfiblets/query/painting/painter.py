@@ -1,0 +1,405 @@
+"""A model of regions painted on the voxels of an image, for whatever shows them: named, coloured, undone, saved."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import FormatError
+from ..bundles.colours import as_colour, distinct_colours
+from ..labels import Labels
+from ..placement import finite_vector, positive
+from ..voxel_grid import VoxelGrid, grid_like
+
+__all__ = ["PaintedRegion", "RegionPainter", "Stroke"]
+
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+MOST_STEPS = 200
+"""Strokes that can be undone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """What a stroke changed.
+
+    Attributes
+    ----------
+    voxels : numpy.ndarray
+        ``(n,)`` int64 places in the flat grid, in C order.
+    before, after : numpy.ndarray
+        ``(n,)`` uint16 labels, 0 for none.
+    """
+
+    voxels: Ints
+    before: npt.NDArray[np.uint16]
+    after: npt.NDArray[np.uint16]
+
+    def __len__(self) -> int:
+        return len(self.voxels)
+
+
+@dataclass
+class PaintedRegion:
+    """Name, label (1 and up) and colour (red, green, blue, from 0 to 1) of a region, and whether it is shown."""
+
+    name: str
+    label: int
+    color: tuple[float, float, float]
+    visible: bool = True
+
+
+class RegionPainter:
+    """Regions on a grid of voxels; a voxel is in one of them at most.
+
+    Parameters
+    ----------
+    like : image
+        Whose grid it is: what :func:`pvfiblets.density` takes, such as a path of NIfTI or ``(shape, affine)``.
+
+    Attributes
+    ----------
+    labels : numpy.ndarray
+        ``(i, j, k)`` uint16, 0 for no region; changed by strokes only.
+    listeners : list of callable
+        Called with each :class:`Stroke`, those of undoing too.
+    """
+
+    def __init__(self, like: Any) -> None:
+        self.grid: VoxelGrid = grid_like(like)
+        self.labels = np.zeros(self.grid.shape, np.uint16)
+        self.regions: dict[str, PaintedRegion] = {}
+        self.listeners: list[Callable[[Stroke], None]] = []
+        self._done: list[Stroke] = []
+        self._undone: list[Stroke] = []
+
+    # ------------------------------------------------------------------------------------------------------- regions
+
+    def add(self, name: str, color: Any = None) -> PaintedRegion:
+        """Add a region without voxels, by a new `name` and in a colour."""
+        if not name.strip() or name in self.regions:
+            raise ValueError(f"a region {name!r} is there already, or is no name; give another one")
+        label = max((r.label for r in self.regions.values()), default=0) + 1
+        if label > np.iinfo(np.uint16).max:
+            raise ValueError("there are 65,535 regions; no more fit")
+        usual = distinct_colours(label)[-1].tolist()
+        made = PaintedRegion(name, label, (usual[0], usual[1], usual[2]) if color is None else as_colour(color))
+        self.regions[name] = made
+        return made
+
+    def rename(self, name: str, new: str) -> None:
+        """Give a region a `new` name, in its place of the list."""
+        self.label(name)
+        if not new.strip() or (new in self.regions and new != name):
+            raise ValueError(f"a region {new!r} is there already, or is no name; give another one")
+        self.regions = {new if key == name else key: region for key, region in self.regions.items()}
+        self.regions[new].name = new
+
+    def remove(self, name: str) -> None:
+        """Take a region and its voxels away; that cannot be undone."""
+        self.clear(name)
+        label = self.regions.pop(name).label
+        self._done = [s for s in self._done if not ((s.before == label) | (s.after == label)).any()]
+        self._undone = []
+
+    def label(self, name: str) -> int:
+        """Return a region's number in `labels`; a KeyError that lists the regions if there is none of that name."""
+        if name not in self.regions:
+            raise KeyError(f"there is no region {name!r}; there are: {', '.join(map(repr, self.regions)) or 'none'}")
+        return self.regions[name].label
+
+    def mask(self, name: str) -> Flags:
+        """Return a region's voxels, ``(i, j, k)`` bool."""
+        return np.asarray(self.labels == self.label(name))
+
+    def region(self, name: str) -> Labels:
+        """Return a region as it is now, for ``regions.passes`` and the like; a ValueError if it has no voxel."""
+        return Labels(self.mask(name), self.grid.affine)
+
+    # ------------------------------------------------------------------------------------------------------- brushes
+
+    def paint(self, name: str | None, path: npt.ArrayLike, radius: float, *, plane: int | None = None) -> Stroke:
+        """Paint with a round brush.
+
+        Parameters
+        ----------
+        name : str or None
+            Region; None erases.
+        path : array_like
+            ``(3,)`` or ``(n, 3)`` mm: where the brush is, or the way along which it is drawn.
+        radius : float
+            mm: voxels whose centres lie within it of the path are painted, and those that hold its corners.
+        plane : {0, 1, 2}, optional
+            A brush of two dimensions: only the voxels of one slice, that of the path's first position along this axis.
+
+        Returns
+        -------
+        Stroke
+        """
+        reach = positive(radius, "radius")
+        places = np.atleast_2d(np.asarray(path, np.float64))
+        if places.ndim != 2 or places.shape[1] != 3 or not len(places) or not np.isfinite(places).all():
+            raise ValueError(f"path has the shape {places.shape}; give a position (3,) or several (n, 3), finite mm")
+        found = [self._ball(a, b, reach) for a, b in pairwise(places)]
+        found += [self._ball(places[0], places[0], reach)] if len(places) == 1 else []
+        at = np.concatenate([*found, self._voxels(places)])
+        at = at[self._within(at)]
+        if plane is not None:
+            at = at[at[:, self._axis(plane)] == self._voxels(places[:1])[0, plane]]
+        return self._put(name, np.unique(self._flat(at)))
+
+    def erase(self, path: npt.ArrayLike, radius: float, *, plane: int | None = None) -> Stroke:
+        """Take voxels out of their regions; parameters as for :meth:`paint`."""
+        return self.paint(None, path, radius, plane=plane)
+
+    def sphere(self, name: str | None, center: npt.ArrayLike, radius: float) -> Stroke:
+        """Paint all voxels whose centres lie within a `radius` (mm) of a `center` (mm)."""
+        return self.paint(name, finite_vector(center, "center"), radius)
+
+    def polygon(self, name: str | None, points: npt.ArrayLike, plane: int) -> Stroke:
+        """Paint the voxels of a slice whose centres lie in a polygon.
+
+        Parameters
+        ----------
+        name : str or None
+        points : array_like
+            ``(n, 3)`` mm, 3 corners at least; it closes itself, inside is by the even-odd rule.
+        plane : {0, 1, 2}
+            Axis of voxels across the slice, which is the first corner's.
+        """
+        axis = self._axis(plane)
+        corners = np.asarray(points, np.float64)
+        if corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 3 or not np.isfinite(corners).all():
+            raise ValueError(f"points have the shape {corners.shape}; give three corners or more, (n, 3) finite mm")
+        u = (corners - self.grid.corner) @ self.grid.linear.T - 0.5
+        slice_ = int(np.floor(u[0, axis] + 0.5))
+        i, j = (k for k in range(3) if k != axis)
+        x, y = np.meshgrid(np.arange(self.grid.shape[i]), np.arange(self.grid.shape[j]), indexing="ij")
+        inside = np.zeros(x.shape, bool)
+        for a, b in zip(u, np.roll(u, -1, axis=0), strict=True):
+            crosses = (a[j] > y) != (b[j] > y)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                inside ^= crosses & (x < (b[i] - a[i]) * (y - a[j]) / (b[j] - a[j]) + a[i])
+        at = np.empty((int(inside.sum()), 3), np.int64)
+        at[:, axis], at[:, i], at[:, j] = slice_, x[inside], y[inside]
+        return self._put(name, np.sort(self._flat(at[self._within(at)])))
+
+    def fill(self, name: str | None, seed: npt.ArrayLike, *, plane: int | None = None) -> Stroke:
+        """Paint all voxels that hang together with a position's and are of its region, or of none as it is.
+
+        Parameters
+        ----------
+        name : str or None
+        seed : array_like
+            ``(3,)`` mm.
+        plane : {0, 1, 2}, optional
+            Only within the slice across this axis.
+        """
+        at = self._seed(seed)
+        return self._put(name, self._grown(at, self.labels == self.labels[tuple(at)], plane))
+
+    def grow(
+        self, name: str | None, seed: npt.ArrayLike, image: npt.ArrayLike, low: float, high: float,
+        *, radius: float | None = None, plane: int | None = None,
+    ) -> Stroke:  # fmt: skip
+        """Paint the voxels that hang together with a position's by values of an image in a range.
+
+        Parameters
+        ----------
+        name : str or None
+        seed : array_like
+            ``(3,)`` mm; nothing is painted if its own value is out of range.
+        image : array_like
+            ``(i, j, k)`` numbers on this grid.
+        low, high : float
+            Both included.
+        radius : float, optional
+            mm from the seed, beyond which nothing is painted.
+        plane : {0, 1, 2}, optional
+            Only within the slice across this axis.
+        """
+        values = np.asarray(image)
+        if values.shape != self.grid.shape:
+            raise ValueError(f"the image has the shape {values.shape}; the grid's is {self.grid.shape}")
+        if not low <= high:
+            raise ValueError(f"low is {low} and high is {high}; give the lower one first")
+        at = self._seed(seed)
+        open_ = (values >= low) & (values <= high)
+        if radius is not None:
+            near = np.zeros(self.grid.shape, bool)
+            center = np.asarray(seed, np.float64)
+            ball = self._ball(center, center, positive(radius, "radius"))
+            near[tuple(ball[self._within(ball)].T)] = True
+            open_ &= near
+        return self._put(name, self._grown(at, open_, plane))
+
+    def clear(self, name: str) -> Stroke:
+        """Take all voxels out of a region."""
+        return self._put(None, np.flatnonzero(self.labels.ravel() == self.label(name)))
+
+    # ---------------------------------------------------------------------------------------------------------- undo
+
+    def undo(self) -> Stroke | None:
+        """Take the last stroke back; None if there is none."""
+        if not self._done:
+            return None
+        last = self._done.pop()
+        self._undone.append(last)
+        return self._apply(Stroke(last.voxels, last.after, last.before))
+
+    def redo(self) -> Stroke | None:
+        """Do the stroke again that was undone last; None if there is none."""
+        if not self._undone:
+            return None
+        last = self._undone.pop()
+        self._done.append(last)
+        return self._apply(last)
+
+    # --------------------------------------------------------------------------------------------------------- files
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a NIfTI label volume, and beside it a BIDS table of its ``index``, ``name`` and ``color``.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            ``.nii`` or ``.nii.gz``.
+
+        Returns
+        -------
+        Path
+            The table's: the same name, ``.tsv``.
+        """
+        import nibabel
+
+        target = Path(path).expanduser()
+        table = _table_of(target)
+        image = nibabel.Nifti1Image(self.labels, self.grid.affine)
+        image.set_sform(self.grid.affine, self.grid.space_code)
+        image.header.set_xyzt_units("mm")
+        nibabel.save(image, target)
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, delimiter="\t", lineterminator="\n")
+            writer.writerow(["index", "name", "color"])
+            for r in self.regions.values():
+                writer.writerow([r.label, r.name, "#" + "".join(f"{round(255 * part):02x}" for part in r.color)])
+        return table
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str]) -> RegionPainter:
+        """Read what :meth:`save` wrote, or any label volume; labels without a name are called by their number.
+
+        Raises
+        ------
+        FormatError
+            If the volume has fractions, or labels below 0 or above 65,535.
+        """
+        import nibabel
+
+        target = Path(path).expanduser()
+        table = _table_of(target)
+        image = nibabel.load(target)
+        values = np.asanyarray(image.dataobj)
+        found = np.unique(values)
+        if values.ndim != 3 or not ((found >= 0) & (found <= 65535) & (found == np.floor(found))).all():
+            raise FormatError(target, None, f"values of shape {values.shape} from {found.min()} to {found.max()}",
+                              "three axes of whole numbers from 0 to 65,535")  # fmt: skip
+        made = cls(image)
+        made.labels[...] = values
+        if table.exists():
+            with table.open(newline="", encoding="utf-8") as file:
+                for row in csv.DictReader(file, delimiter="\t"):
+                    try:
+                        label, name, color = int(row["index"]), row["name"], row.get("color")
+                    except (KeyError, TypeError, ValueError) as error:
+                        raise FormatError(table, None, f"a row {row}", "columns index, name and color") from error
+                    usual = distinct_colours(max(label, 1))[-1].tolist()
+                    made.regions[name] = PaintedRegion(name, label, as_colour(color) if color else tuple(usual))
+        known = {r.label for r in made.regions.values()}
+        for label in found[found > 0].astype(int).tolist():
+            if label not in known:
+                usual = distinct_colours(label)[-1].tolist()
+                made.regions[str(label)] = PaintedRegion(str(label), label, (usual[0], usual[1], usual[2]))
+        return made
+
+    # -------------------------------------------------------------------------------------------------------- inside
+
+    def _put(self, name: str | None, voxels: Ints) -> Stroke:
+        label = 0 if name is None else self.label(name)
+        flat = self.labels.reshape(-1)
+        voxels = voxels[flat[voxels] != label]
+        stroke = Stroke(voxels, flat[voxels].copy(), np.full(len(voxels), label, np.uint16))
+        if len(voxels):
+            self._done = [*self._done, stroke][-MOST_STEPS:]
+            self._undone = []
+            self._apply(stroke)
+        return stroke
+
+    def _apply(self, stroke: Stroke) -> Stroke:
+        self.labels.reshape(-1)[stroke.voxels] = stroke.after
+        for listener in list(self.listeners):
+            listener(stroke)
+        return stroke
+
+    def _voxels(self, places: npt.NDArray[np.float64]) -> Ints:
+        return np.floor((places - self.grid.corner) @ self.grid.linear.T).astype(np.int64)
+
+    def _within(self, at: Ints) -> Flags:
+        return np.asarray(((at >= 0) & (at < self.grid.shape)).all(axis=1))
+
+    def _flat(self, at: Ints) -> Ints:
+        return np.ravel_multi_index(tuple(at.T), self.grid.shape).astype(np.int64)
+
+    def _axis(self, plane: int) -> int:
+        if plane not in (0, 1, 2):
+            raise ValueError(f"plane is {plane!r}; give 0, 1 or 2, the axis of voxels across the slice")
+        return int(plane)
+
+    def _seed(self, seed: npt.ArrayLike) -> Ints:
+        at = self._voxels(finite_vector(seed, "seed")[None])
+        if not self._within(at)[0]:
+            raise ValueError(f"seed is {np.asarray(seed).tolist()}, outside of the grid")
+        return at[0]
+
+    def _ball(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], reach: float) -> Ints:
+        """Voxels whose centres lie within `reach` of a segment, ``(n, 3)``, also outside of the grid's sides."""
+        u = (np.stack([a, b]) - self.grid.corner) @ self.grid.linear.T
+        most = reach * np.linalg.norm(self.grid.linear, axis=1)
+        low = np.maximum(np.floor(u.min(axis=0) - most), 0).astype(np.int64)
+        high = np.minimum(np.ceil(u.max(axis=0) + most), self.grid.shape).astype(np.int64)
+        if (high <= low).any():
+            return np.empty((0, 3), np.int64)
+        at = np.stack(np.meshgrid(*map(np.arange, low, high), indexing="ij"), axis=-1).reshape(-1, 3)
+        centres = at @ self.grid.affine[:3, :3].T + self.grid.affine[:3, 3]
+        d = b - a
+        square = float(d @ d)
+        t = np.clip((centres - a) @ d / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(centres))
+        return np.asarray(at[np.linalg.norm(centres - a - t[:, None] * d, axis=1) <= reach])
+
+    def _grown(self, at: Ints, open_: Flags, plane: int | None) -> Ints:
+        """Flat places of the open voxels that hang together with one by faces."""
+        if plane is not None:
+            only = np.zeros_like(open_)
+            part = [slice(None)] * 3
+            part[self._axis(plane)] = slice(int(at[plane]), int(at[plane]) + 1)
+            only[tuple(part)] = open_[tuple(part)]
+            open_ = only
+        from .fill_kernels import connected
+
+        return np.sort(connected(np.ascontiguousarray(open_).ravel(), self.grid.shape, int(self._flat(at[None])[0])))
+
+
+def _table_of(path: Path) -> Path:
+    name = path.name
+    for suffix in (".nii.gz", ".nii"):
+        if name.lower().endswith(suffix):
+            return path.with_name(name[: -len(suffix)] + ".tsv")
+    raise ValueError(f"{path} is no name of a NIfTI file; give .nii or .nii.gz")
