@@ -302,7 +302,11 @@ def drawn(scene: Scene, name: str, steps, watch, calls, before: set[str]) -> dic
     loaded = set(sys.modules) - before - {"watch", "gl_calls"}
     found = {
         "modules": sorted(name for name in loaded if name.startswith("pvfiblets")),
-        "packages": sorted({name.partition(".")[0] for name in loaded} - sys.stdlib_module_names - {"pvfiblets"}),
+        "packages": sorted(
+            {name.partition(".")[0] for name in loaded if not name.startswith("_sysconfigdata")}  # Python's own, too
+            - sys.stdlib_module_names
+            - {"pvfiblets"}
+        ),
         "ran": sorted(watch.ran),
         "features": sorted(watch.features),
         "made": watch.made,
