@@ -104,6 +104,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         self._init_actor()
         self._active = ActiveRenderer()
         self._effects: dict[str, MapperEffect] = {}
+        self._cuts_in: dict[str, Any] = {}
         self._error: BaseException | None = None
         self._follows = colouring is None
         self._colouring = Colouring("solid") if colouring is None else colouring
@@ -244,7 +245,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             program.SetUniform2i("fibletSize", (0, 0))
             return
         frame = frame_of(renderer, actor, viewport)
-        planes, region = self._cuts()
+        planes, region = self._cuts(renderer)
         view = View(
             viewport[2:],
             frame.model_view_projection,
@@ -297,9 +298,26 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
 
         return SeenThrough(buffer.depth)
 
-    def _cuts(self) -> tuple[Any, Any]:
+    def cut_in(self, renderer: vtkRenderer, planes: Any) -> None:
+        """Cut in one of the renderers that show it, and not in the others.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+        planes : array_like or None
+            ``(k, 4)`` of a, b, c, d in world mm: a point is kept where ax + by + cz + d >= 0. None for no cut.
+        """
+        address = renderer.GetAddressAsString("")
+        if planes is None:
+            self._cuts_in.pop(address, None)
+        else:
+            self._cuts_in[address] = np.array(planes, np.float64).reshape(-1, 4)
+        self._actor_modified()
+
+    def _cuts(self, renderer: vtkRenderer) -> tuple[Any, Any]:
         """Return what cuts in world mm: planes, and the region that is not planes."""
-        return world_planes(self), None
+        planes, own = world_planes(self), self._cuts_in.get(renderer.GetAddressAsString(""))
+        return planes if own is None else np.concatenate([planes, own]), None
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
@@ -369,9 +387,9 @@ class CutMapper(EngineMapper[AnyOptions]):
         self._region = region
         self._actor_modified()
 
-    def _cuts(self) -> tuple[Any, Any]:
+    def _cuts(self, renderer: vtkRenderer) -> tuple[Any, Any]:
         """Return planes, VTK's own and what of the region is planes as far as there is room, and the rest of it."""
-        planes, region = super()._cuts()
+        planes, region = super()._cuts(renderer)
         if self._region is None:
             return planes, region
         from pvfiblets.engine.regions.clip_planes import planes_of

@@ -219,16 +219,35 @@ class ActorRegistry(Generic[A]):
 
     # Life cycle ---------------------------------------------------------------------------------
 
+    def show_in(self, actor: A, renderer: Any) -> None:
+        """Show an actor in another of the plotter's renderers, too; both draw the same memory.
+
+        Parameters
+        ----------
+        actor : actor
+            One of the component's.
+        renderer : pyvista.Renderer
+            Of the same plotter.
+        """
+        shown: Any = actor
+        renderer.add_actor(
+            shown, name=actor.name, reset_camera=False, render=False, pickable=bool(shown.GetPickable())
+        )
+        self._follow(actor, renderer)
+
     def _track(self, actor: A, renderer: Any) -> None:
         self._actors.append(actor)
+        self._follow(actor, renderer)
+        # Registered current here, since `clear_on_render_callbacks` drops what others registered.
+        self._plotter.add_on_render_callback(self._raise_pending)
+
+    def _follow(self, actor: A, renderer: Any) -> None:
         actor.entered(renderer)
         address = renderer.GetAddressAsString("")
         if address not in self._renderers:
             # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
             tag = renderer.AddObserver("ModifiedEvent", self._release_removed)
             self._renderers[address] = (renderer, tag)
-        # Registered current here, since `clear_on_render_callbacks` drops what others registered.
-        self._plotter.add_on_render_callback(self._raise_pending)
         self._smooth(renderer)
 
     def _meet_vtk(self) -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from pvfiblets.plotting.slices.stack import SliceStack
+    from pvfiblets.plotting.slices.workspace import Workspace
     from pvfiblets.slices.image import SliceImage
 
     Source: TypeAlias = str | PathLike[str] | SliceImage | np.ndarray | tuple[Any, Any] | pv.ImageData
@@ -55,6 +56,7 @@ class SlicesComponent:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
         self._stacks: list[SliceStack] = []
+        self._workspaces: list[Workspace] = []
 
     def __iter__(self) -> Iterator[SliceStack]:
         return iter(tuple(self._stacks))
@@ -162,6 +164,84 @@ class SlicesComponent:
             stack.position = position
         return stack
 
+    def workspace(
+        self,
+        source: Source,
+        *,
+        thickness: float = 3.0,
+        convention: str = "radiological",
+        layout: str = "grid",
+        cross_hair_color: Any = "#ffd040",
+        **arguments: Any,
+    ) -> Workspace:
+        """Show axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair.
+
+        The plotter must have four views, as ``pv.Plotter(shape=(2, 2))`` has: the first three become panes, the last
+        is the 3-D view, which later ``add_...`` calls add to. Streamlines of the 3-D view are shown in each pane as far
+        as they lie in the slab about its slice; they are neither copied nor decoded for that.
+
+        Parameters
+        ----------
+        source : image
+            As of ``plotter.add_slices``.
+        thickness : float, default: 3.0
+            Of the slabs, mm.
+        convention : {"radiological", "neurological"}, default: "radiological"
+            Whether the patient's right is on the left or the right of the window.
+        layout : {"grid", "row", "beside", "3d", "axial", "coronal", "sagittal"}, default: "grid"
+            Which views are shown, and where.
+        cross_hair_color : color-like
+            Of cross-hair and letters.
+        **arguments
+            Of ``plotter.add_slices``.
+
+        Returns
+        -------
+        Workspace
+            ``position``, ``voxel``, ``values()``, ``slices`` and more are live.
+
+        Raises
+        ------
+        ValueError
+            If the plotter has fewer than four views, or as of ``plotter.add_slices``.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> pl = pv.Plotter(off_screen=True, shape=(2, 2))
+        >>> workspace = pl.slices.workspace(np.random.default_rng(0).random((20, 20, 20)))
+        >>> workspace.voxel = 3, 4, 5
+        >>> workspace.position.tolist()
+        [3.0, 4.0, 5.0]
+        """
+        from pvfiblets.plotting.slices.workspace import Workspace
+
+        views = list(self._plotter.renderers)
+        if len(views) < 4:
+            raise ValueError(f"the plotter has {len(views)} view(s); make it by pv.Plotter(shape=(2, 2))")
+        names = ("axial", "coronal", "sagittal", "3d")
+        self._plotter.renderers.set_active_renderer(*self._plotter.renderers.index_to_loc(3))
+        render = bool(arguments.pop("render", True))
+        stack = self.add(source, render=False, **arguments)
+        try:
+            workspace = Workspace(
+                self._plotter,
+                stack,
+                dict(zip(names, views, strict=False)),
+                thickness=thickness,
+                convention=convention,
+                layout=layout,
+                color=cross_hair_color,
+            )
+        except Exception:
+            stack.remove()
+            raise
+        self._workspaces.append(workspace)
+        if render:
+            self._plotter.render()
+        return workspace
+
     # Life cycle ---------------------------------------------------------------------------------
 
     def _enter(self, stack: SliceStack, pickable: bool, reset_camera: bool | None) -> None:
@@ -187,6 +267,8 @@ class SlicesComponent:
 
     def __plotter_close__(self) -> None:
         """Forget all; PyVista calls this before the render window goes."""
+        while self._workspaces:
+            self._workspaces.pop().stop()
         for stack in self:
             stack.removed_by(None)
             for plane in stack:

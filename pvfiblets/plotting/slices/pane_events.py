@@ -1,0 +1,238 @@
+"""Mouse and keys of the workspace.
+
+Observers stand on the interactor, before those that pick streamlines and before its style. What happens in a pane is
+kept from the style; in the 3-D view only clicks are looked at.
+"""
+
+from __future__ import annotations
+
+import re
+import weakref
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import pyvista as pv
+
+from pvfiblets.plotting.fiblets.mouse_gestures import Pointing
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from pvfiblets.plotting.slices.pane import Pane
+    from pvfiblets.plotting.slices.workspace import Workspace
+
+__all__ = ["PaneEvents"]
+
+PRIORITY = 0.4  # widgets have 0.5, picking 0.25
+ZOOM = 1.15  # per notch of the wheel
+WINDOWED = 400.0  # pixels of a drag that double a window's width, or move it by its width
+
+_STEPS = {
+    "Left": (-1, 0, 0), "Right": (1, 0, 0), "Up": (0, 1, 0), "Down": (0, -1, 0), "Prior": (0, 0, 1), "Next": (0, 0, -1),
+}  # fmt: skip
+_TYPED = re.compile(r"^\s*(v?)\s*([^v]*)$")
+
+
+class PaneEvents:
+    """Gestures of one workspace.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        Not kept alive.
+    plotter : pyvista.Plotter
+    """
+
+    def __init__(self, workspace: Workspace, plotter: Any) -> None:
+        self._workspace = weakref.proxy(workspace)
+        self._interactor = plotter.iren.interactor
+        self._dragging: tuple[str, Pane, tuple[int, int]] | None = None
+        self._last = "axial"
+        self._typed: str | None = None
+        self._tags: list[int] = []
+        for button in ("Left", "Middle", "Right"):
+            self._listen(f"{button}ButtonPressEvent", getattr(self, f"_press_{button.lower()}"))
+            self._listen(f"{button}ButtonReleaseEvent", self._release)
+        self._listen("MouseMoveEvent", self._move)
+        self._listen("MouseWheelForwardEvent", lambda: self._wheel(1))
+        self._listen("MouseWheelBackwardEvent", lambda: self._wheel(-1))
+        self._listen("KeyPressEvent", self._key)
+        self._listen("CharEvent", self._char)
+        reference = weakref.WeakMethod(self._clicked)
+
+        def clicked(corners: np.ndarray, click: bool, mode: str) -> None:
+            alive = reference()
+            if alive is not None:
+                alive(corners, click, mode)
+
+        self._clicks = Pointing(
+            plotter, mode="click", button="left", found=clicked, hovered=None, color="white", start=False
+        )
+
+    def _listen(self, event: str, handler: Callable[[], bool]) -> None:
+        """Call a handler; where it returns True nobody else hears of the event."""
+        alive = weakref.ref(self)
+        name = getattr(handler, "__func__", None)
+        held: list[int] = []
+
+        def call(interactor: Any, _event: str) -> None:
+            there = alive()
+            if there is None:
+                return
+            if name(there) if name is not None else handler():
+                interactor.GetCommand(held[0]).SetAbortFlag(1)
+
+        held.append(self._interactor.AddObserver(event, call, PRIORITY))
+        self._tags.append(held[0])
+
+    def stop(self) -> None:
+        """Take all observers back; twice is harmless."""
+        while self._tags:
+            self._interactor.RemoveObserver(self._tags.pop())
+        self._clicks.stop()
+
+    @property
+    def _pixel(self) -> tuple[int, int]:
+        x, y = self._interactor.GetEventPosition()
+        return x, y
+
+    def _pane(self) -> Pane | None:
+        pane: Pane | None = self._workspace.pane_at(*self._pixel)
+        if pane is not None:
+            self._last = pane.name
+        return pane
+
+    # Mouse --------------------------------------------------------------------------------------
+
+    def _press_left(self) -> bool:
+        return self._press("pan" if self._interactor.GetShiftKey() else "move")
+
+    def _press_middle(self) -> bool:
+        return self._press("pan")
+
+    def _press_right(self) -> bool:
+        return self._press("zoom" if self._interactor.GetControlKey() else "window")
+
+    def _press(self, what: str) -> bool:
+        pane = self._pane()
+        if pane is None:
+            return False
+        self._dragging = what, pane, self._pixel
+        if what == "move":
+            self._go(pane)
+        return True
+
+    def _release(self) -> bool:
+        dragging, self._dragging = self._dragging, None
+        return dragging is not None
+
+    def _move(self) -> bool:
+        if self._dragging is None:
+            return False
+        what, pane, before = self._dragging
+        x, y = self._pixel
+        right, up = x - before[0], y - before[1]
+        self._dragging = what, pane, (x, y)
+        if what == "move":
+            self._go(pane)
+            return True
+        if what == "pan":
+            pane.pan_by(right, up)
+        elif what == "zoom":
+            pane.zoom *= ZOOM ** (up / 20.0)
+        else:
+            self._window(right, up)
+        self._workspace.render()
+        return True
+
+    def _go(self, pane: Pane) -> None:
+        pv.try_callback(self._set, pane.position_at(*self._pixel))
+
+    def _set(self, position: Any) -> None:
+        self._workspace.position = position
+        self._workspace.render()
+
+    def _window(self, right: float, up: float) -> None:
+        layer = self._workspace.active
+        if layer.kind in ("labels", "rgb"):
+            return
+        low, high = layer.clim
+        width = (high - low) * 2.0 ** (right / WINDOWED)
+        middle = 0.5 * (low + high) - (high - low) * up / WINDOWED  # upwards brightens
+        layer.clim = middle - 0.5 * width, middle + 0.5 * width
+
+    def _wheel(self, way: int) -> bool:
+        pane = self._pane()
+        if pane is None:
+            return False
+        if self._interactor.GetControlKey():
+            pane.zoom *= ZOOM**way
+            self._workspace.render()
+        else:
+            pv.try_callback(self._step, pane.name, 0, 0, way)
+        return True
+
+    def _step(self, name: str, *steps: int) -> None:
+        self._workspace.step(name, *steps)
+        self._workspace.render()
+
+    def _clicked(self, corners: np.ndarray, _click: bool, _mode: str) -> None:
+        position = self._workspace.picked_in_view(*corners[0])
+        if position is not None:
+            self._set(position)
+
+    # Keys ---------------------------------------------------------------------------------------
+
+    def _key(self) -> bool:
+        word = self._interactor.GetKeySym()
+        if self._typed is not None:
+            return self._type(word)
+        if word in _STEPS:
+            self._pane()
+            pv.try_callback(self._step, self._last, *_STEPS[word])
+            return True
+        if word in ("g", "G"):
+            self._typed = ""
+            self._prompt()
+            return True
+        return False
+
+    def _char(self) -> bool:
+        """Keep from the style what is typed or steps."""
+        return self._typed is not None or self._interactor.GetKeySym() in (*_STEPS, "g", "G")
+
+    def _type(self, word: str) -> bool:
+        assert self._typed is not None
+        if word in ("Return", "KP_Enter"):
+            text, self._typed = self._typed, None
+            pv.try_callback(self._take, text)
+        elif word == "Escape":
+            self._typed = None
+            self._workspace.say(None)
+            self._workspace.render()
+        else:
+            if word == "BackSpace":
+                self._typed = self._typed[:-1]
+            else:
+                code = str(self._interactor.GetKeyCode())
+                self._typed += code if code in "0123456789.-+, vV" else ""
+            self._prompt()
+        return True
+
+    def _prompt(self) -> None:
+        self._workspace.say(f"go to (mm, or v for voxels): {self._typed}_")
+        self._workspace.render()
+
+    def _take(self, text: str) -> None:
+        found = _TYPED.match(text.lower())
+        try:
+            parts = [float(part) for part in (found[2] if found else "").replace(",", " ").split()]
+        except ValueError:
+            parts = []
+        if found is None or len(parts) != 3:
+            self._workspace.say(f"{text!r} is no position; type three numbers")
+        elif found[1]:
+            self._workspace.voxel = parts
+        else:
+            self._workspace.position = parts
+        self._workspace.render()
