@@ -314,9 +314,10 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             self._cuts_in[address] = np.array(planes, np.float64).reshape(-1, 4)
         self._actor_modified()
 
-    def _cuts(self, renderer: vtkRenderer) -> tuple[Any, Any]:
-        """Return what cuts in world mm: planes, and the region that is not planes."""
-        planes, own = world_planes(self), self._cuts_in.get(renderer.GetAddressAsString(""))
+    def _cuts(self, renderer: vtkRenderer | None = None) -> tuple[Any, Any]:
+        """Return what cuts in world mm, in a renderer or in all: planes, and the region that is not planes."""
+        planes = world_planes(self)
+        own = None if renderer is None else self._cuts_in.get(renderer.GetAddressAsString(""))
         return planes if own is None else np.concatenate([planes, own]), None
 
     def _outside(
@@ -387,7 +388,7 @@ class CutMapper(EngineMapper[AnyOptions]):
         self._region = region
         self._actor_modified()
 
-    def _cuts(self, renderer: vtkRenderer) -> tuple[Any, Any]:
+    def _cuts(self, renderer: vtkRenderer | None = None) -> tuple[Any, Any]:
         """Return planes, VTK's own and what of the region is planes as far as there is room, and the rest of it."""
         planes, region = super()._cuts(renderer)
         if self._region is None:

@@ -56,9 +56,9 @@ class Workspace:
 
     In a pane, the left button moves the cross-hair, the wheel goes through slices, the right button changes the window
     of the `active` layer (sideways its width, up and down its level), the middle one moves the slice, and the wheel
-    with Ctrl zooms. Arrow keys move the cross-hair by a voxel in the pane under the mouse, Page Up and Page Down go through
-    its slices; G begins a position to be typed, in mm or, with a V before it, in voxels. A click on a slice of the 3-D
-    view moves the cross-hair there.
+    with Ctrl zooms. Arrow keys move the cross-hair by a voxel in the pane under the mouse, Page Up and Page Down go
+    through its slices; G begins a position to be typed, in mm or, with a V before it, in voxels. A click on a slice of
+    the 3-D view moves the cross-hair there.
 
     Attributes
     ----------
