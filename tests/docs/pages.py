@@ -77,7 +77,8 @@ affine = np.array([[12.0, 1, 0, -80], [-1, 12, 0, -90], [0, 0, 12, -50], [0, 0, 
 labels = rng.choice([0, 17, 53], (12, 14, 10)).astype(np.int16)
 for name, numbers in {
     "t1": rng.integers(0, 900, (12, 14, 10)).astype(np.int16), "fa": rng.random((12, 14, 10)).astype("f4"),
-    "v1": rng.normal(size=(12, 14, 10, 3)).astype("f4"),
+    "v1": rng.normal(size=(12, 14, 10, 3)).astype("f4"), "peaks": rng.normal(size=(12, 14, 10, 6)).astype("f4"),
+    "tensor": rng.normal(size=(12, 14, 10, 6)).astype("f4"), "fod": rng.normal(size=(12, 14, 10, 15)).astype("f4"),
 }.items():
     nibabel.save(nibabel.Nifti1Image(numbers, affine), f"{name}.nii.gz")
 nibabel.save(nibabel.MGHImage(labels, np.diag([12.0, 12.0, 12.0, 1.0])), "aparc+aseg.mgz")

@@ -9,6 +9,7 @@ import weakref
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
+import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.call_signature import document, plotter_method
@@ -19,9 +20,7 @@ from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
 if TYPE_CHECKING:
     from os import PathLike
 
-    import numpy as np
-
-    from pvfiblets.plotting.slices.stack import SliceStack
+    from pvfiblets.plotting.slices.stack import SlicePlane, SliceStack
     from pvfiblets.plotting.slices.workspace import Workspace
     from pvfiblets.slices.image import SliceImage
 
@@ -241,6 +240,62 @@ class SlicesComponent:
         if render:
             self._plotter.render()
         return workspace
+
+    def add_oblique(
+        self,
+        slices: SliceStack | None = None,
+        normal: Any = (0.0, -0.5, 1.0),
+        *,
+        name: str = "oblique",
+        widget: bool = True,
+        **widget_options: Any,
+    ) -> SlicePlane:
+        """Add a slice at any angle, and a widget that turns and moves it.
+
+        Parameters
+        ----------
+        slices : SliceStack, optional
+            Of which images; of the slices that were added last by default.
+        normal : (3,) array, default: (0, -0.5, 1)
+            Across the slice.
+        name : str, default: "oblique"
+            Of the plane: ``slices[name]``.
+        widget : bool, default: True
+            Whether it can be dragged.
+        **widget_options
+            Of :meth:`pyvista.Plotter.add_plane_widget`.
+
+        Returns
+        -------
+        SlicePlane
+            ``normal`` and ``origin`` are live.
+
+        Raises
+        ------
+        ValueError
+            If there are no slices, or the name is taken.
+        """
+        if slices is None:
+            if not self._stacks:
+                raise ValueError("there are no slices yet; add some by plotter.add_slices(...)")
+            slices = self._stacks[-1]
+        if name in slices.planes:
+            raise ValueError(f"name is {name!r}, which another plane has; there are: {', '.join(slices.planes)}")
+        plane = slices.new_plane(name, normal)
+        self._plotter.add_actor(plane.actor, name=f"{slices.name} {name}", reset_camera=False, render=False)
+        plane.enter(self._plotter.renderer)
+        if widget:
+
+            def moved(normal: Any, origin: Any) -> None:
+                plane.normal, plane.origin = normal, origin
+
+            corners = slices.layers[0].image.corners
+            bounds = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1).ravel()
+            options = {"interaction_event": "always", "outline_translation": False, **widget_options}
+            self._plotter.add_plane_widget(
+                moved, normal=tuple(plane.normal), origin=tuple(slices.position), bounds=tuple(bounds), **options
+            )
+        return plane
 
     # Life cycle ---------------------------------------------------------------------------------
 

@@ -162,11 +162,21 @@ class Pane:
         return left + 0.5 * width - 0.5 + float(away @ right), bottom + 0.5 * height - 0.5 + float(away @ up)
 
     @property
+    def _depth(self) -> float:
+        """How far from the plane the slice and the cross-hair lie, mm: beyond the slab, and beyond glyphs of voxels."""
+        voxel = max((float(one.image.voxel_size.max()) for one in self.stack.layers), default=0.0)
+        return max(0.5 * self.thickness, voxel) + BEFORE
+
+    @property
     def planes(self) -> Array:
         """``(2, 4)`` a, b, c, d: faces of the slab of streamlines that are shown."""
         n, half = self.toward, 0.5 * self.thickness
         d = -float(n @ self.stack.position)
         return np.array([[*n, d + half], [*-n, -d + half]])
+
+    def place(self) -> tuple[Array, Array]:
+        """Return a point of the slice's plane and its normal."""
+        return self.stack.position, self.toward
 
     # Picture ------------------------------------------------------------------------------------
 
@@ -178,7 +188,7 @@ class Pane:
         """Bring camera, slice, cross-hair and letters up to date; the renderer is about to draw."""
         right, up = self.axes
         toward, center, position, half = self.toward, self.center, self.stack.position, self._half
-        away = 0.5 * self.thickness + BEFORE
+        away = self._depth
         camera = self.renderer.GetActiveCamera()
         camera.SetFocalPoint(*center)
         camera.SetPosition(*(center + FARTHEST * toward))
@@ -259,7 +269,7 @@ class Pane:
             self.renderer.add_actor(actor, reset_camera=False, render=False, pickable=False)
             self._contours[name] = mesh, actor
         mesh, _ = self._contours[name]
-        mesh.copy_from(contour.translate(self.toward * (0.5 * self.thickness + 0.5 * BEFORE), inplace=False))
+        mesh.copy_from(contour.translate(self.toward * (self._depth - 0.5 * BEFORE), inplace=False))
 
     def remove(self) -> None:
         """Take all away."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.slices import colours
 from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, covered, grid_of, nearest_frame, plane_axes
 from pvfiblets.slices.image import as_slice_image
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.slices.glyph_set import GlyphSet
 
 __all__ = ["MOST_LAYERS", "SlicePlane", "SliceStack"]
 
@@ -45,6 +48,8 @@ class SlicePlane:
         self._stale = True
         self._visible = True
         self.name = name
+        self.renderer: Any = None
+        self._origin: Array | None = None
         self.actor = SliceActor()
         self._end: Callable[[], None] = lambda: None
 
@@ -65,6 +70,20 @@ class SlicePlane:
         self.update()
 
     @property
+    def origin(self) -> Array:
+        """``(3,)`` mm: a point of the plane; the stack's position, unless it is set."""
+        return self._stack.position if self._origin is None else self._origin.copy()
+
+    @origin.setter
+    def origin(self, origin: Any) -> None:
+        self._origin = None if origin is None else checked_position("origin", origin)
+        self.update()
+
+    def place(self) -> tuple[Array, Array] | None:
+        """Return a point of the plane and its normal; None where it is not shown."""
+        return (self.origin, self.normal) if self._visible and self._grid is not None else None
+
+    @property
     def visible(self) -> bool:
         """Whether it is shown."""
         return self._visible
@@ -83,12 +102,13 @@ class SlicePlane:
         """Lie where the stack's position is; colours follow with the next render."""
         stack, (along, up) = self._stack, self.axes
         layers = [layer for layer in stack.layers if layer.visible]
-        bounds = covered((layer.image.corners for layer in layers), stack.position, along, up)
+        origin = self.origin
+        bounds = covered((layer.image.corners for layer in layers), origin, along, up)
         self._grid = None
         if bounds is not None:
             pixel = min(float(layer.image.voxel_size.min()) for layer in layers) / OVERSAMPLED
             pixel = max(pixel, float(max(bounds[1] - bounds[0], bounds[3] - bounds[2])) / MOST_ACROSS)
-            self._grid = grid_of(bounds, stack.position, along, up, pixel)
+            self._grid = grid_of(bounds, origin, along, up, pixel)
             self.actor.place(self._grid)
         self.actor.visibility = self._visible and self._grid is not None
         self._stale = True
@@ -101,6 +121,7 @@ class SlicePlane:
 
     def enter(self, renderer: Any) -> None:
         """Follow a renderer's frames."""
+        self.renderer = renderer
         self._end = before_render(renderer, self, "refresh")
 
     def leave(self) -> None:
@@ -135,6 +156,8 @@ class SliceStack:
             if one not in ORIENTATIONS:
                 raise ValueError(f"planes has {one!r}; choose among {ORIENTATIONS}")
         self._planes = {one: SlicePlane(self, one) for one in dict.fromkeys(names)}
+        self._glyphs: list[GlyphSet] = []
+        self._views: list[tuple[Any, Callable[[], tuple[Array, Array] | None]]] = []
         self._watchers: list[Callable[[], None]] = []
         self._removal: Callable[[SliceStack], None] | None = None
 
@@ -235,6 +258,75 @@ class SliceStack:
         self._layers.remove(layer)
         layer.watch(None)
         self.changed()
+
+    def add_glyphs(
+        self,
+        source: Any,
+        kind: str = "peaks",
+        *,
+        size: float = 1.0,
+        normalize: bool | None = None,
+        line_width: float = 2.0,
+        basis: str = "mrtrix",
+        full: bool = False,
+        tensor: str = "mrtrix",
+    ) -> GlyphSet:
+        """Show peaks as lines, tensors as ellipsoids or spherical harmonics as lobes, on the slices.
+
+        Only those of the voxels that visible slices go through are made.
+
+        Parameters
+        ----------
+        source : image
+            Any of what ``plotter.add_slices`` takes, of four axes: three numbers of each peak, along right, front and
+            up; six of a tensor; or coefficients of harmonics.
+        kind : {"peaks", "tensor", "sh"}, default: "peaks"
+        size : float, default: 1.0
+            Of the greatest, per the smallest side of a voxel.
+        normalize : bool, optional
+            Give all glyphs the same size. By default ellipsoids and lobes have it, and lines are as long as the peaks,
+            of which the 99th percentile is as long as a voxel.
+        line_width : float, default: 2.0
+            Pixels.
+        basis : {"mrtrix", "tournier07_legacy", "descoteaux07", "descoteaux07_legacy"}, default: "mrtrix"
+            Of harmonics; the latter three as dipy names them.
+        full : bool, default: False
+            Whether harmonics of odd degree are there, too.
+        tensor : {"mrtrix", "dipy", "fsl"}, default: "mrtrix"
+            Order of a tensor's parts: xx, yy, zz, xy, xz, yz; xx, xy, yy, xz, yz, zz; or xx, xy, xz, yy, yz, zz.
+
+        Returns
+        -------
+        GlyphSet
+            ``size`` and ``visible`` are live; ``remove()`` takes them away.
+
+        Raises
+        ------
+        ValueError
+            If the image has another number of volumes, or an argument has no meaning.
+        """
+        from pvfiblets.plotting.slices.glyph_set import GlyphSet
+
+        made = GlyphSet(
+            as_slice_image(source),
+            kind=kind,
+            size=size,
+            normalize=kind != "peaks" if normalize is None else normalize,
+            line_width=line_width,
+            basis=basis,
+            full=full,
+            tensor=tensor,
+        )
+        for plane in self:
+            made.show_on(plane.renderer, plane.place)
+        for view in self._views:
+            made.show_on(*view)
+        self._glyphs.append(made)
+        return made
+
+    def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
+        """Have glyphs that are added from now on shown on a plane of another renderer, too."""
+        self._views.append((renderer, place))
 
     # Place --------------------------------------------------------------------------------------
 
@@ -346,6 +438,8 @@ class SliceStack:
 
     def remove(self) -> None:
         """Take all slices away; twice is harmless."""
+        while self._glyphs:
+            self._glyphs.pop().remove()
         removal, self._removal = self._removal, None
         if removal is not None:
             removal(self)

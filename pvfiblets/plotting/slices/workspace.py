@@ -99,6 +99,8 @@ class Workspace:
         self.convention = convention
         self.thickness = thickness
         self.layout = layout
+        for pane in self.panes.values():
+            slices.show_glyphs_on(pane.renderer, pane.place)
         slices.watch(_weakly(self._slices_changed))
         self._events: PaneEvents | None = None
         if plotter.iren is not None:
@@ -366,7 +368,7 @@ class Workspace:
             across = float(ray @ plane.normal)
             if not plane.visible or grid is None or pixels is None or across == 0.0:
                 continue
-            share = float((self.position - near) @ plane.normal) / across
+            share = float((plane.origin - near) @ plane.normal) / across
             hit = near + share * ray
             at = hit - grid.corner
             i, j = int(at @ grid.along // (grid.along @ grid.along)), int(at @ grid.up // (grid.up @ grid.up))

@@ -1,0 +1,184 @@
+"""Glyphs of an image on slices: made for the slices that are shown, when they have moved."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyvista as pv
+
+from pvfiblets.plotting.slices.plane import before_render
+from pvfiblets.slices import glyphs
+from pvfiblets.slices.image import SliceImage
+
+__all__ = ["GlyphSet"]
+
+Array = npt.NDArray[np.float64]
+Place = Callable[[], "tuple[Array, Array] | None"]
+"""Returns a point of a plane and its normal; None where it is not shown."""
+
+MOST_POINTS = 1_500_000
+"""Points of a slice's surfaces, by which spheres are divided, from 2,562 points down to 42."""
+LINE_PERCENTILE = 99.0
+"""Of the lengths of an image's peaks: as long as that is as long as a voxel."""
+SAMPLED = 200_000
+
+
+class GlyphSet:
+    """Glyphs of an image; ``slices.add_glyphs`` makes it. Its properties show with the next render.
+
+    Parameters
+    ----------
+    image : SliceImage
+    kind, size, normalize, line_width, basis, full, tensor
+        As of ``slices.add_glyphs``.
+    """
+
+    def __init__(
+        self,
+        image: SliceImage,
+        *,
+        kind: str,
+        size: float,
+        normalize: bool,
+        line_width: float,
+        basis: str,
+        full: bool,
+        tensor: str,
+    ) -> None:
+        glyphs.check_glyphs(image, kind, basis, full, tensor)
+        self.image, self.kind = image, kind
+        self._basis, self._full, self._tensor = basis, bool(full), tensor
+        self._normalize, self._width = bool(normalize), float(line_width)
+        self._visible = True
+        self._shown: list[_OnPlane] = []
+        self._longest: float | None = None
+        self.size = size
+
+    def __repr__(self) -> str:
+        return f"<GlyphSet of {self.image.name!r}: {self.kind}>"
+
+    @property
+    def size(self) -> float:
+        """Of the greatest glyph, per the smallest side of a voxel."""
+        return self._size
+
+    @size.setter
+    def size(self, size: float) -> None:
+        found = float(size) if isinstance(size, (int, float, np.number)) else np.nan
+        if not 0.0 < found < np.inf:
+            raise ValueError(f"size is {size!r}; give a number above 0")
+        self._size = found
+        for one in self._shown:
+            one.forget()
+
+    @property
+    def visible(self) -> bool:
+        """Whether they are shown."""
+        return self._visible
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
+        self._visible = bool(visible)
+
+    @property
+    def n_glyphs(self) -> int:
+        """Glyphs that lie on slices now; those of slices that are not shown have not been made."""
+        return sum(one.n for one in self._shown)
+
+    def show_on(self, renderer: Any, place: Place) -> None:
+        """Show them on another plane."""
+        self._shown.append(_OnPlane(self, renderer, place))
+
+    def remove(self) -> None:
+        """Take all away; twice is harmless."""
+        while self._shown:
+            self._shown.pop().remove()
+
+    def mesh(self, position: Array, normal: Array) -> tuple[pv.PolyData, int]:
+        """Return the glyphs of a plane, with their colours as ``rgb``, and how many there are."""
+        image, size = self.image, self._size
+        voxels = glyphs.voxels_on_plane(image, position, normal)
+        if not len(voxels):
+            return pv.PolyData(), 0
+        if self.kind == "peaks":
+            found = glyphs.lines_of_peaks(image, voxels, size, None if self._normalize else self._long())
+            n = len(found.points)
+            lines = np.column_stack([np.full(n, 2), 2 * np.arange(n), 2 * np.arange(n) + 1])
+            mesh = pv.PolyData(found.points.reshape(-1, 3), lines=lines)
+        else:
+            ball = _sphere(len(voxels))
+            points = np.asarray(ball.points, np.float64)
+            if self.kind == "tensor":
+                found = glyphs.ellipsoids(image, voxels, points, size, self._normalize, self._tensor)
+            else:
+                found = glyphs.lobes(image, voxels, points, size, self._normalize, self._basis, self._full)
+            n = len(found.points)
+            faces = ball.regular_faces[None] + (len(points) * np.arange(n))[:, None, None]
+            mesh = pv.PolyData.from_regular_faces(found.points.reshape(-1, 3), faces.reshape(-1, 3))
+        mesh.point_data["rgb"] = found.colours.reshape(-1, 3)
+        return mesh, n
+
+    def _long(self) -> float:
+        if self._longest is None:
+            values = self.image.values.reshape(-1, self.image.n_volumes)
+            some = np.asarray(values[:: max(1, len(values) // SAMPLED)], np.float64).reshape(-1, 3)
+            length = np.linalg.norm(some, axis=1)
+            length = length[np.isfinite(length) & (length > 0.0)]
+            self._longest = float(np.percentile(length, LINE_PERCENTILE)) if len(length) else 1.0
+        return self._longest
+
+
+def _sphere(n: int) -> pv.PolyData:
+    """Return a sphere of as many points as a slice of so many glyphs may have."""
+    level = next((one for one in (4, 3, 2) if n * (10 * 4**one + 2) <= MOST_POINTS), 1)
+    return pv.Icosphere(radius=1.0, nsub=level)
+
+
+class _OnPlane:
+    """Glyphs in one renderer."""
+
+    def __init__(self, owner: GlyphSet, renderer: Any, place: Place) -> None:
+        self._owner = weakref.proxy(owner)
+        self._renderer, self._place = renderer, place
+        self._state: tuple[Any, ...] | None = None
+        self.n = 0
+        lines = owner.kind == "peaks"
+        self._mesh = pv.PolyData()
+        mapper = pv.DataSetMapper(self._mesh)
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("rgb")
+        mapper.SetColorModeToDirectScalars()
+        self._actor = pv.Actor(mapper=mapper)
+        self._actor.prop.lighting = not lines
+        self._actor.prop.line_width = owner._width  # noqa: SLF001
+        self._actor.prop.interpolation = "Phong"
+        renderer.add_actor(self._actor, reset_camera=False, render=False, pickable=False)
+        self._end = before_render(renderer, self, "refresh")
+
+    def forget(self) -> None:
+        """Make them anew with the next render."""
+        self._state = None
+
+    def refresh(self) -> None:
+        """Bring them up to date; the renderer is about to draw."""
+        place = self._place() if self._owner.visible else None
+        self._actor.visibility = place is not None
+        if place is None:
+            return
+        position, normal = place
+        state = (round(float(position @ normal), 6), *normal)
+        if state == self._state:
+            return
+        self._state = state
+        mesh, self.n = self._owner.mesh(position, normal)
+        if self._owner.kind != "peaks" and mesh.n_points:
+            mesh = mesh.compute_normals(cell_normals=False, split_vertices=False, consistent_normals=False)
+        self._mesh.copy_from(mesh)
+
+    def remove(self) -> None:
+        self._end()
+        self._renderer.remove_actor(self._actor, reset_camera=False, render=False)
