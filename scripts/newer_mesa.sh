@@ -6,7 +6,8 @@
 #   scripts/newer_mesa.sh --make                        makes the folder only
 #
 # The folder is kept between runs: $NEWER_MESA, by default ~/.cache/pvfiblets/newer-mesa (2 GB). As root it is made with
-# debootstrap and entered with chroot; others need mmdebstrap and user namespaces.
+# debootstrap and entered with chroot; others need mmdebstrap, uidmap and user namespaces, which does not work whole yet: files of
+# mmdebstrap belong to the user's second range of ids, so that this script can neither write beside them nor remove them.
 set -euo pipefail
 HERE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$HERE/scripts/wanted.sh"
@@ -46,7 +47,9 @@ make_root() {
             echo "mmdebstrap is missing (or run this as root); install it: sudo apt-get install mmdebstrap uidmap" >&2
             return 1
         }
-        mmdebstrap --mode=unshare --variant=minbase --include="${PACKAGES}" sid "$ROOT" "$MIRROR"
+        # A mirror that stands still for a week or two is good enough; debootstrap does not look either.
+        mmdebstrap --mode=unshare --variant=minbase --aptopt='Acquire::Check-Valid-Until "false"' \
+            --include="$PACKAGES" sid "$ROOT" "$MIRROR"
     fi
 }
 

@@ -7,6 +7,9 @@ lie in the world. ``shaders/frame/blocks.glsl`` says what the symbols are.
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import TypeAlias
+
 import numpy as np
 import numpy.typing as npt
 
@@ -34,6 +37,9 @@ FRAME_BLOCK = UniformStruct(
 )
 
 Array = npt.NDArray[np.float64]
+
+CORNERS = np.array(list(np.ndindex(2, 2, 2)))
+"""Of a box from 0 to 1."""
 
 
 def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
@@ -77,7 +83,10 @@ def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> np
     return chosen
 
 
-def local_frame(view: View, origin: Array, scale: Array, top: int) -> tuple[npt.NDArray[np.int64], Array, Array]:
+LocalFrame: TypeAlias = tuple[npt.NDArray[np.int64], Array, Array]
+
+
+def local_frame(view: View, origin: Array, scale: Array, top: int) -> LocalFrame:
     """Choose local coordinates and compose what leads into and out of them.
 
     Parameters
@@ -95,12 +104,23 @@ def local_frame(view: View, origin: Array, scale: Array, top: int) -> tuple[npt.
     to_clip : numpy.ndarray
         (4, 4) local mm to clip coordinates, whose scale is chosen to keep float32 clear of its ends; that moves
         nothing on the screen.
+
+    All are for reading only: whatever asks for those of a picture gets the same.
     """
-    reference = reference_anchor(view.model_view_projection, origin, scale, top)
+    return _local_frame(view.model_view_projection.tobytes(), origin.tobytes(), scale.tobytes(), top)
+
+
+@lru_cache(maxsize=16)
+def _local_frame(matrix: bytes, origin_: bytes, scale_: bytes, top: int) -> LocalFrame:
+    """Of the bytes of its arrays: a picture asks some times, each time a hundred microseconds."""
+    projection, origin, scale = np.frombuffer(matrix).reshape(4, 4), np.frombuffer(origin_), np.frombuffer(scale_)
+    reference = reference_anchor(projection, origin, scale, top)
     to_data = np.eye(4)
     to_data[:3, 3] = origin + scale * reference
-    to_clip = view.model_view_projection @ to_data
+    to_clip = projection @ to_data
     to_clip /= np.abs(to_clip).max() or 1.0
+    for array in (reference, to_data, to_clip):
+        array.flags.writeable = False
     return reference, to_data, to_clip
 
 
@@ -110,7 +130,7 @@ def segment_pixels(view: View, origin: Array, scale: Array, top: int, length: fl
     At least 4, and at most 100: of longer ones few are in the picture at a time.
     """
     reference, _, (x, y, _, w) = local_frame(view, origin, scale, top)
-    corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
+    corners = (CORNERS * top - reference) * scale
     nearest = float((corners @ w[:3] + w[3]).min())
     across = float(np.hypot(np.linalg.norm(x[:3]) * view.size[0], np.linalg.norm(y[:3]) * view.size[1])) / 2
     return min(max(length * across / nearest, 4.0), 100.0) if nearest > 0.0 else 100.0
@@ -164,7 +184,7 @@ def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int)
         segment_size=FAR_SIZE,
     )
     # Distances to the planes are least at a corner of the anchors' box.
-    corners = (np.array(list(np.ndindex(2, 2, 2))) * top - reference) * scale
+    corners = (CORNERS * top - reference) * scale
     least = float((corners @ planes[:, :3].T + planes[:, 3]).min())
     return block, least - 4.0 * slack
 

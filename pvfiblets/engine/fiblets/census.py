@@ -80,9 +80,10 @@ class Census:
         program["marked"] = int(marks is not None)
         if marks is not None:
             marks.bind_to_storage_buffer(STORAGE["visibility_bits"])
+        kept.bind(program)
         for index, chunk in enumerate(chunks):
             chunk.bind_storage()
-            kept.bind(program, index)
+            kept.bind_chunk(index)
             counts.bind_to_storage_buffer(COUNT_STORAGE["fiblet_counts"])  # in the place of per-point values
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -101,8 +102,9 @@ class Census:
         with nowhere(self._ctx, self._gl):
             self._ctx.enable_only(moderngl.NOTHING)
             self._ctx.point_size = 1.0
+            kept.bind(program)
             for index, chunk in enumerate(chunks):
-                kept.bind(program, index)
+                kept.bind_chunk(index)
                 data, query = DataTextures(self._gl, chunk), self._ctx.query(samples=True)
                 data.bind()
                 chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])

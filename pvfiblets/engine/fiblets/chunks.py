@@ -16,6 +16,7 @@ Python's or 64-bit integers.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +36,7 @@ __all__ = ["CHUNK_BLOCK", "Chunk", "ChunkPlan", "padded", "plan_chunks", "reserv
 
 CHUNK_BLOCK = UniformStruct(
     "Chunk",
+    Field("chunk_number", "uint", "of this chunk among all"),
     Field("chunk_fiblets", "uint", "fiblets here"),
     Field("chunk_first", "uint", "number of the first among all"),
     Field("chunk_points_before", "uint", "points of its streamline in earlier chunks"),
@@ -88,6 +90,8 @@ class Chunk:
     plan: ChunkPlan
     kinds: frozenset[int]
     buffers: dict[str, moderngl.Buffer] = field(default_factory=dict)
+    _bound: dict[str, moderngl.Buffer] = field(default_factory=dict, repr=False)
+    _binding: list[tuple[Callable[[int], None], int]] = field(default_factory=list, repr=False)
 
     @property
     def n_fiblets(self) -> int:
@@ -96,16 +100,20 @@ class Chunk:
 
     def bind_storage(self) -> None:
         """Bind its uniform block, and what there is of its buffers to their storage bindings."""
-        self.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
-        for name, binding in BINDINGS.items():
-            if name in self.buffers:
-                self.buffers[name].bind_to_storage_buffer(binding)
+        if self._bound != self.buffers:
+            held = self._bound = dict(self.buffers)
+            self._binding = [(held["chunk"].bind_to_uniform_block, BLOCKS["Chunk"])]
+            self._binding += [(held[name].bind_to_storage_buffer, at) for name, at in BINDINGS.items() if name in held]
+        for bind, binding in self._binding:
+            bind(binding)
 
     def release(self) -> None:
         """Give the buffers back; twice is harmless."""
         for buffer in self.buffers.values():
             buffer.release()
         self.buffers.clear()
+        self._bound.clear()
+        self._binding.clear()
 
 
 def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | None = None) -> list[ChunkPlan]:

@@ -185,14 +185,18 @@ class FilterTextures:
         held.write(rows.tobytes())
         return held
 
-    def bind(self, program: Any, chunk: int) -> None:
-        """Bind what a program looks at when it goes through a chunk, and tell it where that is."""
+    def bind(self, program: Any) -> None:
+        """Bind what a program looks at whichever chunk it goes through, and tell it where everything is."""
         if self._streamlines is not None and "streamline_mask" in program:
             self._streamlines.use(MASKS["streamline_mask"])
             program["streamline_mask"] = MASKS["streamline_mask"]
         if self._points and "point_mask" in program:
-            self._points[chunk].use(MASKS["point_mask"])
             program["point_mask"] = MASKS["point_mask"]
+
+    def bind_chunk(self, chunk: int) -> None:
+        """Bind what programs look at when they go through a chunk."""
+        if self._points:
+            self._points[chunk].use(MASKS["point_mask"])
 
     @property
     def nbytes(self) -> int:

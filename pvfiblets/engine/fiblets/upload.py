@@ -83,7 +83,9 @@ def fill_buffer(
     return buffer
 
 
-def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, show: Show | None = None) -> Chunk:
+def upload_chunk(
+    ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, number: int, show: Show | None = None
+) -> Chunk:
     """Copy one chunk to the GPU.
 
     Parameters
@@ -92,6 +94,8 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
     fiblets : FibletSet
         In memory or mapped.
     plan : ChunkPlan
+    number : int
+        Chunks before it.
     show : callable, optional
         Told how many bytes were copied, slice by slice.
 
@@ -120,6 +124,7 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
     if max(before, last) >= 2**32:
         raise EngineError(f"fiblet {first} is {before} points into its streamline; shaders count less than 2^32")
     block = CHUNK_BLOCK.pack(
+        chunk_number=number,
         chunk_fiblets=n,
         chunk_first=first,
         chunk_points_before=before,
@@ -171,8 +176,8 @@ def upload_fitting(
         needed = sum(plan.nbytes for plan in fitted.plans)
         try:
             with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
-                for plan in fitted.plans:
-                    chunks.append(upload_chunk(ctx, fitted.fiblets, plan, bar.update))  # noqa: PERF401 - kept one by one
+                for number, plan in enumerate(fitted.plans):
+                    chunks.append(upload_chunk(ctx, fitted.fiblets, plan, number, bar.update))  # kept one by one
         except GPUMemoryError:
             if fit != "sample":
                 raise

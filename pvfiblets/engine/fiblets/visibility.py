@@ -107,12 +107,16 @@ class Visibility:
     def _region_features(self) -> tuple[str, ...]:
         return () if self._block is None else self._block.features
 
-    def bind(self, program: Any, chunk: int) -> None:
-        """Bind what a program looks at when it goes through a chunk, and tell it where that is."""
-        self._filter.bind(program, chunk)
+    def bind(self, program: Any) -> None:
+        """Bind what a program looks at whichever chunk it goes through, and tell it where everything is."""
+        self._filter.bind(program)
         if self._cutter is not None and self._block is not None:
             self._cutter.bind(program)
             self._block.bind(program)
+
+    def bind_chunk(self, chunk: int) -> None:
+        """Bind what programs look at when they go through a chunk."""
+        self._filter.bind_chunk(chunk)
 
     @property
     def buffers(self) -> dict[str, int]:

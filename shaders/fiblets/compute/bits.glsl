@@ -17,7 +17,7 @@ uint bits_of(uint word);
 // The k-th fiblet of this group, or NO_FIBLET.
 uint nth_fiblet(uint k) {
     uint before = chunk_first >> 5u, entry = group_index() * {{ group_words }}u;
-    uint end = min(entry + {{ group_words }}u, visibility_bits[argument_of(part) + 3u]);
+    uint end = min(entry + {{ group_words }}u, visibility_bits[argument_of(chunk_number, part) + 3u]);
     for (; entry < end; ++entry) {
         uint word = visibility_bits[list_entry(part, before, entry)];
         uint bits = bits_of(before + word), here = uint(bitCount(bits));

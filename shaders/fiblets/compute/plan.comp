@@ -39,7 +39,7 @@ void main() {
     barrier();
     if (gl_LocalInvocationIndex < CLASSES && counts[gl_LocalInvocationIndex] > 0u) {
         uint which = gl_LocalInvocationIndex;
-        starts[which] = atomicAdd(visibility_bits[argument_of(which) + 3u], counts[which]);
+        starts[which] = atomicAdd(visibility_bits[argument_of(chunk_number, which) + 3u], counts[which]);
     }
     barrier();
     for (uint which = 0u; which < CLASSES; ++which) {

@@ -24,7 +24,7 @@ const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES 
 uniform uint drawing;          // which of these
 uniform uint list_base;        // where lists start
 uniform uint list_length;      // groups of 32 in all chunks
-uniform uint argument_base;    // where the arguments of this round and chunk start
+uniform uint argument_base;    // where the arguments of this round start
 
 uint visibility_word(uint word, uint part) { return visibility_bits[word * WORDS + part]; }
 
@@ -41,4 +41,5 @@ uint taken_again(uint word, uint which) {
 // Where entry k of a class's list stands; `before`: groups of 32 in earlier chunks.
 uint list_entry(uint which, uint before, uint k) { return list_base + which * list_length + before + k; }
 
-uint argument_of(uint which) { return argument_base + 4u * which; }
+// Where the arguments of a chunk's class start.
+uint argument_of(uint chunk, uint which) { return argument_base + 4u * (chunk * CLASSES + which); }

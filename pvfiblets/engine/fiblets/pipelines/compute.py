@@ -157,8 +157,8 @@ class ComputePipeline:
             self._bind_nearest(8 * target.size[0] * target.size[1])
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
-            self._set(clear, argument_base=self._argument_base)
-            self._set(clear, argument_count=ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4)
+            count = ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+            self._set(clear, argument_base=self._argument_base, argument_count=count)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
@@ -266,13 +266,9 @@ class ComputePipeline:
 
     def _set(self, program: moderngl.ComputeShader, **uniforms: object) -> None:
         """Set those uniforms that the compiler left in."""
-        for name, value in {
-            "list_base": self._list_base,
-            "list_length": self._words,
-            **uniforms,
-        }.items():
-            if name in program:
-                program[name] = value
+        for name, value in uniforms.items():
+            if isinstance(uniform := program.get(name, None), moderngl.Uniform):
+                uniform.value = value
 
     def _barrier(self) -> None:
         self._ctx.memory_barrier(
@@ -283,22 +279,23 @@ class ComputePipeline:
             | moderngl.FRAMEBUFFER_BARRIER_BIT
         )
 
-    def _arguments(self, number: int, chunk: int) -> int:
-        """Word at which the dispatch arguments of a round and chunk start."""
-        return self._argument_base + (number * self._round_arguments + chunk * CLASSES) * ARGUMENT_BYTES // 4
+    def _set_round(self, program: moderngl.ComputeShader, number: int, **uniforms: object) -> int:
+        """Tell a program of which round it is, and where lists and arguments stand; return the word of the latter."""
+        at = self._argument_base + number * self._round_arguments * ARGUMENT_BYTES // 4
+        places = {"list_base": self._list_base, "list_length": self._words, "argument_base": at}
+        self._set(program, drawing=number, **places, **uniforms)
+        return at
 
     def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
         """List what a round has to draw."""
         plan = self._program("plan", ())
-        self._set(plan, drawing=number, refined=int(refined))
-        for index, chunk in enumerate(chunks):
-            self._set(plan, argument_base=self._arguments(number, index))
+        self._set_round(plan, number, refined=int(refined))
+        for chunk in chunks:
             chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
             dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._barrier()
         arguments = self._program("arguments", ())
-        self._set(arguments, argument_base=self._arguments(number, 0), list_count=self._round_arguments)
-        self._set(arguments, max_groups=self._max_groups)
+        self._set_round(arguments, number, list_count=self._round_arguments, max_groups=self._max_groups)
         arguments.run(1)
         self._barrier()
 
@@ -309,23 +306,23 @@ class ComputePipeline:
         for part, features in request.classes(one=self._one_class):
             program = self._program(stage, [*features, *self._int64])
             for share in self._shares if request.line_width > 0.0 else self._shares[:1]:
-                self._set(program, drawing=number, part=part, share=share)
+                self._set(program, share=share)
                 self._run_listed(program, number, part, request)
                 if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
                     self._barrier()
         self._barrier()
 
     def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, request: DrawRequest) -> None:
+        at = 4 * self._set_round(program, number, part=part) + ARGUMENT_BYTES * part
+        request.kept.bind(program)
+        if request.peel is not None:
+            request.peel.bind(program)
+        if request.gather is not None:
+            request.gather.bind(program)
         for index, chunk in enumerate(request.chunks):
-            at = self._arguments(number, index)
-            self._set(program, argument_base=at)
             chunk.bind_storage()
-            request.kept.bind(program, index)
-            if request.peel is not None:
-                request.peel.bind(program)
-            if request.gather is not None:
-                request.gather.bind(program)
-            program.run_indirect(self._own["visibility_bits"], 4 * at + ARGUMENT_BYTES * part)
+            request.kept.bind_chunk(index)
+            program.run_indirect(self._own["visibility_bits"], at + index * CLASSES * ARGUMENT_BYTES)
 
     def _test(self, stage: str, request: DrawRequest) -> None:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
@@ -343,17 +340,16 @@ class ComputePipeline:
         program = self._program("refine", self._looking("refine", request))
         self._plan(TESTED, request.chunks)
         for part, _ in request.classes(one=self._one_class):
-            self._set(program, part=part)
             self._run_listed(program, TESTED, part, request)
         self._barrier()
 
     def _run(self, stage: str, features: Sequence[str], request: DrawRequest) -> None:
         """Run a pass of one invocation for 32 fiblets."""
         program = self._program(stage, features)
-        self._set(program)
+        request.kept.bind(program)
         for index, chunk in enumerate(request.chunks):
             chunk.bind_storage()
-            request.kept.bind(program, index)
+            request.kept.bind_chunk(index)
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
 
     def release(self) -> None:

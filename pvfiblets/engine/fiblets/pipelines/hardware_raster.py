@@ -324,9 +324,10 @@ class RasterPipeline(abc.ABC):
         self._bind(program, request, features)
         ctx.enable_only(moderngl.DEPTH_TEST if request.gather is None else moderngl.BLEND)
         ctx.depth_func = "<"
+        request.kept.bind(program)
         for index, chunk in enumerate(request.chunks):
             chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
-            request.kept.bind(program, index)
+            request.kept.bind_chunk(index)
             self._draw(array, program, chunk, request)
 
     def _features(self, request: DrawRequest) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Sequence
 
 import moderngl
 
@@ -37,13 +38,21 @@ class TexturedPipeline(RasterPipeline):
     def _prepare(self, program: moderngl.Program) -> None:
         set_data_samplers(self._gl, program)
 
-    def _draw(self, array: moderngl.VertexArray, program: moderngl.Program, chunk: Chunk, request: DrawRequest) -> None:
-        shares = self._shares(request)
-        program["shares"] = shares
+    def _bind(self, program: moderngl.Program, request: DrawRequest, features: Sequence[str]) -> None:
+        super()._bind(program, request, features)
+        program["shares"] = self._shares(request)
+
+    def _draw(
+        self,
+        array: moderngl.VertexArray,
+        program: moderngl.Program,  # noqa: ARG002
+        chunk: Chunk,
+        request: DrawRequest,
+    ) -> None:
         if id(chunk) not in self._data:  # they keep the chunk, so that no other can have its id
             self._data[id(chunk)] = DataTextures(self._gl, chunk)
         self._data[id(chunk)].bind()
-        count = chunk.n_fiblets * shares
+        count = chunk.n_fiblets * self._shares(request)
         batch = self._batch or count
         for first in range(0, count, batch):
             array.render(self.mode, vertices=min(batch, count - first), first=first)
