@@ -12,7 +12,8 @@ import math
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -28,7 +29,9 @@ __all__ = [
     "ENVIRONMENT",
     "TooLargeError",
     "check_room",
+    "fits",
     "limit",
+    "limited",
     "limited_to",
     "of_machine",
     "parse",
@@ -149,6 +152,28 @@ def unlimit(size: int | None) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (hardest if size is None else size, hardest))
 
 
+@contextmanager
+def limited(size: int | None) -> Iterator[None]:
+    """Let this process have no more than some bytes of memory meanwhile, where the system can limit it.
+
+    A limit that it has already stays, if it is lower.
+
+    Parameters
+    ----------
+    size : int or None
+        None changes nothing.
+    """
+    before = resource.getrlimit(resource.RLIMIT_DATA) if CAN_LIMIT and resource is not None else None
+    if size is None or before is None or (before[0] != resource.RLIM_INFINITY and before[0] <= size):
+        yield
+        return
+    limit(size)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, before)
+
+
 def limited_to() -> int | None:
     """Return how many bytes this process may have; ``None`` without a limit."""
     if not CAN_LIMIT:
@@ -193,6 +218,12 @@ def check_room(needed: int) -> None:
     # What is as small as this is taken: it is in nobody's way, and to ask costs more.
     if needed > RESERVE // 4 and (left := room()) is not None and needed + RESERVE > left:
         raise TooLargeError(needed, max(left - RESERVE, 0))
+
+
+def fits(needed: int) -> bool:
+    """Whether so many bytes are left; without a limit they are."""
+    left = room() if needed > RESERVE // 4 else None
+    return left is None or needed + RESERVE <= left
 
 
 def within(work: Callable[[], Result], reserve: int = RESERVE) -> Result:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
@@ -18,10 +18,16 @@ _CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 @contextmanager
-def replacing(path: str | PathLike[str]) -> Iterator[BinaryIO]:
+def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[BinaryIO]:
     """Open a temporary file beside `path` for writing; it takes the name when all went well.
 
     A reader therefore never meets half a file, and a failed write leaves an old file as it was.
+
+    Parameters
+    ----------
+    path : str or PathLike
+    needed : int, optional
+        Bytes that it takes, as far as they are known; an error about a full disk says how many.
 
     Raises
     ------
@@ -30,7 +36,7 @@ def replacing(path: str | PathLike[str]) -> Iterator[BinaryIO]:
     """
     target = Path(path)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
-    with naming_target(target):
+    with naming_target(target, needed):
         try:
             with temporary.open("wb") as file:
                 yield file
@@ -42,8 +48,15 @@ def replacing(path: str | PathLike[str]) -> Iterator[BinaryIO]:
 
 
 @contextmanager
-def naming_target(path: str | PathLike[str]) -> Iterator[None]:
+def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | None = None) -> Iterator[None]:
     """Let errors of writing, in whichever temporary file, name the file that was asked for and say what to do.
+
+    Parameters
+    ----------
+    path : str or PathLike
+    needed : int or callable, optional
+        Bytes that it takes, all temporary files included; or what says how many, at least, as far as that is known by
+        then.
 
     Raises
     ------
@@ -57,7 +70,7 @@ def naming_target(path: str | PathLike[str]) -> Iterator[None]:
     except OSError as error:
         if error.errno is None or not _of_target(error, target):
             raise
-        raise OSError(error.errno, _told(error, target), os.fspath(path)) from error
+        raise OSError(error.errno, _told(error, target, needed), os.fspath(path)) from error
 
 
 def _of_target(error: OSError, target: Path) -> bool:
@@ -68,13 +81,22 @@ def _of_target(error: OSError, target: Path) -> bool:
     return named.is_relative_to(folder) and str(named.relative_to(folder)).startswith(".") and named != folder
 
 
-def _told(error: OSError, target: Path) -> str:
+def _told(error: OSError, target: Path, needed: int | Callable[[], int] | None) -> str:
     folder = target.absolute().parent
+    takes = ""
+    if isinstance(needed, int):
+        takes = f"it takes {needed / 1e6:,.1f} MB"
+    elif needed is not None:
+        takes = f"it takes {needed() / 1e6:,.1f} MB or more"
     if error.errno in _FULL:
         free = "none"
         with suppress(OSError):
             free = f"{shutil.disk_usage(folder).free / 1e6:,.1f} MB"
-        return f"no space is left for it (free in {folder}: {free}); make room there, or write to another disk"
+        known = f"{takes}; " if takes else ""
+        return f"no space is left for it ({known}free in {folder}: {free}); make room there, or write to another disk"
+    if error.errno == errno.EFBIG:
+        known = f"; {takes}" if takes else ""
+        return f"it is larger than files may be here{known}; raise that limit (ulimit -f), or write to another disk"
     if not folder.is_dir():
         return f"there is no folder {folder}; make it first"
     if error.errno in (*_CLOSED, errno.ENOENT):

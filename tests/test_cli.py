@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import gzip
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -13,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pvfiblets import formats
+from pvfiblets import formats, memory
 from pvfiblets.cli import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.report.errors_and_times import direction_angles
@@ -362,3 +364,25 @@ def test_the_installed_command_runs_and_survives_a_closed_pipe(tractogram):
     with os.fdopen(writer, "w") as gone:
         done = subprocess.run(command, stdout=gone, stderr=subprocess.PIPE, text=True, check=False)
     assert "Traceback" not in done.stderr
+
+
+needs_limit = pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
+
+
+@needs_limit
+def test_what_takes_more_memory_than_it_may_is_one_sentence(tmp_path, capsys):
+    path = tmp_path / "a.tt.gz"  # which is read whole
+    path.write_bytes(gzip.compress(bytes(400 << 20), 1))
+    before = memory.limited_to()
+    most = f"{memory.taken() // 2**20 + 300}M"
+    said = fails(capsys, "convert", path, tmp_path / "a.fiblets", "--max-memory", most)
+    assert re.search(r"more memory than the [\d.]+ .B of --max-memory \(it says that it takes .*; give it more", said)
+    assert memory.limited_to() == before
+
+
+@needs_limit
+def test_a_limit_of_memory_that_is_none_is_refused(tractogram, tmp_path, capsys):
+    target = tmp_path / "a.fiblets"
+    assert "'much' is no size of memory" in fails(capsys, "convert", tractogram[0], target, "--max-memory", "much")
+    assert "are needed to begin with" in fails(capsys, "info", tractogram[0], "--max-memory", "5M")
+    assert not target.exists()

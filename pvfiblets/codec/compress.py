@@ -8,7 +8,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
+from ..formats.mapped import forget
+from ..formats.scratch import is_long, spans
 from ..invalid_points import Invalid, valid_points
 from ..streamlines import Streamlines
 from . import parameters as limits
@@ -18,7 +21,7 @@ from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
 from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey
 from .quantised import QuantisedPoints, quantise_values
-from .record_writer import RecordWriter, join
+from .record_writer import FibletChunk, RecordWriter, join
 
 if TYPE_CHECKING:
     from .encode import Effort
@@ -159,9 +162,9 @@ def compress(
     from tqdm import tqdm
 
     with tqdm(total=coded.n_points, unit="points", unit_scale=True, disable=not progress) as bar:
-        chunks = []
+        chunks: list[FibletChunk] = []
         for chunk in split_chunks(coded):
-            chunks.append(encoder.add(chunk))
+            chunks += encoder.parts(chunk)
             bar.update(chunk.n_points)
     if exact is None and step == "auto" and grows(encoder, raw_bytes(streamlines)):
         return _kept_exactly(streamlines, found, per_point, per_point_bits)
@@ -275,8 +278,22 @@ def quantise_chosen(
         column = np.asarray(streamlines.per_point[name])
         lo, hi = found.values.get(name, (0.0, 0.0))
         if column.ndim == 1 or column.shape[1] == 1:
-            kept[name] = quantise_values(column.reshape(len(column)), lo, hi, bits)
+            kept[name] = _quantise(column.reshape(len(column)), lo, hi, bits)
         else:
             for k in range(column.shape[1]):
-                kept[f"{name}[{k}]"] = quantise_values(column[:, k], lo, hi, bits)
+                kept[f"{name}[{k}]"] = _quantise(column[:, k], lo, hi, bits)
     return kept
+
+
+def _quantise(column: npt.NDArray[Any], lo: float, hi: float, bits: int) -> QuantisedPoints:
+    """:func:`.quantise_values`, part by part, of what may be mapped."""
+    if not is_long(len(column)):
+        return quantise_values(column, lo, hi, bits)
+    codes = np.empty(len(column), np.uint8 if bits == 8 else np.uint16)
+    error = 0.0
+    for a, b in spans(len(column)):
+        part = quantise_values(column[a:b], lo, hi, bits)
+        codes[a:b] = part.codes
+        error = max(error, part.max_error)
+        forget(column, 0, b)
+    return QuantisedPoints(codes, float(lo), float(hi), error)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from .. import formats
 from ..errors import FormatError
+from ..memory import fits
 from ..streamlines import Streamlines
 from ..whole_files import naming_target
 from . import parameters as limits
@@ -153,16 +154,17 @@ def compress_file(
     ):
         whole = _Whole(behind)
         for chunk in shown(chunks(), found.n_points, "compressing", progress):
-            records = encoder.add(chunk)
-            for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
-                if getattr(records, name) is not None:
-                    spool.add(f"{name}.npy", getattr(records, name))
+            for records in encoder.parts(chunk):
+                for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
+                    if getattr(records, name) is not None:
+                        spool.add(f"{name}.npy", getattr(records, name))
             for name, values in quantise_chosen(chunk, found, names, per_point_bits).items():
                 spool.add(name, values.codes)
                 whole.add_values(name, values)
             whole.add(chunk)
         spool.close()
-        if exact is None and step == "auto" and grows(encoder, raw):
+        # To keep them as they are, all are in memory at once, and their records.
+        if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
             return _keep_exactly(chunks(), target, names, per_point_bits, started)
         if not encoder.n_fiblets:
             spool.add_empty(names, per_point_bits, whole)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
+from ..formats.scratch import SPAN, is_long, scratch_array, spans
 from ..ragged import blocks
 from ..streamlines import Streamlines
 from .archive import forget
@@ -19,6 +20,7 @@ from .streamline_ranges import StreamlineRanges, ranges_of
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
+    from .quantised import QuantisedPoints
 
 __all__ = ["decode_fiblets", "decompress", "held_in_bounds", "iter_chunks", "select_streamlines"]
 
@@ -249,11 +251,9 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         lengths = np.zeros(stop - first_id, np.int64)
         lengths[np.asarray(ids) - first_id] = per_rank
         rows = slice(first_point, first_point + int(counts.sum()))
-        if fiblets.exact is not None:
-            points = fiblets.exact[rows].astype(kind)
-        else:
-            points = np.empty((rows.stop - rows.start, 3), kind)
-            decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
+        n_points = rows.stop - rows.start
+        long = n_points > max_points and is_long(n_points)  # one line, and more than was asked for
+        points = _points(fiblets, which, counts, rows, kind, long)
         groups = {}
         for name, members in fiblets.groups.items():
             inside = np.asarray(members, np.int64)
@@ -261,7 +261,7 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         yield Streamlines(
             points,
             np.concatenate([[0], np.cumsum(lengths)]),
-            per_point={k: v.values(rows) for k, v in fiblets.per_point.items()},
+            per_point={k: _values(v, rows, long) for k, v in fiblets.per_point.items()},
             per_streamline={k: v[first_id:stop] for k, v in fiblets.per_streamline.items()},
             groups=groups,
             per_group={k: dict(v) for k, v in fiblets.per_group.items()},
@@ -271,6 +271,48 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         )
         _forget(fiblets, a, b, rows)
         a, first_id, first_point = b, stop, rows.stop
+
+
+def _points(
+    fiblets: FibletSet,
+    which: npt.NDArray[np.int64],
+    counts: npt.NDArray[np.int64],
+    rows: slice,
+    kind: np.dtype[Any],
+    long: bool,
+) -> npt.NDArray[Any]:
+    """Points of consecutive fiblets, which have so many each and are these rows; of a very long line on disk."""
+    n = rows.stop - rows.start
+    if not long:
+        if fiblets.exact is not None:
+            return fiblets.exact[rows].astype(kind)
+        points = np.empty((n, 3), kind)
+        decode_fiblets(fiblets, which, np.cumsum(counts) - counts, points)
+        return points
+    points = scratch_array((n, 3), kind)
+    if fiblets.exact is not None:
+        for a, b in spans(n):
+            points[a:b] = fiblets.exact[rows.start + a : rows.start + b]
+            forget(points, 0, b)
+        return points
+    starts = np.cumsum(counts) - counts
+    for a, b in spans(len(which), SPAN // MAX_POINTS):
+        stop = int(starts[b]) if b < len(which) else n
+        decode_fiblets(fiblets, which[a:b], starts[a:b] - starts[a], points[starts[a] : stop])
+        forget(points, 0, stop)
+        forget(fiblets.codes, 0, int(fiblets.pages[which[a] >> PAGE_BITS, 1]))
+    return points
+
+
+def _values(values: QuantisedPoints, rows: slice, long: bool) -> npt.NDArray[np.float32]:
+    if not long:
+        return values.values(rows)
+    n = rows.stop - rows.start
+    found = scratch_array((n,), np.float32)
+    for a, b in spans(n):
+        found[a:b] = values.values(slice(rows.start + a, rows.start + b))
+        forget(found, 0, b)
+    return found
 
 
 def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:

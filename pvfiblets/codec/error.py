@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..formats.mapped import forget
+from ..formats.scratch import SPAN, is_long, spans
 from ..streamlines import Streamlines
 from .decompress import iter_chunks
 from .fibletset import FibletSet
@@ -88,6 +90,10 @@ class ErrorTally:
     def add(self, original: Streamlines, decoded: Streamlines) -> None:
         """Take in streamlines, and the same as decoded to float64."""
         offsets = np.asarray(original.offsets, np.int64)
+        if is_long(original.n_points) and not (self.resampled or self._by_streamline):
+            for first, last in original.blocks(SPAN):
+                self._add_parts(original.points, decoded.points, int(offsets[first]), int(offsets[last]), offsets)
+            return
         # Points come in the set's own type by default, and its rounding is part of their error.
         drawn = decoded.points.astype(self._dtype).astype(np.float64)
         if self.resampled:
@@ -100,9 +106,28 @@ class ErrorTally:
             order = np.argsort(np.concatenate(owners), kind="stable")
             self._add_distances(np.concatenate([away, back])[order], offsets + others)
             return
-        self._add_angles(original.points, np.asarray(decoded.points, np.float64), offsets)
+        firsts = self._firsts.of_next(original.n_points)
+        self._add_angles(original.points, np.asarray(decoded.points, np.float64), offsets, firsts)
         delta = original.points.astype(np.float64) - drawn
         self._add_distances(np.sqrt((delta**2).sum(1)), offsets)
+
+    def _add_parts(
+        self, true: npt.NDArray[Any], drawn: npt.NDArray[Any], a: int, b: int, offsets: npt.NDArray[np.int64]
+    ) -> None:
+        """Take in points ``[a, b)``, whole streamlines or parts of one, of which no more is held at a time."""
+        for first, last in spans(b - a):
+            first, last = a + first, a + last
+            lead, more = first - max(first - 1, a), min(last + 1, b) - last  # tangents need a point on either side
+            rows = slice(first - lead, last + more)
+            inner = offsets[(offsets > rows.start) & (offsets < rows.stop)]
+            own = np.concatenate([[rows.start], inner, [rows.stop]]) - rows.start
+            here, there = np.asarray(true[rows]), np.asarray(drawn[rows], np.float64)
+            firsts = np.concatenate([np.zeros(lead, bool), self._firsts.of_next(last - first), np.zeros(more, bool)])
+            self._add_angles(here, there, own, firsts, slice(lead, lead + last - first))
+            delta = here.astype(np.float64) - there.astype(self._dtype).astype(np.float64)
+            self._add_distances(np.sqrt((delta**2).sum(1))[lead : lead + last - first], own)
+            forget(true, 0, last)
+            forget(drawn, 0, last)
 
     def _add_distances(self, distance: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]) -> None:
         """Take in distances, of streamlines whose own begin at these offsets."""
@@ -124,12 +149,18 @@ class ErrorTally:
         self._means.append(mean)
 
     def _add_angles(
-        self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]
+        self,
+        true: npt.NDArray[Any],
+        drawn: npt.NDArray[np.float64],
+        offsets: npt.NDArray[np.int64],
+        firsts: npt.NDArray[np.bool_],
+        which: slice = slice(None),
     ) -> None:
         from .tangent_kernels import tangent_angles  # numba loads only for those who measure
 
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
-        tangent_angles(true, drawn, offsets, self._firsts.of_next(len(true)), self._pixel, degrees, uses)
+        tangent_angles(true, drawn, offsets, firsts, self._pixel, degrees, uses)
+        degrees, uses = degrees[which], uses[which]
         bins = np.ceil(degrees * _PER_DEGREE).astype(np.int64)
         self._angles += np.bincount(bins, uses, minlength=len(self._angles)).astype(np.int64)
         self._angle_sum += float(degrees @ uses)
@@ -162,7 +193,7 @@ class _FirstPoints:
 
     def __init__(self, fiblets: FibletSet) -> None:
         self._fiblets = fiblets
-        self._fiblet = 0
+        self._fiblet = self._begun = 0
         self._point = 0
         self._all: npt.NDArray[np.bool_] | None = None
         if not fiblets.in_order:
@@ -172,16 +203,18 @@ class _FirstPoints:
             self._all[coded_rows(fiblets)] = coded
 
     def of_next(self, n: int) -> npt.NDArray[np.bool_]:
-        """``(n,)`` of the next ``n`` points, which belong to whole streamlines."""
+        """``(n,)`` of the next ``n`` points."""
         if self._all is not None:
             self._point += n
             return self._all[self._point - n : self._point]
         counts = unpack("last", self._fiblets.decoding[self._fiblet : self._fiblet + n]).astype(np.int64) + 1
-        starts = np.cumsum(counts) - counts
-        starts = starts[starts < n]
-        self._fiblet += len(starts)
+        starts = self._begun + np.cumsum(counts) - counts
+        inside = int(np.searchsorted(starts, n))
+        # Where the next fiblet that is not among these begins, from the point after them.
+        after = int(starts[inside]) if inside < len(starts) else int(starts[-1] + counts[-1]) if inside else self._begun
+        self._fiblet, self._begun = self._fiblet + inside, after - n
         firsts = np.zeros(n, bool)
-        firsts[starts] = True
+        firsts[starts[:inside]] = True
         return firsts
 
 

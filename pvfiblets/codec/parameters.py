@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from ..formats.mapped import forget
+from ..formats.scratch import is_long, spans
 from ..ragged import blocks
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
@@ -36,6 +38,7 @@ STEP_BAND = 0.06  # steps within this of the median can be coded by direction; o
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 LARGEST = 1e35  # mm
 BLOCK_POINTS = 2_000_000
+SAMPLED = 4_000_000  # points of which segments are sampled at a time
 EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
 EXACT_UP_TO = 1 << 30  # bytes of points up to which a set that coding would enlarge keeps every bit; opening reads all
 CUT_SHARE = 0.25  # of the promise that resampling may use up, and so leave to coding less
@@ -86,17 +89,24 @@ class Survey:
         self.n_points += len(points)
         self.n_streamlines += len(streamlines)
         for name in per_point:
-            column = np.asarray(streamlines.per_point[name])
-            finite = column[np.isfinite(column)]
-            if finite.size:
-                lo, hi = self.values.get(name, (np.inf, -np.inf))
-                self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
+            whole = np.asarray(streamlines.per_point[name])
+            for a, b in spans(len(whole)):
+                column = whole[a:b]
+                finite = column[np.isfinite(column)]
+                if finite.size:
+                    lo, hi = self.values.get(name, (np.inf, -np.inf))
+                    self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
+                forget(whole, 0, b)
         if not len(points):
             return
         with without_kernels("coding", len(points)) as small:
             lower, upper, longest, widest_end = _scan(points, np.asarray(streamlines.offsets, np.int64), small)
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
-            bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            bad = next(
+                a + int(rows[0])
+                for a, b in spans(len(points))
+                if len(rows := np.flatnonzero(~np.isfinite(points[a:b]).all(axis=1)))
+            )
             raise ValueError(
                 f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair it, "
                 "or give nan='drop' or nan='split'"
@@ -124,10 +134,13 @@ def _scan(
         from .direction_kernels import scan  # numba loads only for what is worth it
 
         parts = []
-        for a, b in blocks(offsets, BLOCK_POINTS):
-            rows = np.empty((-(-(b - a) // 1024), 8))
+        for own, goes_on in _scanned(offsets):
+            rows = np.empty((-(-(len(own) - 1) // 1024), 8))
             # One type of points, so that the kernel is not compiled twice.
-            scan(points[offsets[a] : offsets[b]].astype(np.float64), offsets[a : b + 1] - offsets[a], rows)
+            scan(points[own[0] : own[-1]].astype(np.float64), own - own[0], rows)
+            if goes_on:
+                rows[:, 7] = 0.0  # these are no streamline's last points
+            forget(points, 0, int(own[-1]))
             parts.append(rows)
         found = np.concatenate(parts)
         return found[:, :3].min(0), found[:, 3:6].max(0), float(np.sqrt(found[:, 6].max())), float(found[:, 7].max())
@@ -150,14 +163,34 @@ def _scan(
     return wide.min(0), wide.max(0), float(np.sqrt(squares.max(initial=0.0))), widest
 
 
+def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.int64], bool]]:
+    """Where the streamlines of each block begin and the last ends; a very long one comes in parts that overlap.
+
+    And whether it goes on behind this part.
+    """
+    for a, b in blocks(offsets, BLOCK_POINTS):
+        first, stop = int(offsets[a]), int(offsets[b])
+        if b > a + 1 or not is_long(stop - first):
+            yield offsets[a : b + 1], False
+            continue
+        while first < stop:
+            end = stop if stop - first <= BLOCK_POINTS else first + BLOCK_POINTS
+            yield np.array([first, end]), end < stop
+            first = stop if end == stop else end - MAX_POINTS
+
+
 def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], stride: int) -> Vector:
     """Lengths of every ``stride``-th segment, mm."""
     first = np.arange(0, max(len(points) - 1, 0), stride)
     joins = np.searchsorted(offsets, first + 1)  # a segment that would cross into the next streamline is none
     inside = offsets[np.minimum(joins, len(offsets) - 1)] != first + 1
     first = first[inside]
-    delta = points[first + 1].astype(np.float64) - points[first].astype(np.float64)
-    lengths: Vector = np.sqrt((delta**2).sum(1))
+    lengths = np.empty(len(first))
+    for a, b in spans(len(first), max(SAMPLED // stride, 1)):
+        delta = points[first[a:b] + 1].astype(np.float64) - points[first[a:b]].astype(np.float64)
+        lengths[a:b] = np.sqrt((delta**2).sum(1))
+        if is_long(len(points)):
+            forget(points, 0, int(first[b - 1]))
     return lengths
 
 

@@ -68,6 +68,9 @@ class RecordWriter:
         radii: npt.NDArray[np.float64],
         ranks: npt.NDArray[np.int64],
         codes: npt.NDArray[np.uint8],
+        *,
+        continues: bool = False,
+        following: npt.NDArray[np.floating] | None = None,
     ) -> FibletChunk:
         """Write the records of a chunk, with indices relative to their pages.
 
@@ -82,14 +85,19 @@ class RecordWriter:
             its streamline, counted from the chunk's first that has points.
         codes : numpy.ndarray
             Of all of them.
+        continues : bool
+            Whether the first streamline goes on from the chunk before.
+        following : numpy.ndarray, optional
+            ``(3,)`` mm: the point after the last, where the last streamline goes on in the next chunk.
         """
         p = self.parameters
         empty = np.flatnonzero(np.diff(offsets) == 0)
         if empty.size:
             self.empty.append(empty + self.n_streamlines)
         total = len(counts)
-        begins = np.append(True, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
-        ends = np.append(begins[1:], True) if total else begins
+        more = following is not None
+        begins = np.append(not continues, ranks[1:] != ranks[:-1]) if total else np.zeros(0, bool)
+        ends = np.append(begins[1:], not more) if total else begins
         absolute = np.stack([ranks + self.n_ranks, code_start + self.n_codes, point_start + self.n_points], axis=1)
         page = (np.arange(total) + self.n_fiblets) >> PAGE_BITS
         opened = np.arange(-self.n_fiblets % PAGE, total, PAGE)
@@ -99,11 +107,9 @@ class RecordWriter:
             bases = np.array(self.pages[first : int(page[-1]) + 1], np.int64)
             absolute -= bases[page - first]
         scale = np.array(p.anchor_scale)
-        relative = points[point_start].astype(np.float64) - np.array(p.origin)
-        grid = np.divide(relative, scale, out=np.zeros_like(relative), where=scale > 0.0)
-        grid = np.clip(np.rint(grid), 0.0, self.top)
-        decoded = grid * scale
-        grid = grid.astype(np.uint64)
+        nearest = self._grid(points[point_start])
+        decoded = nearest * scale
+        grid = nearest.astype(np.uint64)
         low = None
         if p.anchor_bits == 32:
             low = (grid & np.uint64(0xFFFF)).astype(np.uint16)
@@ -121,15 +127,24 @@ class RecordWriter:
             reach = np.minimum(np.ceil(radii / p.reach_scale * (1.0 + 1e-12)), 65535.0)
         end_words = rows["end_words"][ends]
         if total:
-            chords = capsule_ends(decoded, ends, unpack_ends(end_words) * p.end_scale, None) - decoded
+            after = None if following is None else self._grid(following) * scale
+            chords = capsule_ends(decoded, ends, unpack_ends(end_words) * p.end_scale, after) - decoded
             radius = float((0.5 * np.sqrt((chords**2).sum(1)) + reach * p.reach_scale).max())
             self.parameters = replace(p, largest_radius=max(p.largest_radius, radius * (1.0 + 1e-12)))
         self.n_fiblets += total
-        self.n_ranks += int(ranks[-1]) + 1 if total else 0
+        self.n_ranks += int(ranks[-1]) + 1 - more if total else 0
         self.n_codes += len(codes)
         self.n_points += len(points)
-        self.n_streamlines += len(offsets) - 1
+        self.n_streamlines += len(offsets) - 1 - more
         return FibletChunk(anchors, low, decoding, reach.astype(np.uint16), codes, end_words)
+
+    def _grid(self, points: npt.NDArray[np.floating]) -> npt.NDArray[np.float64]:
+        """Numbers of the anchors nearest to points ``(..., 3)``, mm."""
+        relative = points.astype(np.float64) - np.array(self.parameters.origin)
+        scale = np.array(self.parameters.anchor_scale)
+        grid = np.divide(relative, scale, out=np.zeros_like(relative), where=scale > 0.0)
+        nearest: npt.NDArray[np.float64] = np.clip(np.rint(grid), 0.0, self.top)
+        return nearest
 
     def page_table(self) -> npt.NDArray[np.int64]:
         """``(n_pages + 1, 3)`` int64: rank, code byte and point at which each page starts; last row: the totals."""

@@ -1,18 +1,22 @@
-"""Gzipped files: inflated piece by piece, and what they say of their size."""
+"""Gzipped files: inflated piece by piece; and what compressed files say of their size."""
 
 from __future__ import annotations
 
 import gzip
 import struct
 import zlib
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
+from zipfile import BadZipFile, ZipFile
 
-from pvfiblets.errors import FormatError
-from pvfiblets.memory import check_room
+from pvfiblets.errors import FibletsError, FormatError
+from pvfiblets.memory import check_room, shown
 
 DENSEST = 1032
 """How many bytes of deflate's come out of one, at most."""
+SMALL = 64 << 20
+"""Bytes that are in nobody's way, however few they were."""
 ODD = 100
 """Tractograms never inflate by as much: what does is made to."""
 
@@ -38,6 +42,34 @@ def stated_size(path: str | PathLike[str]) -> int:
         file.seek(-4, 2)
         (stated,) = struct.unpack("<I", file.read(4))
     return int(stated) if stated <= DENSEST * size else 0
+
+
+def inflated_size(path: str | PathLike[str]) -> int:
+    """Return how many bytes a file says that it inflates to, which may be a lie; 0 where it is not compressed."""
+    name = str(path).lower()
+    if name.endswith(".gz"):
+        return stated_size(path)
+    if not name.endswith(".trx"):
+        return 0
+    with suppress(BadZipFile, OSError), ZipFile(path) as archive:
+        return sum(min(info.file_size, info.compress_size * DENSEST) for info in archive.infolist())
+    return 0
+
+
+def check_ratio(path: str | PathLike[str]) -> None:
+    """Refuse a tractogram that inflates as none does, for those who would have to wait for it.
+
+    Raises
+    ------
+    FibletsError
+        If it inflates by :data:`ODD` times or more.
+    """
+    size, stated = Path(path).stat().st_size, inflated_size(path)
+    if stated > max(ODD * size, SMALL):
+        raise FibletsError(
+            f"it inflates to {shown(stated)}, {stated / max(size, 1):,.0f} times its size, as no tractogram does; "
+            "`pvfiblets convert` makes a .fiblets file of it that can be opened"
+        )
 
 
 def check_swelling(path: str | PathLike[str], *, whole: bool = False) -> None:

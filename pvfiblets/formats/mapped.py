@@ -91,16 +91,21 @@ def forget(array: NDArray[Any], first: int, last: int) -> None:
     owner: Any = array
     found: Any = None
     while owner is not None:  # the outermost map: views of it do not know where in it they begin
-        found = owner if isinstance(owner, np.memmap) else found
-        owner = getattr(owner, "base", None)
-    if found is None or found.mode == "c" or array.size == 0:
+        found = owner if isinstance(owner, (np.memmap, mmap.mmap)) else found
+        owner = owner.obj if isinstance(owner, memoryview) else getattr(owner, "base", None)
+    if found is None or array.size == 0:
         return
-    mapped = found._mmap  # noqa: SLF001  numpy has no other way to its map
-    within = array.__array_interface__["data"][0] - found.__array_interface__["data"][0]
-    # The map begins at the page that holds the array's first byte.
-    start = found.offset % mmap.ALLOCATIONGRANULARITY + within
+    if isinstance(found, mmap.mmap):
+        mapped, start = found, 0
+        begin = np.frombuffer(found, np.uint8).__array_interface__["data"][0]
+    elif found.mode == "c":
+        return
+    else:
+        mapped = found._mmap  # noqa: SLF001  numpy has no other way to its map
+        # The map begins at the page that holds the array's first byte.
+        start, begin = found.offset % mmap.ALLOCATIONGRANULARITY, found.__array_interface__["data"][0]
     row = array.strides[0]
-    drop_pages(mapped, start + first * row, (last - first) * row)
+    drop_pages(mapped, start + array.__array_interface__["data"][0] - begin + first * row, (last - first) * row)
 
 
 def drop_pages(mapped: mmap.mmap, position: int, n_bytes: int) -> None:

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from pvfiblets.formats.mapped import forget
+from pvfiblets.formats.scratch import is_long, scratch_array
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 
 Array = NDArray[Any]
@@ -33,7 +35,9 @@ def nonfinite(values: Array) -> Ints:
     """Find the indices (ascending) of NaN and infinity in a one-dimensional float array."""
 
     def part(first: int, last: int) -> Ints:
-        return np.flatnonzero(~np.isfinite(values[first:last])) + first
+        found = np.flatnonzero(~np.isfinite(values[first:last])) + first
+        forget(values, first, last)
+        return found
 
     parts = _each_block(part, len(values), values.itemsize)
     return np.concatenate(parts) if parts else np.zeros(0, np.int64)
@@ -99,7 +103,7 @@ def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints, Array]:
     return (kept.copy() if len(bad) > n // 8 else kept), bad, others
 
 
-def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
+def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike, *, long: bool = False) -> Array:
     """Copy of `rows` as native `dtype`, less the rows `leave_out`.
 
     Parameters
@@ -110,6 +114,8 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
         Ascending row numbers, each once.
     dtype : dtype
         Of the result.
+    long : bool
+        Make it on disk (:mod:`.scratch`).
 
     Returns
     -------
@@ -117,7 +123,7 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
     """
     n, k = rows.shape
     kind = np.dtype(dtype)
-    out = np.empty((n - len(leave_out), k), kind)
+    out = (scratch_array if long else np.empty)((n - len(leave_out), k), kind)
     if out.size == 0:
         return out
     # A row seen as one opaque value lets NumPy's mask copy whole runs of rows by memcpy.
@@ -138,14 +144,17 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike) -> Array:
             keep = np.ones(last - first, bool)
             keep[leave_out[begin:end] - first] = False
             place[:] = source[keep]
+        if long:
+            forget(rows, first, last)
+            forget(out, first - begin, last - end)
 
     _each_block(part, n, rows.itemsize * k)
     return out
 
 
-def transformed(points: Array, affine: NDArray[np.float64]) -> NDArray[np.float32]:
-    """(n, 3) float32 points moved by a (4, 4) affine, computed in float64."""
-    out = np.empty((len(points), 3), np.float32)
+def transformed(points: Array, affine: NDArray[np.float64], *, long: bool = False) -> NDArray[np.float32]:
+    """(n, 3) float32 points moved by a (4, 4) affine, computed in float64; made on disk where they are `long`."""
+    out = (scratch_array if long else np.empty)((len(points), 3), np.float32)
     linear, shift = affine[:3, :3], affine[:3, 3]
 
     def part(first: int, last: int) -> None:
@@ -157,6 +166,9 @@ def transformed(points: Array, affine: NDArray[np.float64]) -> NDArray[np.float3
                 for i in np.flatnonzero(linear[j]):
                     column += linear[j, i] * block[:, i]
                 out[first:last, j] = column
+        if long:
+            forget(points, first, last)
+            forget(out, first, last)
 
     _each_block(part, len(points), 24)
     return out
@@ -180,10 +192,18 @@ def finite(
         rows = np.unique(bad // 3)
         edges = offsets_from_counts(counts)
         counts = np.diff(edges - np.searchsorted(rows, edges))
-        points = np.delete(points, rows, axis=0)
-        per_point = {k: np.delete(v, rows, axis=0) for k, v in per_point.items()}
+        points = _less(points, rows)
+        per_point = {k: _less(v, rows) for k, v in per_point.items()}
         dropped = {**dropped, NONFINITE: dropped.get(NONFINITE, 0) + len(rows)}
     return Streamlines(points, offsets_from_counts(counts), per_point, dropped=dropped, **rest)
+
+
+def _less(values: Array, rows: Ints) -> Array:
+    """Values less some rows; what is mapped stays on disk."""
+    if not (is_long(len(values)) and isinstance(values, np.memmap)):
+        return np.delete(values, rows, axis=0)
+    flat = values.reshape(len(values), -1)
+    return without_rows(flat, rows, values.dtype, long=True).reshape(-1, *values.shape[1:])
 
 
 def _each_block(part: Callable[[int, int], Any], n: int, row_bytes: int) -> list[Any]:

@@ -32,7 +32,8 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
-from pvfiblets.formats.rows import NONFINITE, finite_rows
+from pvfiblets.formats.rows import NONFINITE, finite_rows, without_rows
+from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 from pvfiblets.whole_files import replacing
 
@@ -214,8 +215,10 @@ class Data:
             window = parse_rows(self.rows[position : position + size], kind, last)
             if not (window.used or window.ended or last):
                 size *= 2  # one streamline is longer than the window
-                continue
-            if size > max_rows and 0 < window.first_end < window.used:
+                if not is_long(size):
+                    continue
+                window, last = self._long(position, kind)
+            elif size > max_rows and 0 < window.first_end < window.used:
                 # The streamline fits now, but others came along: they wait for their own window.
                 last = False
                 window = parse_rows(self.rows[position : position + window.first_end], kind, last)
@@ -229,6 +232,30 @@ class Data:
                 yield window, dropped | self._closing(window, position, found)
                 return
             yield window, dropped
+
+    def _long(self, position: int, kind: np.dtype[Any]) -> tuple[Window, bool]:
+        """Return the streamline that begins at a row, mapped or on disk, and whether the data end with it."""
+        n, last, ended = 0, True, False
+        special: list[int] = []
+        for a, b in spans(self.n_rows - position):
+            rows = self.rows[position + a : position + b]
+            odd = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+            values = rows[odd]
+            closing = np.flatnonzero(np.isnan(values).all(axis=1) | np.isinf(values).all(axis=1))
+            self.file.forget(0, self.header.data_position + (position + b) * self.rows.strides[0])
+            n = b
+            if len(closing):
+                at = int(closing[0])
+                n, last, ended = a + int(odd[at]), False, bool(np.isinf(values[at]).all())
+                odd = odd[:at]
+            special += (odd + a).tolist()
+            if len(closing):
+                break
+        points = self.rows[position : position + n]
+        if special or points.dtype != kind or not points.flags.aligned:
+            points = without_rows(points, np.array(special, np.int64), kind, long=True)
+        used = n if last else n + 1
+        return Window(points, np.array([len(points)]), used, ended, n if ended or last else 0, used, len(special)), last
 
     def _closing(self, window: Window, position: int, found: int) -> dict[str, int]:
         """Judge the end of the data: what to report, or FormatError."""
@@ -320,10 +347,17 @@ def write_rows(
     offset = len(fields) + len("0000\nEND\n")
     offset += -offset % 8
     header = f"{fields}{offset}".ljust(offset - len("\nEND\n")) + "\nEND\n"
-    with replacing(path) as file:
+    size = len(header) + (len(values) + len(streamlines) + 1) * k * kind.itemsize
+    with replacing(path, size) as file:
         file.write(header.encode())
         for start, stop in streamlines.blocks(_BLOCK_POINTS):
             first, last = streamlines.offsets[start], streamlines.offsets[stop]
+            if is_long(int(last - first)):  # one streamline
+                for a, b in spans(int(last - first)):
+                    file.write(np.ascontiguousarray(values[first + a : first + b], kind).data)
+                    forget(values, 0, int(first) + b)
+                file.write(np.full(k, np.nan, kind).data)
+                continue
             rows = np.full((last - first + stop - start, k), np.nan, kind)
             is_point = np.ones(len(rows), bool)
             ends = streamlines.offsets[start + 1 : stop + 1] - first

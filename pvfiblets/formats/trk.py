@@ -37,9 +37,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.gzipped import DENSEST, check_swelling, inflate
-from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.formats.gzipped import DENSEST, ODD, check_swelling, inflate
+from pvfiblets.formats.mapped import MappedFile, forget
 from pvfiblets.formats.rows import finite, transformed, without_rows
+from pvfiblets.formats.scratch import is_long, scratch_array, scratch_bytes, spans
 from pvfiblets.formats.trk_header import HEADER_SIZE, Header, parse_header
 from pvfiblets.formats.trk_writer import write
 from pvfiblets.memory import check_room
@@ -67,6 +68,9 @@ class _Words(Protocol):
     def window(self, first: int, n: int) -> Array:
         """Return words ``[first, first + n)`` as int32 of the file's order; fewer at the end."""
 
+    def long(self, first: int, n: int) -> Array:
+        """Return what :meth:`window` does, mapped or on disk, for so many words that memory should not hold them."""
+
     def rest(self, first: int) -> int:
         """Return how many bytes follow word `first`."""
 
@@ -87,6 +91,8 @@ class _MappedWords:
     def window(self, first: int, n: int) -> Array:
         self._file.forget(HEADER_SIZE, first * 4)
         return self._words[first : first + n]
+
+    long = window
 
     def rest(self, first: int) -> int:
         return (len(self._words) - first) * 4 + self._odd
@@ -119,6 +125,24 @@ class _InflatedWords:
         # A copy: the buffer must stay free to grow.
         whole = min(n, len(self._kept) // 4) * 4
         return np.frombuffer(bytes(self._kept[:whole]), self._dtype)
+
+    def long(self, first: int, n: int) -> Array:
+        del self._kept[: (first - self._first) * 4]
+        words = scratch_bytes(self._pieces(n * 4))
+        self._first = first + len(words) // 4
+        return words[: len(words) // 4 * 4].view(self._dtype)
+
+    def _pieces(self, n: int) -> Iterator[bytes]:
+        """Take the next `n` bytes out of what is kept and of the stream."""
+        kept = bytes(self._kept[:n])
+        del self._kept[:n]
+        yield kept
+        n -= len(kept)
+        while n and not self._ended:
+            piece = inflate(self.path, self._stream, min(n, _READ_BYTES))
+            self._ended = not piece
+            n -= len(piece)
+            yield piece
 
     def rest(self, first: int) -> int:
         total = len(self._kept) - (first - self._first) * 4
@@ -163,27 +187,35 @@ def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _B
     return _Batch(first, words[first].astype(np.int64), position)
 
 
-def _streamlines(words: Array, batch: _Batch, header: Header, dropped: dict[str, int]) -> Streamlines:
+def _streamlines(words: Array, batch: _Batch, header: Header, dropped: dict[str, int], long: bool) -> Streamlines:
     k, p = header.row_words, header.n_properties
     floats = words[: batch.used].view(words.dtype.str.replace("i", "f"))
     after = batch.starts + 1 + batch.counts * k
     properties = after[:, None] + np.arange(p)
     other = np.concatenate([batch.starts[:, None], properties], axis=1).ravel()
-    rows = without_rows(floats[:, None], other, np.float32).reshape(-1, k)
+    rows = without_rows(floats[:, None], other, np.float32, long=long).reshape(-1, k)
     values = floats[properties].astype(np.float32)
     return finite(
-        transformed(rows[:, :3], header.to_ras),
+        transformed(rows[:, :3], header.to_ras, long=long),
         batch.counts,
-        {name: _column(rows, part) for name, part in header.scalars.items()},
+        {name: _column(rows, part, long) for name, part in header.scalars.items()},
         dropped,
-        per_streamline={name: _column(values, part) for name, part in header.properties.items()},
+        per_streamline={name: _column(values, part, False) for name, part in header.properties.items()},
         affine=header.affine,
         space=header.space,
     )
 
 
-def _column(rows: Array, part: slice) -> Array:
+def _column(rows: Array, part: slice, long: bool) -> Array:
     block = rows[:, part]
+    if long:
+        copied = scratch_array(block.shape, block.dtype)
+        for a, b in spans(len(block)):
+            copied[a:b] = block[a:b]
+            forget(copied, a, b)
+            forget(rows, 0, b)
+        block = copied
+        return block[:, 0] if block.shape[1] == 1 else block
     return block[:, 0].copy() if block.shape[1] == 1 else block.copy()
 
 
@@ -200,27 +232,37 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
         stopped = batch.used < len(window) and len(batch.starts) < left
         if stopped and (n := int(window[batch.used])) < 0:
             raise FormatError(words.path, at, f"a streamline of {n} points", "0 points or more")
+        long = False
         if stopped and len(batch.starts) == 0:
             need = 1 + n * header.row_words + header.n_properties
-            if len(window) < size:
+            # More than there can be is damage, which the end will show.
+            long = is_long(n) and len(window) == size and position + need <= words.most()
+            if long:
+                if 4 * need > ODD * Path(words.path).stat().st_size:
+                    check_room(4 * need)
+                window = words.long(position, need)
+            if len(window) < (need if long else size):
                 raise FormatError(
                     words.path,
                     HEADER_SIZE + 4 * (position + len(window)),
                     "the end of the file",
                     f"{need} words of the streamline that begins at byte {at}: the file is truncated",
                 )
-            if size == normal and position + need <= words.most():  # else it is damaged, which its end will show
-                check_room(4 * need)
-            # Grow by doubling, not to `need` at once: a damaged count must not cost memory.
-            size = min(need, 2 * size)
-            continue
+            if not long:
+                if size == normal and position + need <= words.most():
+                    check_room(4 * need)
+                # Grow by doubling, not to `need` at once: a damaged count must not cost memory.
+                size = min(need, 2 * size)
+                continue
+            batch, size = _Batch(np.zeros(1, np.int64), np.array([n]), need), need
+            at += 4 * need
         found += len(batch.starts)
         position += batch.used
         complete = promised is not None and found == promised
         at_end = batch.used == len(window) < size
         size = normal
         if not (complete or at_end):
-            yield _streamlines(window, batch, header, {})
+            yield _streamlines(window, batch, header, {}, long)
             continue
         if not complete and (odd := words.odd_bytes()):
             raise FormatError(words.path, at, f"{odd} bytes and the end of the file", "a record: it is truncated")
@@ -232,7 +274,7 @@ def _chunks(words: _Words, header: Header, max_points: int) -> Iterator[Streamli
                 f"{promised} streamlines, as the header (byte 988) promises",
             )
         rest = words.rest(position) if complete else 0
-        yield _streamlines(window, batch, header, {AFTER_LAST: rest} if rest else {})
+        yield _streamlines(window, batch, header, {AFTER_LAST: rest} if rest else {}, long)
         return
 
 

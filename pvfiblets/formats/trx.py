@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import finite, without_rows
+from pvfiblets.formats.scratch import is_long
 from pvfiblets.formats.trk_header import along_affine
 from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
@@ -202,16 +203,15 @@ class _Trx:
         dropped = {UNKNOWN: self.unknown} if self.unknown else {}
         for start, stop in list(blocks(offsets, max_points)) or [(0, 0)]:
             first, last = int(offsets[start]), int(offsets[stop])
+            long = last - first > max_points and is_long(last - first)  # one streamline
             if self.positions is None:
                 points = np.zeros((0, 3), np.float32)
             else:
-                raw = self.positions.take(first, last)
-                kind = np.float64 if raw.dtype.itemsize == 8 else np.float32
-                points = without_rows(raw, np.zeros(0, np.int64), kind)
+                points = _floats(self.positions.take(first, last, long=long), long)
             yield finite(
                 points,
                 np.diff(offsets[start : stop + 1]),
-                {k: e.flat(e.take(first, last)) for k, e in self.per_point.items()},
+                {k: e.flat(e.take(first, last, long=long), long=long) for k, e in self.per_point.items()},
                 dropped,
                 per_streamline={k: e.flat(e.take(start, stop)) for k, e in self.per_streamline.items()},
                 groups={k: v[(v >= start) & (v < stop)] - start for k, v in groups.items()},
@@ -220,6 +220,14 @@ class _Trx:
                 space=self.space,
             )
             dropped = {}
+
+
+def _floats(rows: Array, long: bool) -> Array:
+    """Points as float32 or float64; those of a very long streamline are as they are mapped, if they can be."""
+    kind = np.dtype(np.float64 if rows.dtype.itemsize == 8 else np.float32)
+    if long and rows.dtype == kind and rows.flags.aligned:
+        return rows
+    return without_rows(rows, np.zeros(0, np.int64), kind, long=long)
 
 
 @contextmanager

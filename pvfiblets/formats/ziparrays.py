@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.mapped import MappedFile
+from pvfiblets.formats.mapped import MappedFile, forget
+from pvfiblets.formats.scratch import scratch_array, scratch_bytes, spans
 from pvfiblets.memory import check_room
 
 Array = NDArray[Any]
@@ -27,6 +28,9 @@ _TYPES = {
 
 _DEFLATE_LIMIT = 1040
 """Deflate cannot compress by more than 1032 to 1: a larger promise is damage."""
+
+_PIECE = 1 << 24
+"""Bytes inflated at a time where they are not wanted, or go to disk."""
 
 _ZIP_ERRORS = (
     BadZipFile,
@@ -202,17 +206,26 @@ class ArrayEntry:
         self.close()
         return self.flat(self.take(0, self.rows))
 
-    def flat(self, rows: Array) -> Array:
-        """Copy rows to native order; one axis where there is one column."""
+    def flat(self, rows: Array, *, long: bool = False) -> Array:
+        """Copy rows to native order, on disk where they are `long`; one axis where there is one column."""
         native: Array
-        if rows.dtype == bool:
+        if long:
+            native = scratch_array(rows.shape, bool if rows.dtype == bool else rows.dtype.newbyteorder("="))
+            for a, b in spans(len(rows)):
+                native[a:b] = rows[a:b].view(np.uint8) != 0 if rows.dtype == bool else rows[a:b]
+                forget(native, a, b)
+                forget(rows, a, b)
+        elif rows.dtype == bool:
             native = rows.view(np.uint8) != 0  # a byte that is neither 0 nor 1 is true
         else:
             native = rows.astype(rows.dtype.newbyteorder("="))
         return native[:, 0] if self.columns == 1 else native
 
-    def take(self, first: int, last: int) -> Array:
-        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed."""
+    def take(self, first: int, last: int, *, long: bool = False) -> Array:
+        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed.
+
+        Inflated rows that are `long` lie on disk (:mod:`.scratch`).
+        """
         if self._info.compress_type == ZIP_STORED:
             return self._mapped(first, last)
         if self._stream is None or first < self._next:
@@ -220,10 +233,23 @@ class ArrayEntry:
             self._stream, self._next = self._home.open(self._info), 0
         stride = self.columns * self.dtype.itemsize
         with self._home.damage(self.position, self._info.filename):
-            self._read((first - self._next) * stride)
-            raw = self._read((last - first) * stride)
+            self._skip((first - self._next) * stride)
+            if long:
+                rows = self._inflated(last - first)
+            else:
+                rows = np.frombuffer(self._read((last - first) * stride), self.dtype).reshape(-1, self.columns)
         self._next = last
-        return np.frombuffer(raw, self.dtype).reshape(-1, self.columns)
+        return rows
+
+    def _skip(self, n: int) -> None:
+        for first, last in spans(n, _PIECE):
+            self._read(last - first)
+
+    def _inflated(self, n: int) -> Array:
+        size = n * self.columns * self.dtype.itemsize
+        return (
+            scratch_bytes(self._read(b - a) for a, b in spans(size, _PIECE)).view(self.dtype).reshape(-1, self.columns)
+        )
 
     def _read(self, n: int) -> bytes:
         assert self._stream is not None

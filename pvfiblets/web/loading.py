@@ -16,6 +16,7 @@ from typing import Any
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
+from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
@@ -195,6 +196,8 @@ class Files:
         kind = kind_of(place) if kind is None else kind
         source = Source(self.name(place))
         name = place.name
+        if kind in (*LINES, "tubes"):
+            check_ratio(place)
         if kind in LINES:
             return self._lines(place, source, name, watch)
         if kind == "tubes":
