@@ -126,8 +126,9 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
     elif result.get("error_mm"):
         lines += [
             "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
-            "         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()),
         ]
+        if math.isfinite(result["error_steps"]["max"]):  # else no segment has a length
+            lines.append("         " + ", ".join(f"{k} {v:.2g} steps" for k, v in result["error_steps"].items()))
         if result["points"] and math.isfinite(result["error_degrees"]["max"]):
             angles = ", ".join(f"{k} {v:.2g}°" for k, v in result["error_degrees"].items())
             lines.append(f"         directions: {angles}")
@@ -157,7 +158,10 @@ def readable(value: Any) -> str:
     if isinstance(value, int):
         return f"{value:,}"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        # Of points that are all one place, and of others as near: nobody reads a length of 300 zeros.
+        return "less than 1e-30" if 0.0 < abs(value) < 1e-30 else f"{value:.6g}"
+    if value is None:
+        return "none"
     if isinstance(value, dict):
         return ", ".join(f"{key} {readable(item)}" for key, item in value.items())
     if isinstance(value, list):

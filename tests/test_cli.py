@@ -386,3 +386,15 @@ def test_a_limit_of_memory_that_is_none_is_refused(tractogram, tmp_path, capsys)
     assert "'much' is no size of memory" in fails(capsys, "convert", tractogram[0], target, "--max-memory", "much")
     assert "are needed to begin with" in fails(capsys, "info", tractogram[0], "--max-memory", "5M")
     assert not target.exists()
+
+
+@pytest.mark.parametrize("points", [np.zeros((1, 3)), np.zeros((2, 3)), np.full((4, 3), 7.5), np.full((3, 3), 1e-310)])
+def test_sets_without_extent_are_told_in_sensible_numbers(points, tmp_path, capsys):
+    source, target = tmp_path / "a.trx", tmp_path / "a.fiblets"
+    formats.write(source, Streamlines(points, [0, len(points)]))
+    assert main(["convert", str(source), str(target), "--no-exact"]) == 0
+    assert main(["info", str(target)]) == 0
+    assert main(["verify", str(target), str(source)]) == 0
+    said = capsys.readouterr().out
+    assert not re.search(r"\bnan\b|\binf\b|None|e-[0-9]{3}", said), said
+    assert "less than 1e-30" in said or "promise_mm       0" in said or "e-" in said

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -77,7 +79,7 @@ def test_a_full_disk_is_told_with_what_is_free_and_leaves_the_old_file(lines, tm
     before = Path.open
     monkeypatch.setattr(Path, "open", lambda self, mode="r", *more, **named: (
         Full(before(self, mode, *more, **named), 100) if mode == "wb" else before(self, mode, *more, **named)))
-    with pytest.raises(OSError, match=r"no space is left for it \(free in .*MB\); make room there") as caught:
+    with pytest.raises(OSError, match=r"no space is left for it \(.*free in .*MB\); make room there") as caught:
         written(lines, path)
     assert (caught.value.errno, caught.value.filename) == (errno.ENOSPC, str(path))
     assert path.read_bytes() == b"old"
@@ -101,3 +103,28 @@ def test_errors_of_other_files_stay_as_they_are(tmp_path):
     with pytest.raises(OSError, match="is broken") as caught, naming_target(tmp_path / "out"):
         raise broken
     assert caught.value is broken
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit on the size of files")
+@pytest.mark.parametrize("name", ["a.trx", "a.tck", "a.fiblets"])
+def test_a_file_that_may_not_be_as_large_says_what_it_takes(name, tmp_path):
+    """In a process of its own, whose files may have 64 kB."""
+    code = """
+import resource, signal, sys
+from pvfiblets.cli import main
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, 1 << 16))
+sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))
+"""
+    from pvfiblets import formats
+    from pvfiblets.synthetic import brain_streamlines
+
+    formats.write(tmp_path / "source.trx", brain_streamlines(400, 1.0))
+    target = tmp_path / "made" / name
+    target.parent.mkdir()
+    command = [sys.executable, "-c", code, str(tmp_path / "source.trx"), str(target)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1, done.stdout
+    assert done.stderr.count("\n") == 1
+    assert f"{target}: it is larger than files may be here" in done.stderr
+    assert list(target.parent.iterdir()) == []

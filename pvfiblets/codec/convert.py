@@ -147,10 +147,11 @@ def compress_file(
         parameters = Parameters.of_resampled(found, promise, step)
     encoder = Encoder(parameters, effort, max_angle)
     folder = Path(target).resolve().parent
+    spooled = [0]
     with (
-        naming_target(target),
+        naming_target(target, lambda: 2 * spooled[0]),  # once in parts, once put together
         tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
-        closing(_Spool(Path(scratch))) as spool,  # before its folder goes, whatever happens
+        closing(_Spool(Path(scratch), spooled)) as spool,  # before its folder goes, whatever happens
     ):
         whole = _Whole(behind)
         for chunk in shown(chunks(), found.n_points, "compressing", progress):
@@ -344,8 +345,8 @@ class _Whole:
 class _Spool:
     """Arrays that grow on disk, because a zip's members need their shapes before their bytes."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, total: list[int]) -> None:
+        self._folder, self._total = folder, total
         self._streams: dict[str, IO[bytes]] = {}
         self._paths: dict[str, Path] = {}
         self._shapes: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {}
@@ -357,6 +358,7 @@ class _Spool:
             self._streams[name] = self._paths[name].open("ab")
         before = self._shapes[name][1][0] if name in self._shapes else 0
         self._shapes[name] = (rows.dtype, (before + len(rows), *rows.shape[1:]))
+        self._total[0] += rows.nbytes
         self._streams[name].write(np.ascontiguousarray(rows).tobytes())
 
     def add_empty(self, per_point: Sequence[str], bits: int, whole: _Whole) -> None:

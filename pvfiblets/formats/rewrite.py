@@ -8,6 +8,7 @@ from typing import Any
 
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
+from pvfiblets.whole_files import naming_target
 
 __all__ = ["rewrite"]
 
@@ -17,7 +18,7 @@ PIECE = 1 << 20  # points; larger pieces are no faster
 def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]:
     """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
-    with gathered(formats.iter_chunks(source, max_points), Path(target).resolve().parent) as streamlines:
+    with naming_target(target), gathered(formats.iter_chunks(source, max_points), Path(target).resolve().parent) as streamlines:
         lost = formats.write(target, streamlines)
         n_streamlines, n_points = len(streamlines), streamlines.n_points
         dropped = dict(streamlines.dropped)

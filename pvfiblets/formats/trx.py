@@ -314,7 +314,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
         "NB_VERTICES": streamlines.n_points,
         "NB_STREAMLINES": len(streamlines),
     }
-    with replacing(path) as file, ZipFile(file, "w", ZIP_STORED, allowZip64=True) as archive:
+    size = sum(values.nbytes for values in arrays.values())
+    with replacing(path, size) as file, ZipFile(file, "w", ZIP_STORED, allowZip64=True) as archive:
         archive.writestr("header.json", json.dumps(header))
         for name, values in arrays.items():
             with archive.open(name, "w", force_zip64=values.nbytes > 2**31 - 1) as target:
