@@ -18,7 +18,8 @@ PIECE = 1 << 20  # points; larger pieces are no faster
 def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]:
     """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
-    with naming_target(target), gathered(formats.iter_chunks(source, max_points), Path(target).resolve().parent) as streamlines:
+    folder = Path(target).resolve().parent
+    with naming_target(target), gathered(formats.iter_chunks(source, max_points), folder) as streamlines:
         lost = formats.write(target, streamlines)
         n_streamlines, n_points = len(streamlines), streamlines.n_points
         dropped = dict(streamlines.dropped)
