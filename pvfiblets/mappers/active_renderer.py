@@ -46,6 +46,9 @@ class ActiveRenderer:
                 "the mapper's actor is drawn but is in no renderer of the current window; "
                 "add the actor itself, not a copy of it"
             )
+        # A window of EGL's says that it is current even when another is.
+        rendering = [renderer for renderer in candidates if renderer.GetRenderWindow().CheckInRenderStatus()]
+        candidates = rendering or candidates
         if len(candidates) == 1:
             return candidates[0]
         for renderer in candidates:

@@ -154,6 +154,22 @@ def test_one_actor_in_two_windows_is_refused(make_plotter, plain, tools):
         mapper.raise_pending()
 
 
+def test_an_actor_that_is_added_to_a_later_window_is_refused_there(make_plotter, lines, tools):
+    """All windows of EGL's say that they are current: the first one's pixels were spoilt then, and nobody told."""
+    mapper, actor = lines.actor()
+    first = make_plotter()
+    first.add_actor(actor)
+    before = tools.picture(first, mapper)
+    second = make_plotter()
+    second.add_actor(actor)
+    with pytest.warns(RuntimeWarning, match="in one window only"):
+        second.show(auto_close=False)
+    with pytest.raises(RuntimeError, match="another FibletMapper"):
+        mapper.raise_pending()
+    second.remove_actor(actor)
+    assert np.array_equal(tools.picture(first, mapper), before)
+
+
 def test_closing_and_opening_again(make_plotter, lines, tools):
     mapper, actor = lines.actor()
     images = []
