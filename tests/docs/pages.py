@@ -21,6 +21,30 @@ from pvfiblets.synthetic import brain_streamlines
 pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
 """
 
+# An image, a surface of GIFTI, labels, and a session that was saved on the page of serve.
+SCENE = """
+import nibabel, numpy as np
+from pvfiblets.web import session
+from pvfiblets.web.scene import Scene
+affine = np.diag([12.0, 14.0, 12.0, 1.0])
+affine[:3, 3] = -80, -100, -60
+numbers = np.random.default_rng(0).integers(0, 120, (12, 12, 12)).astype(np.int16)
+nibabel.save(nibabel.Nifti1Image(numbers, affine), "t1.nii.gz")
+nibabel.save(nibabel.Nifti1Image(numbers % 20, affine), "atlas.nii.gz")
+ball = pv.Sphere(radius=50)
+arrays = [
+    nibabel.gifti.GiftiDataArray(np.asarray(ball.points, np.float32), "NIFTI_INTENT_POINTSET"),
+    nibabel.gifti.GiftiDataArray(ball.regular_faces.astype(np.int32), "NIFTI_INTENT_TRIANGLE"),
+]
+nibabel.save(nibabel.gifti.GiftiImage(darrays=arrays), "pial.gii")
+shown = pv.Plotter(off_screen=True, window_size=(200, 150))
+scene = Scene(shown, ".")
+scene.open("brain.trx")
+session.save(scene, "view.json")
+scene.close()
+shown.close()
+"""
+
 # Windows that a page gives no size are a quarter of the usual ones.
 SMALL = """
 import pyvista
@@ -54,7 +78,7 @@ ids = [1, 2, 3]
     "docs/index.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
-    "docs/reference/commands.md": BRAIN + """
+    "docs/reference/commands.md": BRAIN + SCENE + """
 pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
 """,
     "docs/density.md": BRAIN + """
@@ -90,7 +114,7 @@ with open("FreeSurferColorLUT.txt", "w") as table:
     "docs/halos.md": "",
     "docs/volumes.md": "",
     "docs/tutorial.md": "",
-    "docs/howto.md": BRAIN + """
+    "docs/howto.md": BRAIN + SCENE + """
 pvfiblets.write("big.tck", brain_streamlines(400, seed=1, fa=True))
 import nibabel, numpy as np
 pvfiblets.compress_file("big.tck", "brain.fiblets")
