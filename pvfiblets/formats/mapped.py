@@ -85,23 +85,26 @@ def forget(array: NDArray[Any], first: int, last: int) -> None:
     """Let go of the memory behind rows of a mapped array, or of a view of one; they stay readable.
 
     Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
-    and so are private maps (mode ``'c'``), whose changes are nowhere else. Give 0 for `first` where rows are read in
+    and so are private maps (mode ``'c'``), whose changes are nowhere else, and maps not of NumPy's that can be written
+    to, for they do not tell whether they are private. Give 0 for `first` where rows are read in
     order: reading a block brings back pages of the one before, and what is forgotten twice costs nothing.
     """
     owner: Any = array
     found: Any = None
+    mapped: mmap.mmap | None = None
     while owner is not None:  # the outermost map: views of it do not know where in it they begin
-        found = owner if isinstance(owner, (np.memmap, mmap.mmap)) else found
+        found = owner if isinstance(owner, np.memmap) else found
+        mapped = owner if isinstance(owner, mmap.mmap) else mapped
         owner = owner.obj if isinstance(owner, memoryview) else getattr(owner, "base", None)
-    if found is None or array.size == 0:
+    if mapped is None or array.size == 0:
         return
-    if isinstance(found, mmap.mmap):
-        mapped, start = found, 0
-        begin = np.frombuffer(found, np.uint8).__array_interface__["data"][0]
+    if found is None:
+        if not memoryview(mapped).readonly:
+            return
+        start, begin = 0, np.frombuffer(mapped, np.uint8).__array_interface__["data"][0]
     elif found.mode == "c":
         return
     else:
-        mapped = found._mmap  # noqa: SLF001  numpy has no other way to its map
         # The map begins at the page that holds the array's first byte.
         start, begin = found.offset % mmap.ALLOCATIONGRANULARITY, found.__array_interface__["data"][0]
     row = array.strides[0]

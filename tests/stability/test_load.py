@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import mmap
 import sys
 from pathlib import Path
 
@@ -124,3 +125,20 @@ def test_forgetting_keeps_changes_that_are_in_memory_only(tmp_path):
     forget(inside, 0, len(inside))
     assert (inside == 5.0).all()
     forget(np.arange(5.0), 0, 5)
+
+
+def test_forgetting_reads_anew_what_a_plain_map_only_reads(tmp_path):
+    np.arange(90_000.0).tofile(tmp_path / "a")
+    with (tmp_path / "a").open("r+b") as file:
+        for access, dropped in ((mmap.ACCESS_READ, True), (mmap.ACCESS_COPY, False)):
+            plain = mmap.mmap(file.fileno(), 0, access=access)
+            array = np.frombuffer(plain, "f8")
+            if access == mmap.ACCESS_COPY:
+                array[:] = -1.0
+            assert array.sum() != 0.0
+            forget(array[10:], 0, len(array) - 10)
+            if LINUX.args[0] is False:
+                assert (resident(tmp_path / "a") < 20_000) == dropped
+            assert (array == (np.arange(90_000.0) if dropped else -1.0)).all()
+            del array
+            plain.close()
