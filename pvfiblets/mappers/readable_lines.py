@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.scene import actors_in, items_of, to_array, world_planes
-from pvfiblets.mappers.windows import weak
+from pvfiblets.mappers.windows import contexts_with, weak
 
 __all__ = ["MOST_POINTS", "Readable", "readable"]
 
@@ -219,6 +219,7 @@ class Readable:
                 self.end_reading()
                 self._selected_from = self.readable_data(segments=True)  # pickers keep its address
                 self.begin_reading(self._selected_from, drawn="selection")
+                selector.AddObserver("EndEvent", _clear_errors(self))
 
     def readable_near(self, ray: Any, budget: int) -> vtkPolyData:  # noqa: ARG002 - of fiblets
         """Return lines for a picker: all of them, or if these are too many those near to its ray."""
@@ -266,6 +267,23 @@ def _follow(mapper: Any) -> Callable[[Any, str], None]:
             found._follow_selection(selector)  # noqa: SLF001 - this module's own
 
     return started
+
+
+def _clear_errors(mapper: Any) -> Callable[[Any, str], None]:
+    """Return an observer that drops the error of OpenGL which VTK leaves when its data become lines after triangles.
+
+    It binds a buffer that it has deleted (9.7, mappers of its own too); who asks next would take the error for his own.
+    """
+    follower = weak(mapper)
+
+    def ended(_selector: Any, _event: str) -> None:
+        found: Any = follower.Get()
+        for context in [] if found is None else contexts_with(found):
+            if context.alive:
+                context.window.MakeCurrent()
+                context.ctx.clear_errors()
+
+    return ended
 
 
 def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:

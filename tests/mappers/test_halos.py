@@ -398,15 +398,18 @@ def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
 
 
 @pytest.mark.parametrize(("row", "wanted"), [(100, 1), (110, 1), (150, 0)], ids=["line", "halo", "beside"])
-def test_vtk_selects_the_actor(make_plotter, tools, row, wanted):
+@pytest.mark.parametrize("alone", [True, False], ids=["actors", "cells"])
+def test_vtk_selects_the_actor(make_plotter, tools, row, wanted, alone):
+    """Actors where their picture is; cells where the line itself is."""
     mapper, actor = made(bar())
     plotter = shown(make_plotter, actor)
     tools.picture(plotter, mapper)
     selector = vtkHardwareSelector()
     selector.SetRenderer(plotter.renderer)
     selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
+    selector.SetActorPassOnly(alone)
     selector.SetArea(118, row - 2, 122, row + 2)
-    assert selector.Select().GetNumberOfNodes() == wanted
+    assert selector.Select().GetNumberOfNodes() == (wanted if alone else row == 100)
     mapper.raise_pending()
 
 
