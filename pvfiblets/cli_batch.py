@@ -30,7 +30,9 @@ def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, coun
         "--resume skips it. In paths {subject}, {session}, {stem}, {folder} and other parts of a FILE's BIDS name "
         "stand for themselves."
     )
-    operations = parser.add_subparsers(metavar="OPERATION", required=True, dest="operation")
+    operations = parser.add_subparsers(
+        metavar="OPERATION", required=True, dest="operation", help="what to do to each file"
+    )
     made = {name: operations.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
             for name, about in _ABOUT.items()}  # fmt: skip
     for name, sub in made.items():

@@ -163,6 +163,9 @@ class FibletMapper(CutMapper[EngineOptions]):
 
         return shown_points(self._drawn, self._filtering) * (SIDES if self._thickness > 0.0 else 1)
 
+    def _selects_lines(self) -> bool:
+        return self._thickness <= 0.0
+
     def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
         from pvfiblets.mappers.drawn_lines import shown_streamlines, thinned
 

@@ -64,6 +64,10 @@ class Readable:
         """Return how many points the real lines have; None where there are none, as of volumes."""
         return None
 
+    def _selects_lines(self) -> bool:
+        """Whether VTK's selection is to find lines, not the actor: of what is no wider than they are."""
+        return False
+
     def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
         """Return the real lines, with no more points than that."""
         raise NotImplementedError
@@ -205,7 +209,7 @@ class Readable:
             return
         if selector is None or selector.GetActorPassOnly() or selector.GetFieldAssociation() > _CELLS:
             self.end_reading()
-        elif self._drawn_by_vtk != "selection" and self._drawn is not None:
+        elif self._drawn_by_vtk != "selection" and self._drawn is not None and self._selects_lines():
             count = self._readable_points()
             if count is not None and count > MOST_POINTS:
                 warnings.warn(

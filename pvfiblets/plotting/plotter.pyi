@@ -108,8 +108,9 @@ class _AddRaycastVolume(Protocol):
     def __call__(
         self, source: RaycastVolumesSource, *, scalars: str | np.ndarray | None = None, spacing: Any = None,
         origin: Any = None, direction: Any = None, affine: Any = None, shape: Any = None, dtype: Any = None,
-        blending: str | None = None, resolution: Any = None, multi_colors: bool = False, mode: str = "composite",
-        values: float | Any = None, surface_opacity: float | Any = None, surface_color: Any = None,
+        blending: str | None = None, resolution: Any = None, multi_colors: bool = False,
+        categories: bool | int = False, preference: str | None = None, mode: str = "composite",
+        values: float | Any = None, surface_opacities: float | Any = None, surface_colors: Any = None,
         color: Any = None, cmap: Any = None, clim: Any = None, n_colors: int = 256, log_scale: bool = False,
         annotations: dict[float, str] | None = None, flip_scalars: bool = False,
         opacity: str | float | Any = "linear", opacity_unit_distance: float | None = None, thresholds: Any = None,

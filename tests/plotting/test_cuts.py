@@ -151,13 +151,17 @@ def test_planes_of_vtk_and_cuts_add_up_beyond_what_there_is_room_for(scene, brai
     assert (boxed != both).any(axis=2).mean() < 0.02
 
 
-def test_tubes_end_in_closed_faces_where_planes_cut(scene, brain):
+DETAILS = [0.5, pytest.param(0.0, marks=pytest.mark.xfail(strict=True, reason="joints of short segments close cuts"))]
+
+
+@pytest.mark.parametrize("detail", DETAILS)
+def test_tubes_end_in_closed_faces_where_planes_cut(scene, brain, detail):
     """A tube cut towards the eye shows a disc; its axis alone would leave it open."""
     line = np.column_stack([np.linspace(-60.0, 60.0, 121), np.zeros(121), np.zeros(121)])
     from pvfiblets import Streamlines
 
     fiblets = compress(Streamlines(line.astype(np.float32), np.array([0, 121])))
-    plotter, actor = scene(lines(fiblets, tube_radius=20.0))
+    plotter, actor = scene(lines(fiblets, tube_radius=20.0, detail=detail))
     plotter.camera_position = [(300.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     actor.clip(((-1.0, 0.0, 0.0), (10.0, 0.0, 0.0)))
     by_plane = (picture(plotter) != 255).any(axis=2)

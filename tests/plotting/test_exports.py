@@ -169,7 +169,7 @@ def test_fiblets_drawn_as_tubes_are_tubes(plotter, fiblets, tmp_path):
 
 def test_what_cannot_be_held_is_told(plotter, fiblets, tmp_path):
     plotter.add_fiblets(fiblets, scalars="density", show_scalar_bar=False)
-    plotter.add_raycast_volume(np.zeros((4, 4, 4)), name="brain")
+    plotter.add_raycast_volume(np.arange(64.0).reshape(4, 4, 4), name="brain")
     view, volume = (pytest.warns(UserWarning, match=said) for said in ("depends on the view", "lacks.*'brain'"))
     with view, volume:
         (lines,) = gltf(plotter, tmp_path)

@@ -356,9 +356,12 @@ def test_points_name_their_own_settings(stage):
 
 
 def test_empty_data_draw_nothing(stage):
-    lines = stage.add_halo_lines(HaloLines(np.zeros((0, 3)), [0]))
-    points = stage.add_halo_points(np.zeros((0, 3)))
-    single = stage.add_halo_lines([BAR[:1]])
+    with pytest.warns(UserWarning, match="no lines: nothing is drawn"):
+        lines = stage.add_halo_lines(HaloLines(np.zeros((0, 3)), [0]))
+    with pytest.warns(UserWarning, match="nothing is drawn"):
+        points = stage.add_halo_points(np.zeros((0, 3)))
+    with pytest.warns(UserWarning, match="no lines: nothing is drawn"):
+        single = stage.add_halo_lines([BAR[:1]])
     assert (shot(stage) == np.array(BACK)).all()
     assert replace(lines.look, n_tapered=0) == lines.look or lines.look.n_tapered == 2
     assert (points.look.line_width, single.look.line_width) > (0.0, 0.0)

@@ -351,7 +351,8 @@ def test_saved_selections_come_back(plotter, three_lines, tmp_path, suffix):
     back = pf.FibletSet.open(path).decompress() if suffix == "fiblets" else pf.read(path)
     expected = actor.fiblets.decompress([0, 2])
     assert len(back) == 2
-    assert np.abs(back.points - expected.points).max() < 1e-4
+    # Exported points are moved into the bounds of the original, by no more than coding moved them out.
+    assert np.abs(back.points - expected.points).max() < actor.fiblets.promise
     if suffix in ("fiblets", "trx"):
         assert np.asarray(back.per_streamline["weight"]).ravel().tolist() == [1.0, 100.0]
     with pytest.raises(UnknownFormatError, match="obj"):
