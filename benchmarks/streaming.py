@@ -36,6 +36,10 @@ import json, sys, time
 import numba
 from pvfiblets.cli_files import rewrite
 from pvfiblets.codec import convert, parameters
+from pvfiblets.codec.small_sets import STATES
+
+for state in STATES.values():
+    state.loaded = True  # kernels, whose memory would be taken for growth where they are loaded halfway
 
 def convert_one(source, target, chunk):
     if target.endswith(".fiblets"):
