@@ -18,6 +18,7 @@ def same(one, other):
 def type_(here, name, text):
     here.page.fill(f"[data-property={name}] input.pv-num", text)
     here.press("Tab")
+    here.page.evaluate("document.activeElement.blur()")  # the next field would take Control+z for itself
 
 
 def colour(here, name, value):
