@@ -52,7 +52,8 @@ def add_lines(plotter, points, width, pipeline):
 
 
 def add_line_tubes(plotter, points, width, pipeline, detail=0.5):
-    plotter.add_fiblets([points], pipeline=pipeline, detail=detail, **WHITE).tube_radius = width / 2.0
+    actor = plotter.add_fiblets([points], pipeline=pipeline, **WHITE)
+    actor.tube_radius, actor.detail = width / 2.0, detail
 
 
 def add_line_tubes_of_every_point(plotter, points, width, pipeline):
