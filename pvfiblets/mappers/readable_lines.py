@@ -223,7 +223,7 @@ class Readable:
                 self.end_reading()
                 self._selected_from = self.readable_data(segments=True)  # pickers keep its address
                 self.begin_reading(self._selected_from, drawn="selection")
-                selector.AddObserver("EndEvent", _clear_errors(self))
+                _clear_errors(self, selector)
 
     def readable_near(self, ray: Any, budget: int) -> vtkPolyData:  # noqa: ARG002 - of fiblets
         """Return lines for a picker: all of them, or if these are too many those near to its ray."""
@@ -273,21 +273,22 @@ def _follow(mapper: Any) -> Callable[[Any, str], None]:
     return started
 
 
-def _clear_errors(mapper: Any) -> Callable[[Any, str], None]:
-    """Return an observer that drops the error of OpenGL which VTK leaves when its data become lines after triangles.
+def _clear_errors(mapper: Any, selector: Any) -> None:
+    """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles.
 
     It binds a buffer that it has deleted (9.7, mappers of its own too); who asks next would take the error for his own.
     """
     follower = weak(mapper)
 
-    def ended(_selector: Any, _event: str) -> None:
+    def ended(ended_selector: Any, _event: str) -> None:
+        ended_selector.RemoveObserver(tag)  # pickers keep their selector, and select again
         found: Any = follower.Get()
         for context in [] if found is None else contexts_with(found):
             if context.alive:
                 context.window.MakeCurrent()
                 context.ctx.clear_errors()
 
-    return ended
+    tag = selector.AddObserver("EndEvent", ended)
 
 
 def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
