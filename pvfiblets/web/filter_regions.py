@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
-from pvfiblets.web.actions import Actions
+from pvfiblets.web.actions import LineActions
 from pvfiblets.web.cameras import NEAR
 from pvfiblets.web.controls import controls, moved, typed_value
 from pvfiblets.web.describe import typed
@@ -23,7 +23,7 @@ Row = dict[str, Any]
 PLACED = ("sphere", "box")
 
 
-class RegionActions(Actions):
+class RegionActions(LineActions):
     """The regions of the chosen layer of an application's scene."""
 
     # What is shown
@@ -77,14 +77,6 @@ class RegionActions(Actions):
         return Sight(self._app.plotter.camera, *self._app.plotter.window_size)
 
     # What is done
-
-    @property
-    def _layer(self) -> Any:
-        """The chosen layer, which must be of lines."""
-        page = self._app.page
-        if not page.chosen or page.chosen_kind not in LINES:
-            raise ValueError("choose a tractogram first")
-        return self._app.scene.layer(page.chosen)
 
     def add(self, kind: str) -> None:
         """Add a region in the middle of what is shown, or beside the last one."""

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.web.actions import Actions
+from pvfiblets.web.actions import LineActions
 from pvfiblets.web.charts import short, steps
 from pvfiblets.web.describe import Charts, typed
 from pvfiblets.web.document import LINES
 
 
-class FilterActions(Actions):
+class FilterActions(LineActions):
     """The filters of the chosen layer of an application's scene.
 
     Parameters
@@ -27,14 +27,6 @@ class FilterActions(Actions):
     def __init__(self, app: Any, charts: Charts) -> None:
         super().__init__(app)
         self._charts = charts
-
-    @property
-    def _layer(self) -> Any:
-        """The chosen layer, which must be of lines."""
-        page = self._app.page
-        if not page.chosen or page.chosen_kind not in LINES:
-            raise ValueError("choose a tractogram first")
-        return self._app.scene.layer(page.chosen)
 
     # What is shown
 
