@@ -39,7 +39,6 @@ __all__ = [
     "room",
     "shown",
     "taken",
-    "unlimit",
     "within",
 ]
 
@@ -143,13 +142,6 @@ def limit(size: int) -> None:
     if hardest != resource.RLIM_INFINITY:
         size = min(size, hardest)
     resource.setrlimit(resource.RLIMIT_DATA, (size, hardest))
-
-
-def unlimit(size: int | None) -> None:
-    """Set the limit that :func:`limit` lowered to some bytes again, or take it away, as far as the system allows it."""
-    assert resource is not None
-    hardest = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    resource.setrlimit(resource.RLIMIT_DATA, (hardest if size is None else size, hardest))
 
 
 @contextmanager

@@ -131,10 +131,6 @@ def _bounded(size: int | None) -> Iterator[None]:
         return
     import pyarrow  # noqa: F401, ICN001 - which reserves a gigabyte that it does not use: before that is looked at
 
-    before = memory.limited_to()
     # What is reserved and not used is in nobody's way, and counts for the system all the same.
-    memory.limit(max(memory.taken() - memory.resident(), 0) + size)
-    try:
+    with memory.limited(max(memory.taken() - memory.resident(), 0) + size):
         yield
-    finally:
-        memory.unlimit(before)
