@@ -10,21 +10,18 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from importlib import import_module
 
 from pvfiblets.cli_batch import add_options as add_batch_options
+from pvfiblets.cli_memory import add_memory_option, held_to
 from pvfiblets.cli_scene import add_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
-from pvfiblets.errors import EXPECTED, FibletsError, sentence
+from pvfiblets.errors import EXPECTED, sentence
 
 # Those of pvfiblets.plotting.fiblets.looks, without loading it.
 LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
-
-HALF = "50%"
-LEAST_MEMORY = 256 << 20
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -57,44 +54,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         print(f"pvfiblets: {sentence(error)}", file=sys.stderr)
         return 1
-
-
-@contextmanager
-def held_to(most: str | None) -> Iterator[None]:
-    """Let this process have as much memory meanwhile as ``--max-memory`` says; half of the machine's by default.
-
-    Raises
-    ------
-    FibletsError
-        If more was needed, or hardly any is left to begin with.
-    ValueError
-        If it says no size.
-    """
-    from pvfiblets import memory
-
-    if most is None:
-        yield
-        return
-    chosen = most != HALF
-    if not memory.CAN_LIMIT:
-        if chosen:
-            raise FibletsError("--max-memory: only Linux can hold a program to a limit; leave it out")
-        yield
-        return
-    size = memory.parse(most) if chosen or memory.of_machine() else None
-    if size is not None and size < (least := memory.taken() + LEAST_MEMORY):
-        raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to begin with; give as much or more")
-    try:
-        with memory.limited(size):
-            yield
-    except MemoryError as error:
-        if size is None:
-            raise
-        why = f" ({' '.join(str(error).split())})" if str(error) else ""
-        raise FibletsError(
-            f"this takes more memory than the {memory.shown(size)} of --max-memory{why}; give it more, or convert the "
-            "file to .trx, .trk or .tck where memory suffices: these are read in parts"
-        ) from error
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -151,7 +110,7 @@ def make_parser() -> argparse.ArgumentParser:
         "an option of coding is given, or if coding would take more bytes)",
     )
     _quiet_and_json(convert)
-    _memory(convert)
+    add_memory_option(convert)
     convert.set_defaults(run="pvfiblets.cli_files:convert")
 
     info = commands.add_parser(
@@ -161,7 +120,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     info.add_argument("path", metavar="FILE", help="a tractogram of any format")
     _json(info)
-    _memory(info)
+    add_memory_option(info)
     info.set_defaults(run="pvfiblets.cli_files:info")
 
     verify = commands.add_parser(
@@ -182,7 +141,7 @@ def make_parser() -> argparse.ArgumentParser:
         help=f"say whether directions are within this angle (default: {DEFAULT_ANGLE:g})",
     )
     _quiet_and_json(verify)
-    _memory(verify)
+    add_memory_option(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
 
     _density(commands.add_parser("density", help="write a volume of how many streamlines pass each voxel, or of more"))
@@ -211,7 +170,7 @@ def make_parser() -> argparse.ArgumentParser:
         help="of a pair's numbers (default: sum of counts, else mean)",
     )
     _json(matrix)
-    _memory(matrix)
+    add_memory_option(matrix)
     matrix.set_defaults(run="pvfiblets.cli_connectome:connectome")
 
     table = commands.add_parser(
@@ -223,7 +182,7 @@ def make_parser() -> argparse.ArgumentParser:
     table.add_argument("source", metavar="IN", help="a tractogram of any format")
     table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
     table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
-    _memory(table)
+    add_memory_option(table)
     table.set_defaults(run="pvfiblets.cli_files:table")
 
     batch = commands.add_parser("batch", help="do one of these to each file of a cohort, on all cores or on a cluster")
@@ -306,16 +265,6 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _memory(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--max-memory",
-        default=HALF,
-        metavar="SIZE",
-        help="most memory it may take, such as 4G or 25%% of this machine's (default: 50%%); files are read in parts, "
-        "and lines of millions of points lie on disk meanwhile, where TMPDIR says",
-    )
-
-
 def _json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
 
@@ -349,7 +298,7 @@ def _density(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--ends-only", action="store_true", help="count end points instead")
     _quiet_and_json(parser)
-    _memory(parser)
+    add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli_density:density")
 
 
