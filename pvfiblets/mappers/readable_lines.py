@@ -64,6 +64,12 @@ class Readable:
         """Return how many points the real lines have; None where there are none, as of volumes."""
         return None
 
+    def _points_to_read(self) -> int | None:
+        """Return the same of what is connected as well, which VTK may not have asked for yet."""
+        if self._drawn is None and self._input is not None:
+            self._input.Update()
+        return None if self._drawn is None else self._readable_points()
+
     def _selects_lines(self) -> bool:
         """Whether VTK's selection is to find lines, not the actor: of what is no wider than they are."""
         return False
@@ -147,9 +153,7 @@ class Readable:
             Lines, surfaces of tubes, or vertices, in data coordinates, with the number of the streamline, tube or
             point as cell data ``'streamline'``.
         """
-        if self._drawn is None and self._input is not None:
-            self._input.Update()
-        count = None if self._drawn is None else self._readable_points()
+        count = self._points_to_read()
         if count is None:
             return vtkPolyData()
         budget = count if budget is None else budget
@@ -328,10 +332,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
     """
     actors = [actor for actor in _actors_of(window) if isinstance(actor.GetMapper(), Readable)]
     mappers = [(actor, actor.GetMapper()) for actor in actors if not actor.GetMapper().is_readable]
-    for _, mapper in mappers:
-        if mapper._drawn is None and mapper._input is not None:  # noqa: SLF001 - this module's own, as below
-            mapper._input.Update()  # noqa: SLF001
-    counts = [None if m._drawn is None else m._readable_points() for _, m in mappers]  # noqa: SLF001
+    counts = [mapper._points_to_read() for _, mapper in mappers]  # noqa: SLF001 - this module's own
     total = sum(count or 0 for count in counts)
     with ExitStack() as undo:
         for (_, mapper), count in zip(mappers, counts, strict=True):
@@ -347,7 +348,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
 def readable_mapper(mapper: Any) -> Iterator[None]:
     """Let VTK's code read what one mapper shows, as often as it likes."""
     data = mapper.readable_data(colours=True)
-    count = mapper._readable_points() if mapper._drawn is not None else 0  # noqa: SLF001
+    count = mapper._points_to_read()  # noqa: SLF001 - this module's own
     _tell([(mapper.actor, mapper)] if count is None else [], count or 0, MOST_POINTS, [(mapper.actor, mapper)])
     mapper.begin_reading(data)
     try:

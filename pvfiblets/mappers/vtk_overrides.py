@@ -66,7 +66,7 @@ def _begin(picker: Any, _event: str) -> None:
     for mapper in _mappers(picker):
         if mapper._drawn_by_vtk == "selection":  # noqa: SLF001 - until the next picture
             mapper.end_reading()
-        if not mapper.is_readable and mapper._readable_points() is not None:  # noqa: SLF001
+        if not mapper.is_readable and mapper._points_to_read() is not None:  # noqa: SLF001
             looked_at.append(mapper.readable_near(_ray(picker, mapper), MOST_POINTS))
             mapper.begin_reading(looked_at[-1])
     picker.looked_at = looked_at  # of what its GetDataSet() returns it keeps an address only
