@@ -12,6 +12,7 @@ Four rules live here:
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 from collections import defaultdict
@@ -94,6 +95,13 @@ def usual_limits(monkeypatch):
         monkeypatch.setattr(limits, name, value)
 
 
+def current_context() -> int | None:
+    """Return the handle of EGL's current context."""
+    look_up = ctypes.CDLL("libEGL.so.1").eglGetCurrentContext
+    look_up.restype = ctypes.c_void_p
+    return look_up()
+
+
 class _Headless:
     """One headless context for all tests, made anew when VTK has taken its display away by closing a window."""
 
@@ -105,22 +113,19 @@ class _Headless:
     def _make(self):
         self._context = self._moderngl.create_standalone_context(require=430, backend="egl")
         assert self._context.info["GL_VERSION"]  # read once, and kept: while it is current
+        self._handle = current_context()
         return self._context
 
     def context(self, module):
         """Return it alive; `module` is the test's, whose predecessors' windows are gone for good first."""
-        from pvfiblets.engine.errors import EngineError
-        from pvfiblets.engine.gl_loader import loader
-
         if module is not self._module:  # a window that the garbage collector finds later takes the display away then
             gc.collect()
             self._module = module
         with self._context:  # never within another `with` of it: leaving the inner one leaves none current
-            try:
-                loader()
-            except EngineError:  # nothing became current: its display is gone, and all that it held
-                return self._make()
-        return self._context
+            if current_context() == self._handle:
+                return self._context
+        # Its display is gone, and all that it held: nothing became current, or another context stayed so.
+        return self._make()
 
 
 @pytest.fixture(scope="session")
