@@ -19,13 +19,17 @@ FOLDER = ROOT / "benchmarks"
 @contextlib.contextmanager
 def imported(**names: str) -> Iterator[SimpleNamespace]:
     """Give modules of the benchmarks, by other names, and forget all of that folder afterwards."""
+    stems = [path.stem for path in FOLDER.glob("*.py")]
+    # Folders of tests, such as tests/volumes, have the names of some.
+    others = {stem: sys.modules.pop(stem) for stem in stems if stem in sys.modules}
     sys.path.insert(0, str(FOLDER))
     try:
         yield SimpleNamespace(**{key: importlib.import_module(name) for key, name in names.items()})
     finally:
         sys.path.remove(str(FOLDER))
-        for path in FOLDER.glob("*.py"):
-            sys.modules.pop(path.stem, None)
+        for stem in stems:
+            sys.modules.pop(stem, None)
+        sys.modules.update(others)
 
 
 def run(folder: Path, script: str, *arguments: object) -> tuple[Path, dict]:
