@@ -51,13 +51,13 @@ class PaneEvents:
         self._typed: str | None = None
         self._tags: list[int] = []
         for button in ("Left", "Middle", "Right"):
-            self._listen(f"{button}ButtonPressEvent", getattr(self, f"_press_{button.lower()}"))
-            self._listen(f"{button}ButtonReleaseEvent", self._release)
-        self._listen("MouseMoveEvent", self._move)
-        self._listen("MouseWheelForwardEvent", lambda: self._wheel(1))
-        self._listen("MouseWheelBackwardEvent", lambda: self._wheel(-1))
-        self._listen("KeyPressEvent", self._key)
-        self._listen("CharEvent", self._char)
+            self._listen(f"{button}ButtonPressEvent", getattr(PaneEvents, f"_press_{button.lower()}"))
+            self._listen(f"{button}ButtonReleaseEvent", PaneEvents._release)
+        self._listen("MouseMoveEvent", PaneEvents._move)
+        self._listen("MouseWheelForwardEvent", PaneEvents._wheel_forward)
+        self._listen("MouseWheelBackwardEvent", PaneEvents._wheel_backward)
+        self._listen("KeyPressEvent", PaneEvents._key)
+        self._listen("CharEvent", PaneEvents._char)
         reference = weakref.WeakMethod(self._clicked)
 
         def clicked(corners: np.ndarray, click: bool, mode: str) -> None:
@@ -69,17 +69,14 @@ class PaneEvents:
             plotter, mode="click", button="left", found=clicked, hovered=None, color="white", start=False
         )
 
-    def _listen(self, event: str, handler: Callable[[], bool]) -> None:
-        """Call a handler; where it returns True nobody else hears of the event."""
+    def _listen(self, event: str, handler: Callable[[PaneEvents], bool]) -> None:
+        """Call a handler for as long as this is alive; where it returns True nobody else hears of the event."""
         alive = weakref.ref(self)
-        name = getattr(handler, "__func__", None)
         held: list[int] = []
 
         def call(interactor: Any, _event: str) -> None:
             there = alive()
-            if there is None:
-                return
-            if name(there) if name is not None else handler():
+            if there is not None and handler(there):
                 interactor.GetCommand(held[0]).SetAbortFlag(1)
 
         held.append(self._interactor.AddObserver(event, call, PRIORITY))
@@ -160,6 +157,12 @@ class PaneEvents:
         width = (high - low) * 2.0 ** (right / WINDOWED)
         middle = 0.5 * (low + high) - (high - low) * up / WINDOWED  # upwards brightens
         layer.clim = middle - 0.5 * width, middle + 0.5 * width
+
+    def _wheel_forward(self) -> bool:
+        return self._wheel(1)
+
+    def _wheel_backward(self) -> bool:
+        return self._wheel(-1)
 
     def _wheel(self, way: int) -> bool:
         pane = self._pane()
