@@ -10,7 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ORIENTATIONS", "PlaneGrid", "covered", "grid_of", "letters", "nearest_frame", "plane_axes"]
+__all__ = [
+    "ORIENTATIONS", "PlaneGrid", "checked_frame", "checked_position", "covered", "grid_of", "letters", "nearest_frame",
+    "plane_axes", "turned",
+]  # fmt: skip
 
 Array = npt.NDArray[np.float64]
 
@@ -150,3 +153,43 @@ def letters(direction: Array) -> str:
     ]
     parts.sort(key=lambda part: -part[0])
     return "".join(letter for size, letter in parts if size > 0.2 * parts[0][0])
+
+
+def checked_position(name: str, given: Any) -> Array:
+    """Return three finite numbers."""
+    try:
+        found = np.array(given, np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if found.shape != (3,) or not np.isfinite(found).all():
+        raise ValueError(f"{name} is {given!r}; give three finite numbers")
+    return found
+
+
+def checked_frame(given: Any) -> Array:
+    """Return three unit directions at right angles, right-handed, as columns."""
+    try:
+        found = np.array(given, np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    good = found.shape == (3, 3) and np.isfinite(found).all()
+    if not good or abs(found.T @ found - np.eye(3)).max() > 1e-4 or np.linalg.det(found) < 0.0:
+        raise ValueError(
+            f"axes is {given!r}; give a (3, 3) rotation whose columns point to the right, to the front and up, in mm"
+        )
+    return found
+
+
+def turned(axes: tuple[Array, Array], normal: Any) -> tuple[Array, Array]:
+    """Return two directions of a plane turned, by the least angle, until they stand at right angles to a normal."""
+    n = checked_position("normal", normal)
+    length = float(np.linalg.norm(n))
+    if length == 0.0:
+        raise ValueError("normal is (0, 0, 0); give a direction")
+    n = n / length
+    along, up = axes
+    flat = along - n * float(n @ along)
+    if np.linalg.norm(flat) < 1e-3:  # it points along the slice: its other direction decides
+        flat = np.cross(up, n)
+    flat = flat / np.linalg.norm(flat)
+    return flat, np.cross(n, flat)

@@ -20,7 +20,8 @@ from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
 if TYPE_CHECKING:
     from os import PathLike
 
-    from pvfiblets.plotting.slices.stack import SlicePlane, SliceStack
+    from pvfiblets.plotting.slices.plane import SlicePlane
+    from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.plotting.slices.workspace import Workspace
     from pvfiblets.slices.image import SliceImage
 

@@ -13,10 +13,22 @@ from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkTexture
 
+from pvfiblets.slices.frames import checked_position, covered, grid_of, plane_axes, turned
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["SliceActor", "before_render"]
+__all__ = ["SliceActor", "SlicePlane", "before_render"]
+
+Array = npt.NDArray[np.float64]
+
+OVERSAMPLED = 2
+"""Pixels of a slice in the 3-D view along the finest voxel of all layers."""
+MOST_ACROSS = 768
+"""Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
 
 _DISCARD = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
 
@@ -77,6 +89,103 @@ class SliceActor(pv.Actor):
     def pixels(self) -> npt.NDArray[np.uint8] | None:
         """``(height, width, 4)`` uint8: the colours that it shows, the lowest row first; None before the first."""
         return None if self._pixels is None else self._pixels.copy()
+
+
+class SlicePlane:
+    """One of the planes of a stack.
+
+    Attributes
+    ----------
+    name : str
+    actor : SliceActor
+    """
+
+    def __init__(self, stack: SliceStack, name: str, axes: tuple[Array, Array] | None = None) -> None:
+        self._stack = weakref.proxy(stack)
+        self._axes = axes
+        self._grid: PlaneGrid | None = None
+        self._stale = True
+        self._visible = True
+        self.name = name
+        self.renderer: Any = None
+        self._origin: Array | None = None
+        self.actor = SliceActor()
+        self._end: Callable[[], None] = lambda: None
+
+    @property
+    def axes(self) -> tuple[Array, Array]:
+        """Unit directions along and up the slice, ``(3,)`` each."""
+        return plane_axes(self._stack.frame, self.name) if self._axes is None else self._axes
+
+    @property
+    def normal(self) -> Array:
+        """Unit direction across the slice; setting it turns the plane about the stack's position."""
+        along, up = self.axes
+        return np.cross(along, up)
+
+    @normal.setter
+    def normal(self, normal: Any) -> None:
+        self._axes = turned(self.axes, normal)
+        self.update()
+
+    @property
+    def origin(self) -> Array:
+        """``(3,)`` mm: a point of the plane; the stack's position, unless it is set."""
+        return self._stack.position if self._origin is None else self._origin.copy()
+
+    @origin.setter
+    def origin(self, origin: Any) -> None:
+        self._origin = None if origin is None else checked_position("origin", origin)
+        self.update()
+
+    def place(self) -> tuple[Array, Array] | None:
+        """Return a point of the plane and its normal; None where it is not shown."""
+        return (self.origin, self.normal) if self._visible and self._grid is not None else None
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is shown."""
+        return self._visible
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
+        self._visible = bool(visible)
+        self.update()
+
+    @property
+    def grid(self) -> PlaneGrid | None:
+        """Pixels of the slice; None where the plane misses all images."""
+        return self._grid
+
+    def update(self) -> None:
+        """Lie where the stack's position is; colours follow with the next render."""
+        stack, (along, up) = self._stack, self.axes
+        layers = [layer for layer in stack.layers if layer.visible]
+        origin = self.origin
+        bounds = covered((layer.image.corners for layer in layers), origin, along, up)
+        self._grid = None
+        if bounds is not None:
+            pixel = min(float(layer.image.voxel_size.min()) for layer in layers) / OVERSAMPLED
+            pixel = max(pixel, float(max(bounds[1] - bounds[0], bounds[3] - bounds[2])) / MOST_ACROSS)
+            self._grid = grid_of(bounds, origin, along, up, pixel)
+            self.actor.place(self._grid)
+        self.actor.visibility = self._visible and self._grid is not None
+        self._stale = True
+
+    def refresh(self) -> None:
+        """Make the colours if they are out of date and the plane is shown."""
+        if self._stale and self._grid is not None and self._visible:
+            self.actor.show(self._stack.pixels(self._grid), self._stack.smooth)
+            self._stale = False
+
+    def enter(self, renderer: Any) -> None:
+        """Follow a renderer's frames."""
+        self.renderer = renderer
+        self._end = before_render(renderer, self, "refresh")
+
+    def leave(self) -> None:
+        """Follow them no more."""
+        self._end()
 
 
 def before_render(renderer: Any, owner: Any, method: str) -> Any:

@@ -12,121 +12,20 @@ import numpy.typing as npt
 
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.slices.layer import SliceLayer
-from pvfiblets.plotting.slices.plane import SliceActor, before_render
+from pvfiblets.plotting.slices.plane import SlicePlane
 from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.slices import colours
-from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, covered, grid_of, nearest_frame, plane_axes
+from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, checked_frame, checked_position, nearest_frame, turned
 from pvfiblets.slices.image import as_slice_image
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.slices.glyph_set import GlyphSet
 
-__all__ = ["MOST_LAYERS", "SlicePlane", "SliceStack"]
+__all__ = ["MOST_LAYERS", "SliceStack"]
 
 Array = npt.NDArray[np.float64]
 
 MOST_LAYERS = 8
-OVERSAMPLED = 2
-"""Pixels of a slice in the 3-D view along the finest voxel of all layers."""
-MOST_ACROSS = 768
-"""Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
-
-
-class SlicePlane:
-    """One of the planes of a stack.
-
-    Attributes
-    ----------
-    name : str
-    actor : SliceActor
-    """
-
-    def __init__(self, stack: SliceStack, name: str, axes: tuple[Array, Array] | None = None) -> None:
-        self._stack = weakref.proxy(stack)
-        self._axes = axes
-        self._grid: PlaneGrid | None = None
-        self._stale = True
-        self._visible = True
-        self.name = name
-        self.renderer: Any = None
-        self._origin: Array | None = None
-        self.actor = SliceActor()
-        self._end: Callable[[], None] = lambda: None
-
-    @property
-    def axes(self) -> tuple[Array, Array]:
-        """Unit directions along and up the slice, ``(3,)`` each."""
-        return plane_axes(self._stack.frame, self.name) if self._axes is None else self._axes
-
-    @property
-    def normal(self) -> Array:
-        """Unit direction across the slice; setting it turns the plane about the stack's position."""
-        along, up = self.axes
-        return np.cross(along, up)
-
-    @normal.setter
-    def normal(self, normal: Any) -> None:
-        self._axes = turned(self.axes, normal)
-        self.update()
-
-    @property
-    def origin(self) -> Array:
-        """``(3,)`` mm: a point of the plane; the stack's position, unless it is set."""
-        return self._stack.position if self._origin is None else self._origin.copy()
-
-    @origin.setter
-    def origin(self, origin: Any) -> None:
-        self._origin = None if origin is None else checked_position("origin", origin)
-        self.update()
-
-    def place(self) -> tuple[Array, Array] | None:
-        """Return a point of the plane and its normal; None where it is not shown."""
-        return (self.origin, self.normal) if self._visible and self._grid is not None else None
-
-    @property
-    def visible(self) -> bool:
-        """Whether it is shown."""
-        return self._visible
-
-    @visible.setter
-    def visible(self, visible: bool) -> None:
-        self._visible = bool(visible)
-        self.update()
-
-    @property
-    def grid(self) -> PlaneGrid | None:
-        """Pixels of the slice; None where the plane misses all images."""
-        return self._grid
-
-    def update(self) -> None:
-        """Lie where the stack's position is; colours follow with the next render."""
-        stack, (along, up) = self._stack, self.axes
-        layers = [layer for layer in stack.layers if layer.visible]
-        origin = self.origin
-        bounds = covered((layer.image.corners for layer in layers), origin, along, up)
-        self._grid = None
-        if bounds is not None:
-            pixel = min(float(layer.image.voxel_size.min()) for layer in layers) / OVERSAMPLED
-            pixel = max(pixel, float(max(bounds[1] - bounds[0], bounds[3] - bounds[2])) / MOST_ACROSS)
-            self._grid = grid_of(bounds, origin, along, up, pixel)
-            self.actor.place(self._grid)
-        self.actor.visibility = self._visible and self._grid is not None
-        self._stale = True
-
-    def refresh(self) -> None:
-        """Make the colours if they are out of date and the plane is shown."""
-        if self._stale and self._grid is not None and self._visible:
-            self.actor.show(self._stack.pixels(self._grid), self._stack.smooth)
-            self._stale = False
-
-    def enter(self, renderer: Any) -> None:
-        """Follow a renderer's frames."""
-        self.renderer = renderer
-        self._end = before_render(renderer, self, "refresh")
-
-    def leave(self) -> None:
-        """Follow them no more."""
-        self._end()
 
 
 class SliceStack:
@@ -443,43 +342,3 @@ class SliceStack:
         removal, self._removal = self._removal, None
         if removal is not None:
             removal(self)
-
-
-def checked_position(name: str, given: Any) -> Array:
-    """Return three finite numbers."""
-    try:
-        found = np.array(given, np.float64)
-    except (TypeError, ValueError):
-        found = np.zeros(0)
-    if found.shape != (3,) or not np.isfinite(found).all():
-        raise ValueError(f"{name} is {given!r}; give three finite numbers")
-    return found
-
-
-def checked_frame(given: Any) -> Array:
-    """Return three unit directions at right angles, right-handed, as columns."""
-    try:
-        found = np.array(given, np.float64)
-    except (TypeError, ValueError):
-        found = np.zeros(0)
-    good = found.shape == (3, 3) and np.isfinite(found).all()
-    if not good or abs(found.T @ found - np.eye(3)).max() > 1e-4 or np.linalg.det(found) < 0.0:
-        raise ValueError(
-            f"axes is {given!r}; give a (3, 3) rotation whose columns point to the right, to the front and up, in mm"
-        )
-    return found
-
-
-def turned(axes: tuple[Array, Array], normal: Any) -> tuple[Array, Array]:
-    """Return two directions of a plane turned, by the least angle, until they stand at right angles to a normal."""
-    n = checked_position("normal", normal)
-    length = float(np.linalg.norm(n))
-    if length == 0.0:
-        raise ValueError("normal is (0, 0, 0); give a direction")
-    n = n / length
-    along, up = axes
-    flat = along - n * float(n @ along)
-    if np.linalg.norm(flat) < 1e-3:  # it points along the slice: its other direction decides
-        flat = np.cross(up, n)
-    flat = flat / np.linalg.norm(flat)
-    return flat, np.cross(n, flat)
