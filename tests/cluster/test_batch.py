@@ -249,7 +249,11 @@ def test_an_interrupt_leaves_nothing_half(cohort, tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "pvfiblets", "batch", "convert", str(tmp_path / "in" / "*" / "a.trx"), "-o",
                str(out), "--workers", "2", "--no-exact"]  # fmt: skip
-    running = subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True)
+    running = subprocess.Popen(
+        command, start_new_session=True, stderr=subprocess.PIPE, text=True,
+        # A shell starts what it runs in the background deaf to interrupts, and that is handed on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # fmt: skip
     deadline = time.monotonic() + 120
     while not (out / "convert.jsonl").exists() or not (out / "convert.jsonl").read_bytes():
         assert time.monotonic() < deadline
