@@ -95,17 +95,7 @@ class Confined:
 
     def uploaded(self, name: str, suffixes: tuple[str, ...]) -> Path:
         """Return the path for an upload, as :meth:`writable` does; the name is one that every page can show."""
-        if len(name.encode("utf-8", "surrogatepass")) > LONGEST_NAME:
-            raise ConfinedError(f"the file's name is longer than {LONGEST_NAME} bytes; choose a shorter one")
-        if (
-            not name.isprintable() or name.startswith((".", " ")) or set(name) & UNSUITABLE
-            or name.partition(".")[0].strip().upper() in RESERVED
-        ):  # fmt: skip
-            raise ConfinedError(
-                "the file's name begins with a dot or a blank, is reserved, or has control characters, slashes or one "
-                'of < > : " | ? * & in it; choose a plain one'
-            )
-        return self.writable(name, suffixes)
+        return self.writable(check_name(name), suffixes)
 
     def relative(self, path: Path) -> str:
         """Return how browsers name a path under the root."""
@@ -132,3 +122,24 @@ class Confined:
                 continue
         entries.sort(key=lambda entry: (not entry.folder, entry.name.lower()))
         return entries[:LISTED]
+
+
+def check_name(name: str) -> str:
+    """Return the name of a file without a folder, if it is one that every system and page can show.
+
+    Raises
+    ------
+    ConfinedError
+        If it is too long, hidden, reserved, or has characters in it that some systems or pages take for others.
+    """
+    if len(name.encode("utf-8", "surrogatepass")) > LONGEST_NAME:
+        raise ConfinedError(f"the file's name is longer than {LONGEST_NAME} bytes; choose a shorter one")
+    if (
+        not name.isprintable() or name.startswith((".", " ")) or set(name) & UNSUITABLE
+        or name.partition(".")[0].strip().upper() in RESERVED
+    ):  # fmt: skip
+        raise ConfinedError(
+            "the file's name begins with a dot or a blank, is reserved, or has control characters, slashes or one "
+            'of < > : " | ? * & in it; choose a plain one'
+        )
+    return name

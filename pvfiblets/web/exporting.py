@@ -12,13 +12,19 @@ import tempfile
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from pvfiblets.web.actions import Actions
+from pvfiblets.web.confined import check_name
 from pvfiblets.web.document import LINES
 from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.options import MEBIBYTE
+from pvfiblets.web.originals import Original, original_of
 from pvfiblets.web.writing import EXPORTS, write
+
+if TYPE_CHECKING:
+    from pvfiblets.web.loading import Cancel, Progress
 
 __all__ = ["ExportActions"]
 
@@ -35,6 +41,23 @@ class _File:
     path: Path
     name: str
     temporary: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """What is exported, and where it came from, or why that is not to be had."""
+
+    fiblets: Any
+    ids: Any
+    original: Original | None
+    why: str
+
+    def told(self, error: float) -> str:
+        """Return a sentence on how true the points are."""
+        if error:
+            because = f"{self.why}, so " if self.why else ""
+            return f"{because}points are coded, within {error:.3g} mm of the source's"
+        return "points are exactly the source's"
 
 
 class ExportActions(Actions):
@@ -58,20 +81,37 @@ class ExportActions(Actions):
         points = fiblets.n_points * len(ids) // max(fiblets.n_streamlines, 1)
         if to == "computer" and suffix != ".fiblets" and points * BYTES_PER_POINT > LARGEST:
             raise ValueError(f"about {points:,} points are too many to fetch; save the file in the served folder")
-        stem = re.sub(r"[^\w-]+", "_", layer.name.partition(".")[0], flags=re.ASCII).strip("_") or "streamlines"
-        stem = f"{stem[:80]}_{what}" if what != "all" else stem[:80]
-        app.later(self._write(fiblets, ids, stem, suffix, temporary=to == "computer"))
+        stem = self._stem(layer, what, suffix)
+        original, why = original_of(app.scene, layer, ids)
+        held = _Held(fiblets, ids, original, why)
+        app.later(self._write(held, stem, suffix, temporary=to == "computer"))
 
-    async def _write(self, fiblets: Any, ids: Any, stem: str, suffix: str, *, temporary: bool) -> None:
+    def _stem(self, layer: Any, what: str, suffix: str) -> str:
+        """Return what a file is called, without its suffix: as the page says, or else after the layer."""
+        given = self._app.page.export_name.strip()
+        ending = next((one for one in EXPORTS if given.lower().endswith(one)), "")
+        if given := given.removesuffix(given[len(given) - len(ending) :]):
+            return check_name(given + suffix).removesuffix(suffix)
+        named = re.sub(r"[^\w-]+", "_", layer.name.partition(".")[0]).strip("_") or "streamlines"
+        return f"{named[:80]}_{what}" if what != "all" else named[:80]
+
+    async def _write(self, held: _Held, stem: str, suffix: str, *, temporary: bool) -> None:
         app = self._app
         target = self._temporary(suffix) if temporary else self._free(stem, suffix)
         name = stem + suffix if temporary else target.name
         with app.notes.private(target.parent) as home:
             part = home / target.name
+            coded = None
+
+            def work(progress: Progress, cancel: Cancel) -> dict[str, Any]:
+                nonlocal coded
+                done = write(held.fiblets, held.ids, part, progress, cancel, held.original)
+                if done["error_mm"] and suffix != ".fiblets" and not temporary:
+                    coded = app.scene.files.spooled(held.fiblets.extract(held.ids).save)
+                return done
+
             try:
-                done = await app.files.beside(
-                    name, lambda progress, cancel: write(fiblets, ids, part, progress, cancel), "writing"
-                )
+                done = await app.files.beside(name, work, "writing")
             except Cancelled:
                 app.say(f"{name} was not written: cancelled.")
                 return
@@ -81,14 +121,16 @@ class ExportActions(Actions):
                 target = self._free(stem, suffix)
                 name = target.name
             part.rename(target)
+        if coded is not None:
+            app.scene.files.remember(target, coded)
         number = secrets.token_urlsafe(24)
         self._offer(number, _File(target, name, temporary))
         lost = f"; {suffix} cannot hold: {', '.join(map(str, done['lost']))}" if done["lost"] else ""
         where = "ready for download" if temporary else "saved in the served folder"
         size = f"{done['bytes'] / 1024:,.0f} kB"
         app.page.download = {"url": f"/download/{number}", "file": name, "where": where}
-        held = f"points are coded, within {fiblets.promise:.3g} mm of the source's"
-        app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}); {held}{lost}", "success")
+        points = held.told(done["error_mm"])
+        app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}); {points}{lost}", "success")
 
     def _owner(self, what: str) -> Any:
         """The layer that is exported: the chosen one, or of selections the first that has one."""
@@ -131,7 +173,7 @@ class ExportActions(Actions):
         return web.FileResponse(
             file.path,
             headers={
-                "Content-Disposition": f'attachment; filename="{file.name}"',
+                "Content-Disposition": _disposition(file.name),
                 "Content-Type": "application/octet-stream",
             },
         )
@@ -142,3 +184,10 @@ class ExportActions(Actions):
         if self._folder is not None:
             self._folder.cleanup()
             self._folder = None
+
+
+def _disposition(name: str) -> str:
+    """Return the header that gives a file its name: of letters that all take, and whole where it has others."""
+    plain = re.sub(r'[^ -~]|["\\\\%]', "_", name)
+    whole = "" if plain == name else f"; filename*=UTF-8''{quote(name, safe='')}"
+    return f'attachment; filename="{plain}"{whole}'

@@ -33,11 +33,14 @@ VALUES = (".tsf",)
 _EITHER = (".vtk", ".vtp")
 _RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
 LARGEST_AS_TUBES = 5_000_000  # points
+MOST_REMEMBERED = 16  # exports whose points are not coded again
 
 Progress = Callable[[str, float], None]
 """Told what is being done, and which share of it is, from 0 to 1."""
 Cancel = Callable[[], bool]
 """Whether to stop."""
+Stamp = tuple[int, int]
+"""When a file was changed last, in nanoseconds, and its bytes."""
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it
@@ -62,6 +65,8 @@ class Loaded:
         ``error_mm`` and ``error_steps``, where compressing it here measured them.
     kept : tuple of str
         Per-point arrays that were asked to be kept, for scripts.
+    stamps : dict
+        Of the files that it was read from, as documents name them: time of the last change and size.
     """
 
     kind: str
@@ -71,6 +76,7 @@ class Loaded:
     facts: dict[str, Any] = field(default_factory=dict)
     error: dict[str, Any] | None = None
     kept: tuple[str, ...] = ()
+    stamps: dict[str, Stamp] = field(default_factory=dict)
 
 
 def kind_of(path: Path) -> str:
@@ -119,6 +125,7 @@ class Files:
         self.allowed = [Path(path).resolve() for path in allowed]
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._numbers = itertools.count(1)  # two threads may load at once
+        self._coded: dict[Path, tuple[Stamp, Any]] = {}
 
     def resolve(self, path: Any, *, new: bool = False) -> Path:
         """Return the place of a file.
@@ -164,6 +171,33 @@ class Files:
         if self.root is not None and place.is_relative_to(self.root):
             return place.relative_to(self.root).as_posix()
         return str(place)
+
+    @staticmethod
+    def stamp(place: Path) -> Stamp:
+        """Return what tells whether a file has changed."""
+        found = place.stat()
+        return found.st_mtime_ns, found.st_size
+
+    def remember(self, place: Path, fiblets: Any) -> None:
+        """Take fiblets for a file that holds their points, so that opening it does not code those again."""
+        self._coded[place] = self.stamp(place), fiblets
+        while len(self._coded) > MOST_REMEMBERED:
+            self._coded.pop(next(iter(self._coded)))
+
+    def spooled(self, save: Callable[[Path], Any]) -> Any:
+        """Return the fiblets of a file that is written here and goes when nobody needs it."""
+        from pvfiblets.codec.fibletset import FibletSet
+
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
+        target = Path(self._folder.name) / f"{next(self._numbers)}.fiblets"
+        try:
+            save(target)
+            fiblets = FibletSet.open(target)
+        finally:
+            with contextlib.suppress(OSError):  # it stays mapped; Windows keeps the name until nobody needs it
+                target.unlink(missing_ok=True)
+        return fiblets
 
     def load(
         self, source: Source, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
@@ -229,35 +263,35 @@ class Files:
         """
         from pvfiblets.plotting.fiblets.sources import with_values_of
 
-        data = loaded.data
+        data, stamps = loaded.data, dict(loaded.stamps)
         for path in paths:
-            data = with_values_of(data, self.resolve(path))
-        return replace(loaded, source=replace(loaded.source, values=paths), data=data)
+            place = self.resolve(path)
+            stamps[path] = self.stamp(place)
+            data = with_values_of(data, place)
+        return replace(loaded, source=replace(loaded.source, values=paths), data=data, stamps=stamps)
 
     def _lines(self, place: Path, source: Source, name: str, watch: Watch) -> Loaded:
         from pvfiblets.codec.convert import compress_file
         from pvfiblets.codec.fibletset import FibletSet
 
+        stamp = self.stamp(place)
         facts = formats.info(place)
         if suffix_of(place) == ".fiblets":
             fiblets = FibletSet.open(place)
             watch("reading", 1.0)
             return Loaded("tractogram", source, name, fiblets, facts)
-        if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
-        target = Path(self._folder.name) / f"{next(self._numbers)}.fiblets"
         kept = tuple(facts.get("per_point") or ())
-        try:
-            result = compress_file(place, target, per_point=kept, progress=watch)
-        except BaseException:
-            target.unlink(missing_ok=True)
-            raise
-        fiblets = FibletSet.open(target)
-        with contextlib.suppress(OSError):  # it stays mapped until nobody needs it; Windows keeps the name until then
-            target.unlink()
+        before, coded = self._coded.get(place, (None, None))
+        if coded is not None and before == stamp and kept == tuple(coded.per_point):
+            watch("reading", 1.0)
+            return Loaded("tractogram", source, name, coded, facts, None, kept, {source.path or "": stamp})
+        result: dict[str, Any] = {}
+        fiblets = self.spooled(
+            lambda target: result.update(compress_file(place, target, per_point=kept, progress=watch))
+        )
         error = {key: result[key] for key in ("error_mm", "error_steps")}
         facts = {**facts, "dropped": result["dropped"]}
-        return Loaded("tractogram", source, name, fiblets, facts, error, kept)
+        return Loaded("tractogram", source, name, fiblets, facts, error, kept, {source.path or "": stamp})
 
     def close(self) -> None:
         """Remove what was made of files; twice is harmless."""

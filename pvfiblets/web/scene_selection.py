@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from pvfiblets.web.document import LINES, Ids, Layer, State
+from pvfiblets.web.originals import original_of
 from pvfiblets.web.sampling import sampled
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 from pvfiblets.web.writing import EXPORTS, write
 
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Files
+    from pvfiblets.web.scene import Scene
 
 __all__ = ["MODES", "SceneSelection"]
 
@@ -219,7 +221,7 @@ class SceneSelection:
         Returns
         -------
         dict
-            ``path``, ``streamlines``, ``bytes``, and ``lost``: what the format cannot hold.
+            ``path``, and what :func:`~pvfiblets.web.writing.write` returns.
 
         Raises
         ------
@@ -236,7 +238,9 @@ class SceneSelection:
         target = self.files.resolve(path, new=True)
         if target.exists() and not truth(overwrite, "overwrite"):
             raise FileExistsError(f"{path} is there already; give another name")
-        found = write(*self.chosen(layer.id, what), target)
+        fiblets, ids = self.chosen(layer.id, what)
+        original, _ = original_of(cast("Scene", self), layer, ids)
+        found = write(fiblets, ids, target, original=original)
         return {"path": self.files.name(target), **found}
 
     def chosen(self, layer_id: str, what: str) -> tuple[Any, np.ndarray]:

@@ -32,6 +32,7 @@ class Page:
     uploaded: float = 0.0  # per cent; below zero: nobody knows
     export_what: str = "selected"
     export_to: str = "folder"
+    export_name: str = ""  # of the file; empty: after the layer
     show_regions: bool = True
 
     toast_number: int = 0  # of the sentence: pages remember which they have shown
@@ -87,6 +88,7 @@ WRITABLE: dict[str, type] = {
     "uploaded": float,
     "export_what": str,
     "export_to": str,
+    "export_name": str,
     "show_regions": bool,
 }
 """Fields that browsers may write, and their types."""

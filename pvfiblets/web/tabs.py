@@ -297,6 +297,13 @@ def _export(app: Any) -> None:
                     density="compact", variant="outlined", hide_details=True, aria_label=label, data_select=key,
                 )  # fmt: skip
         with html.Div(classes="pv-row"):
+            html.Label("Name")
+            html.Input(
+                classes="pv-num", style="width: auto", value=("export_name",), placeholder="as the layer is called",
+                change="export_name = $event.target.value", aria_label="Name of the file", maxlength=200,
+                data_field="export-name",
+            )  # fmt: skip
+        with html.Div(classes="pv-row"):
             html.Label("Format")
             with v3.VBtn("Export as…", size="small", variant="tonal", classes="text-none", data_action="export"):
                 with v3.VMenu(activator="parent"):

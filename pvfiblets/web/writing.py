@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from pvfiblets.web.loading import Cancel, Progress
+    from pvfiblets.web.originals import Original
 
 __all__ = ["EXPORTS", "write"]
 
@@ -20,9 +21,17 @@ EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".vtk", ".fiblets")
 
 
 def write(
-    fiblets: Any, ids: np.ndarray, target: Path, progress: Progress | None = None, cancel: Cancel | None = None
+    fiblets: Any,
+    ids: np.ndarray,
+    target: Path,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    original: Original | None = None,
 ) -> dict[str, Any]:
     """Write some streamlines of a set to a file; may run in a thread of its own.
+
+    A ``.fiblets`` file gets the records as they are. Other formats get the points of the file that the set was made
+    from, where that is given.
 
     Parameters
     ----------
@@ -32,11 +41,14 @@ def write(
         Its suffix says the format.
     progress, cancel : callable, optional
         See :meth:`.Files.load`. It is asked between pieces, and last when the file is written.
+    original : Original, optional
+        Where the streamlines came from.
 
     Returns
     -------
     dict
-        ``streamlines``, ``bytes``, and ``lost``: what the format cannot hold.
+        ``streamlines``, ``bytes``, ``lost``: what the format cannot hold, and ``error_mm``: how far points may be from
+        the source's, 0 where they are the source's.
 
     Raises
     ------
@@ -48,20 +60,34 @@ def write(
     part = fiblets if len(ids) == fiblets.n_streamlines else fiblets.extract(ids)
     watch("writing", 0.0)
     try:
-        lost = _write_whole(part, target, watch)
+        lost = _write_whole(part, target, watch, original)
         watch("writing", 1.0)
     except BaseException:
         target.unlink(missing_ok=True)
         raise
-    return {"streamlines": len(ids), "bytes": target.stat().st_size, "lost": list(lost)}
+    exact = part.exact is not None or (original is not None and not _is_coded(target))
+    error = 0.0 if exact else float(fiblets.promise)
+    return {"streamlines": len(ids), "bytes": target.stat().st_size, "lost": list(lost), "error_mm": error}
 
 
-def _write_whole(part: Any, target: Path, watch: Watch) -> list[str]:
+def _is_coded(target: Path) -> bool:
+    from pvfiblets.formats.registry import suffix_of
+
+    return suffix_of(target) == ".fiblets"
+
+
+def _write_whole(part: Any, target: Path, watch: Watch, original: Original | None) -> list[str]:
     """Write a set, as its own ``save`` does; other formats' points are decoded first, which is a part of the time."""
     from pvfiblets import formats
     from pvfiblets.formats.spool import gathered
 
-    if formats.registry.suffix_of(target) == ".fiblets" or not len(part):
+    if _is_coded(target):
+        return list(part.save(target))
+    if original is not None:
+        with gathered(original.chunks(watch), target.parent) as streamlines:
+            watch("writing", 0.7)
+            return formats.write(target, streamlines)
+    if not len(part):
         return list(part.save(target))
 
     def pieces() -> Iterator[Any]:

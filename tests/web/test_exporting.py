@@ -13,6 +13,8 @@ import pytest
 from aiohttp import web
 
 import pvfiblets
+from pvfiblets.formats import attachments
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import exporting
 from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.loading import Cancelled
@@ -142,10 +144,10 @@ def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to
     before = sorted(folder.iterdir())
     jobs = []
 
-    def cancelled(fiblets, ids, target, progress, cancel):
+    def cancelled(fiblets, ids, target, progress, cancel, original):
         desk.files.cancel()  # as from the page while the file is written
         jobs.append(dict(desk.page.job))
-        return write(fiblets, ids, target, progress, cancel)
+        return write(fiblets, ids, target, progress, cancel, original)
 
     monkeypatch.setattr(exporting, "write", cancelled)
     desk.page.export_what, desk.page.export_to = "shown", to
@@ -196,3 +198,113 @@ def test_an_export_says_how_far_its_points_are_from_those_of_the_source(desk, li
             share = np.clip(((point - starts) * along).sum(1) / (along**2).sum(1), 0, 1)
             farthest = max(farthest, np.linalg.norm(starts + share[:, None] * along - point, axis=1).min())
     assert 0 < farthest <= 1.005 * float(said[1])  # which is rounded to three digits
+
+
+@pytest.fixture
+def many(scene, folder):
+    """Return a desk with a tractogram that is coded with loss, its points, and values of another file."""
+    rng = np.random.default_rng(5)
+    steps = rng.normal(size=(200, 400, 3)) * 0.05 + (0.5, 0, 0)
+    walks = Streamlines.from_list(list(np.cumsum(steps, axis=1).astype(np.float32)))
+    walks.per_streamline["weight"] = np.arange(200, dtype=np.float32)
+    pvfiblets.write(folder / "walks.trk", walks)
+    walks = pvfiblets.read(folder / "walks.trk")
+    walks.per_point["odd"] = rng.random(walks.n_points).astype(np.float32)
+    attachments.write_scalars(folder / "odd.tsf", walks, "odd")
+    layer = scene.open("walks.trk")
+    assert scene.actor(layer.id).fiblets.exact is None
+    scene.select(layer.id, [7, 8, 150])
+    desk = Desk(scene, folder)
+    desk.page.chosen = layer.id
+    desk.exports = ExportActions(desk)
+    yield desk, walks
+    desk.exports.close()
+
+
+@pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtp", ".vtk"])
+def test_points_are_those_of_the_source_where_it_is_there(many, suffix):
+    desk, walks = many
+    path, _ = export(desk, suffix)
+    found = pvfiblets.read(path)
+    true = walks[[7, 8, 150]]
+    np.testing.assert_allclose(found.points, true.points, rtol=0, atol=2e-5)  # trk and tck store them in other units
+    if found.per_streamline:
+        np.testing.assert_array_equal(found.per_streamline["weight"].ravel(), [7, 8, 150])
+    assert "points are exactly the source's" in desk.said[-1][1]
+
+
+def test_a_part_of_a_part_is_that_of_the_source(many):
+    desk, walks = many
+    scene = desk.scene
+    part = scene.keep_selection(desk.page.chosen)
+    scene.select(part.id, [1, 2])
+    desk.page.chosen = part.id
+    path, _ = export(desk, ".trx")
+    np.testing.assert_array_equal(pvfiblets.read(path).points, walks[[8, 150]].points)
+
+
+def test_values_of_other_files_go_with_the_points_of_the_source(many, folder):
+    desk, walks = many
+    scene = desk.scene
+    scene.attach(desk.page.chosen, scene.load_values(desk.page.chosen, "odd.tsf"))
+    path, _ = export(desk, ".trx")
+    found = pvfiblets.read(path)
+    numbers = np.concatenate([np.arange(walks.offsets[i], walks.offsets[i + 1]) for i in (7, 8, 150)])
+    np.testing.assert_array_equal(found.per_point["odd"].ravel(), walks.per_point["odd"][numbers])
+
+
+@pytest.mark.parametrize("change", ["gone", "other"])
+def test_a_source_that_is_another_now_is_told_and_not_read(many, folder, change):
+    desk, walks = many
+    if change == "gone":
+        (folder / "walks.trk").unlink()
+    else:
+        pvfiblets.write(folder / "walks.trk", walks[:151])
+    path, _ = export(desk, ".trk")
+    said = desk.said[-1][1]
+    assert ("walks.trk is not there any more" if change == "gone" else "walks.trk has changed since") in said
+    error = float(re.search(r"within ([\d.e-]+) mm", said)[1])
+    assert 0 < np.abs(pvfiblets.read(path).points - walks[[7, 8, 150]].points).max() < 3 * error
+
+
+def test_opening_an_export_again_does_not_code_it_twice(scene, folder, many):
+    """Of coded points: those of a ``.fiblets`` file have no others."""
+    desk, walks = many
+    pvfiblets.compress(walks).save(folder / "coded.fiblets")
+    layer = scene.open("coded.fiblets")
+    desk.page.chosen = layer.id
+    path, _ = export(desk, ".trk", "all")
+    assert "points are coded, within" in desk.said[-1][1]
+    coded = scene.actor(layer.id).fiblets.decompress().points
+    again = scene.open(path.name)
+    np.testing.assert_array_equal(scene.actor(again.id).fiblets.decompress().points, coded)
+    scene.remove(again.id)
+    pvfiblets.write(path, walks[1:])  # another file of that name is coded as any other
+    other = scene.open(path.name)
+    assert scene.actor(other.id).fiblets.n_streamlines == 199
+
+
+@pytest.mark.parametrize(
+    ("given", "file", "header"),
+    [
+        ("arcuate left", "arcuate left.tck", 'attachment; filename="arcuate left.tck"'),
+        ("arcuate.trk", "arcuate.tck", 'attachment; filename="arcuate.tck"'),
+        ("faisceau arqué", "faisceau arqué.tck",
+         "attachment; filename=\"faisceau arqu_.tck\"; filename*=UTF-8''faisceau%20arqu%C3%A9.tck"),
+    ],
+)  # fmt: skip
+def test_an_export_has_the_name_that_it_is_given(desk, folder, given, file, header):
+    desk.page.export_name = given
+    path, shown = export(desk, ".tck")
+    assert (path.name, shown) == (file, header)
+    path, _ = export(desk, ".tck")
+    assert path.name == file.replace(".tck", "_2.tck")
+
+
+@pytest.mark.parametrize("given", ["../up", "a/b", ".hidden", "CON", "x" * 300, "a\u202eb", "a\nb", 'a"b'])
+def test_names_that_no_file_should_have_are_refused(desk, folder, given):
+    before = sorted(folder.iterdir())
+    desk.page.export_name = given
+    with pytest.raises(ValueError, match="file's name"):
+        export(desk, ".tck")
+    assert sorted(folder.iterdir()) == before
