@@ -17,7 +17,7 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Lines", "flat", "gather", "joined", "with_values"]
+__all__ = ["Lines", "flat", "gather", "joined", "numbers_or_colours", "with_values"]
 
 Ints = npt.NDArray[np.int64]
 
@@ -316,6 +316,25 @@ def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
     return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
+
+
+def numbers_or_colours(array: npt.NDArray[Any], name: str, rgb: bool | None) -> npt.NDArray[Any]:
+    """Return numbers and colours as they are, and of vectors their magnitudes, by the rules of PyVista's `add_mesh`.
+
+    Parameters
+    ----------
+    array : ndarray
+        ``(n,)`` or ``(n, k)``.
+    name : str
+        What ends in ``"_rgb"`` or ``"_rgba"`` are colours.
+    rgb : bool, optional
+        Whether rows are colours; by default those of three or four bytes are (which `add_mesh` maps, too).
+    """
+    if array.ndim != 2 or rgb:
+        return array
+    if rgb is None and array.shape[1] in (3, 4) and (array.dtype == np.uint8 or name.endswith(("_rgb", "_rgba"))):
+        return array
+    return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
 
 
 def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:

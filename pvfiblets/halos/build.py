@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.lines import Lines, flat, gather, joined
+from pvfiblets.lines import Lines, flat, gather, joined, numbers_or_colours
 from pvfiblets.streamlines import Streamlines
 
 from .geometry import HaloLines, HaloPoints
@@ -44,7 +44,7 @@ def as_halo_lines(
     source: Any,
     *,
     scalars: str | npt.ArrayLike | None = None,
-    rgb: bool = False,
+    rgb: bool | None = None,
     filter_by: str | npt.ArrayLike | None = None,
 ) -> LinesAndValues:
     """Make lines with halos of line data.
@@ -61,8 +61,9 @@ def as_halo_lines(
         What to keep for colours: the name of point or line data of the source; or an array, or one for each line, of
         numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row for each point
         or for each line.
-    rgb : bool, default: False
-        Take float `scalars` of three or four columns as colours. Those of uint8 always are.
+    rgb : bool, optional
+        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
+        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
     filter_by : str or array_like, optional
         What to filter by: a name, or numbers for each point or line.
 
@@ -107,7 +108,7 @@ def as_halo_points(
     source: Any,
     *,
     scalars: str | npt.ArrayLike | None = None,
-    rgb: bool = False,
+    rgb: bool | None = None,
     filter_by: str | npt.ArrayLike | None = None,
 ) -> HaloPoints:
     """Make points with halos of a point cloud.
@@ -121,8 +122,9 @@ def as_halo_points(
         What to keep for colours: the name of point data of the source, or of a tractogram's data per streamline; or
         an array of numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row
         for each point.
-    rgb : bool, default: False
-        Take float `scalars` of three or four columns as colours. Those of uint8 always are.
+    rgb : bool, optional
+        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
+        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
     filter_by : str or array_like, optional
         What to filter by: a name, or a number for each point.
 
@@ -213,7 +215,7 @@ class _Lines:
         # Cells of two points that follow each other are one line, and what is known of cells is known of segments.
         self.joined = source.tube_of is not None and len(source.counts) != source.n_tubes
 
-    def build(self, scalars: Any, rgb: bool, filter_by: Any) -> LinesAndValues:
+    def build(self, scalars: Any, rgb: bool | None, filter_by: Any) -> LinesAndValues:
         values: dict[str, Array] = {}
         line_values: dict[str, Array] = {}
         if scalars is not None:
@@ -308,18 +310,19 @@ def _points_of_vtk(mesh: Any) -> tuple[Array, _Rows, str]:
 # ---------------------------------------------------------------------- arrays
 
 
-def _values(array: Array, name: str, rgb: bool) -> Array:
-    """Numbers as they are, colours as float32 RGBA in 0..1."""
+def _values(array: Array, name: str, rgb: bool | None) -> Array:
+    """Numbers as they are, magnitudes of vectors, colours as float32 RGBA in 0..1."""
+    array = numbers_or_colours(array, name, rgb)
     if array.ndim == 1:
         if rgb:
             raise ValueError(
                 f"rgb=True asks for colours, but {name!r} has one number in each row; drop rgb, or give 3 or 4 columns"
             )
         return array
-    if array.ndim != 2 or array.shape[1] not in (3, 4) or not (rgb or array.dtype == np.uint8):
+    if array.ndim != 2 or array.shape[1] not in (3, 4):
         raise ValueError(
-            f"{name!r} has the shape {array.shape} and type {array.dtype}, expected one number in each row, or 3 or 4 "
-            "columns of colour as uint8; give rgb=True for colours of 0..1, or the norm of vectors"
+            f"{name!r} has the shape {array.shape} and type {array.dtype}, expected one number in each row, a "
+            "vector, or 3 or 4 columns of colour with rgb=True"
         )
     colours = np.ones((len(array), 4), np.float32)
     colours[:, : array.shape[1]] = array

@@ -71,6 +71,27 @@ class ColourSettings:
     annotations: dict[float, str] | None = None
 
 
+def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = False) -> str | None:
+    """Return what colours a data set of VTK's that came without ``scalars``, by the rules of PyVista's `add_mesh`.
+
+    Parameters
+    ----------
+    source : Any
+        Anything but a data set of VTK's has no such name.
+    color : color-like, optional
+        One colour that is given goes before the data, unless they are colours (``rgb``).
+    rgb : bool, optional
+        Whether the data are colours.
+    points : bool, default: False
+        Whether data of points only will do.
+    """
+    if (color is not None and not rgb) or not (hasattr(source, "IsA") and source.IsA("vtkDataSet")):
+        return None
+    mesh = pv.wrap(source)
+    found: str | None = mesh.point_data.active_scalars_name if points else mesh.active_scalars_name
+    return found
+
+
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
     """Return the values of the first and the last colour.
 

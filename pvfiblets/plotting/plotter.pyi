@@ -51,7 +51,7 @@ class _AddSplineTubes(Protocol):
         self, source: SplineTubesSource, *, radius: float | str | np.ndarray | None = None,
         scalars: str | np.ndarray | None = None, tangents: str | np.ndarray | None = None, method: str = "finite",
         radius_slopes: float | str | np.ndarray | None = None, scalar_slopes: str | np.ndarray | None = None,
-        scaled: bool | None = None, rgb: bool = False, color: Any = None, cmap: Any = None, clim: Any = None,
+        scaled: bool | None = None, rgb: bool | None = None, color: Any = None, cmap: Any = None, clim: Any = None,
         n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
         above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
         opacity: float | None = None, lighting: bool | None = None, min_width: float = 1.0,
@@ -68,7 +68,7 @@ class _SplineTubesComponent(SplineTubesComponent):
 class _AddHaloLines(Protocol):
     def __call__(
         self, source: HaloLinesSource, *, scalars: str | np.ndarray | None = None,
-        filter_by: str | np.ndarray | None = None, rgb: bool = False, line_width: float | None = None,
+        filter_by: str | np.ndarray | None = None, rgb: bool | None = None, line_width: float | None = None,
         strip_width: float | None = None, tapering: bool | tuple[int, float] = True,
         filter_taper: float | None = None, max_displacement: float | None = None,
         displacement: Displacement = "linear", width_cue: float = 0.5, threshold: Threshold = None,
@@ -88,7 +88,7 @@ class _HaloLinesComponent(HaloLinesComponent):
 class _AddHaloPoints(Protocol):
     def __call__(
         self, source: HaloPointsSource, *, scalars: str | np.ndarray | None = None,
-        filter_by: str | np.ndarray | None = None, rgb: bool = False, point_size: float | None = None,
+        filter_by: str | np.ndarray | None = None, rgb: bool | None = None, point_size: float | None = None,
         halo_size: float | None = None, max_displacement: float | None = None, displacement: Displacement = "linear",
         width_cue: float = 0.5, threshold: Threshold = None, color: Any = None, halo_color: Any = None,
         light_on_dark: bool = False, cmap: Any = None, clim: Any = None, n_colors: int = 256,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..lines import Lines, flat, gather, joined
+from ..lines import Lines, flat, gather, joined, numbers_or_colours
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
 
@@ -28,7 +28,7 @@ def as_spline_tubes(
     radius_slopes: float | str | npt.ArrayLike | None = None,
     scalars: str | npt.ArrayLike | None = None,
     scalar_slopes: str | npt.ArrayLike | None = None,
-    rgb: bool = False,
+    rgb: bool | None = None,
     method: str = "finite",
     scaled: bool | None = None,
 ) -> SplineTubes:
@@ -58,8 +58,9 @@ def as_spline_tubes(
         ``values`` under their name, or ``"scalars"``; line values in ``tube_values``. ``"radius"`` needs no array.
     scalar_slopes : str or array_like, optional
         Derivatives of `scalars`, in the same shape (of colours: of 0..1). Computed by default.
-    rgb : bool, default: False
-        Take float `scalars` of three or four columns as colours. Those of uint8 always are.
+    rgb : bool, optional
+        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
+        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
     method : {'finite', 'catmull-rom', 'natural'}, default: 'finite'
         How derivatives that are not given are found; see :func:`.tangents.derivatives`.
     scaled : bool, optional
@@ -130,7 +131,7 @@ class _Builder:
         self.steps = steps if scaled else steps.uniform()
 
     def build(self, radius: Any, tangents: Any, radius_slopes: Any, scalars: Any, scalar_slopes: Any,
-              rgb: bool) -> SplineTubes:
+              rgb: bool | None) -> SplineTubes:
         """Gather every array, in rows, and bring them to nodes."""
         radii, name = self._radius(radius)
         segments, tubes = self.lines.segments()
@@ -191,7 +192,7 @@ class _Builder:
         self._check(rows, "radius", "finite numbers in mm, 0 or more", least=0.0)
         return rows, radius if isinstance(radius, str) else None
 
-    def _scalars(self, scalars: Any, slopes: Any, rgb: bool, radius_name: str | None) -> tuple[
+    def _scalars(self, scalars: Any, slopes: Any, rgb: bool | None, radius_name: str | None) -> tuple[
         dict[str, NodeValues], dict[str, npt.NDArray[Any]]]:
         """Return node values and tube values: what colours are asked of, and the source's line data."""
         tube_values = dict(self.lines.line_data)
@@ -203,6 +204,7 @@ class _Builder:
                 raise ValueError("scalar_slopes of the radius are its own: give them as radius_slopes")
             return {}, tube_values
         array, per_line = self._find(scalars, "scalars")
+        array = numbers_or_colours(array, name, rgb)
         if per_line:
             if slopes is not None:
                 raise ValueError(f"scalar_slopes came with {name!r} of whole lines, which have none; leave them out")
@@ -218,7 +220,7 @@ class _Builder:
             found[self.single] = 0.0
         return {name: NodeValues(self._nodes(values), self._nodes(found))}, tube_values
 
-    def _values(self, array: npt.NDArray[Any], name: str, rgb: bool) -> Doubles:
+    def _values(self, array: npt.NDArray[Any], name: str, rgb: bool | None) -> Doubles:
         """Numbers, or colours as RGBA of 0..1, for each row, of what was given for each point."""
         if array.ndim == 1:
             if rgb:
@@ -227,10 +229,10 @@ class _Builder:
                     "(n_points, 3) or (n_points, 4) colours"
                 )
             return array[self.lines.ids].astype(np.float64)
-        if array.ndim != 2 or array.shape[1] not in (3, 4) or not (rgb or array.dtype == np.uint8):
+        if array.ndim != 2 or array.shape[1] not in (3, 4):
             raise ValueError(
-                f"{name!r} has the shape {array.shape} and type {array.dtype}, expected (n_points,) numbers or "
-                "(n_points, 3 or 4) colours of uint8; give rgb=True for colours of 0..1, or the norm of vectors"
+                f"{name!r} has the shape {array.shape} and type {array.dtype}, expected (n_points,) numbers, "
+                "(n_points, k) vectors, or (n_points, 3 or 4) colours with rgb=True"
             )
         colours = np.ones((len(self.places), 4))
         colours[:, : array.shape[1]] = array[self.lines.ids] / (255.0 if array.dtype == np.uint8 else 1.0)

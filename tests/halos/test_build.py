@@ -170,7 +170,7 @@ def test_colours(columns):
     bytes_ = np.random.default_rng(0).integers(0, 256, (40, columns)).astype(np.uint8)
     wanted = np.ones((40, 4))
     wanted[:, :columns] = bytes_ / 255
-    for given, rgb in ((bytes_, False), (bytes_, True), (bytes_ / 255, True), (bytes_ / np.float32(255), True)):
+    for given, rgb in ((bytes_, None), (bytes_, True), (bytes_ / 255, True), (bytes_ / np.float32(255), True)):
         for colours in (
             as_halo_lines(PARTS, scalars=given, rgb=rgb).lines.values["scalars"],
             as_halo_points(POINTS, scalars=given, rgb=rgb).values["scalars"],
@@ -242,7 +242,7 @@ BROKEN[30, 1] = np.inf
         (PARTS, {"scalars": np.zeros(5)}, "shape (5,), expected a row for each of 40 points or of 3 lines"),
         (PARTS, {"scalars": 1.0}, "scalars has the shape (), expected a row"),
         (PARTS, {"scalars": ["a"] * 40}, "expected numbers"),
-        (PARTS, {"scalars": COLOURS}, "the shape (40, 3) and type float64, expected one number in each row"),
+        (PARTS, {"scalars": COLOURS[:, :2], "rgb": True}, "the shape (40, 2) and type float64, expected one number"),
         (PARTS, {"scalars": FA, "rgb": True}, "rgb=True asks for colours, but 'scalars' has one number in each row"),
         (PARTS, {"scalars": 2 * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [2.0, 2.0, 2.0], expected 0 to 1"),
         (PARTS, {"scalars": np.nan * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [nan, nan, nan]"),
@@ -278,7 +278,7 @@ def test_what_has_no_lines(source):
         (np.zeros((4, 2)), {}, "points of the shape (4, 2), expected (n, 3)"),
         (np.float64(3), {}, "points of the shape ()"),
         (POINTS, {"scalars": LENGTH}, "scalars has the shape (3,), expected a row for each of 40 points"),
-        (POINTS, {"scalars": COLOURS}, "'scalars' has the shape (40, 3)"),
+        (POINTS, {"scalars": COLOURS[:, :2], "rgb": True}, "'scalars' has the shape (40, 2)"),
         (POINTS, {"filter_by": COLOURS}, "filter_by 'filter' has the shape (40, 3)"),
         (STREAMLINES.to_polydata(), {"scalars": "length"},
          "it has point data 'fa', 'col'; cell data 'length' becomes point data by cell_data_to_point_data()"),

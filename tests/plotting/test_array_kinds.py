@@ -91,3 +91,58 @@ def test_what_fiblets_cannot_have_is_said(plotter, three_lines):
         plotter.add_fiblets(three_lines, scalars=np.full(123, "a"))
     actor = plotter.add_fiblets(three_lines, scalars=colours, rgb=False)
     assert actor.scalars == "Data"
+
+
+def lines_with(kind):
+    """Two lines of three points with active scalars of one kind."""
+    mesh = pv.PolyData(np.arange(18.0).reshape(6, 3) ** 1.5, lines=[3, 0, 1, 2, 3, 3, 4, 5])
+    if kind == "points":
+        mesh["h"] = np.linspace(2.0, 7.0, 6)
+    elif kind == "cells":
+        mesh.cell_data["h"] = np.array([3.0, 5.0])
+    elif kind == "vectors":
+        mesh["h"] = np.arange(18.0).reshape(6, 3)
+    elif kind == "vectors of cells":
+        mesh.cell_data["h"] = np.array([[3.0, 4.0, 0.0], [0.0, 5.0, 12.0]])
+    elif kind == "named":
+        mesh["h_rgb"] = np.linspace(0.0, 1.0, 18).reshape(6, 3)
+    return mesh
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines", "add_halo_points"])
+@pytest.mark.parametrize("kind", ["points", "cells", "vectors", "vectors of cells", "named", "none"])
+def test_active_scalars_colour_as_in_add_mesh(add, kind):
+    ours, meshes = pv.Plotter(off_screen=True), pv.Plotter(off_screen=True)
+    drawn = lines_with(kind)
+    if add == "add_halo_points" and "cells" in kind:
+        drawn = drawn.cell_data_to_point_data()
+    actor, mesh = getattr(ours, add)(drawn), meshes.add_mesh(drawn)
+    assert list(ours.scalar_bars.keys()) == list(meshes.scalar_bars.keys())
+    assert (actor.scalars is not None) == mesh.mapper.scalar_visibility
+    if ours.scalar_bars.keys():
+        assert actor.clim == pytest.approx(mesh.mapper.scalar_range)
+    one = getattr(ours, add)(drawn, color="red")  # a colour goes before them
+    assert one.scalars is None
+    raw = pv.PolyData(drawn, deep=True)
+    raw.set_active_scalars(None)
+    assert getattr(ours, add)(raw).scalars is None
+    ours.close()
+    meshes.close()
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines"])
+def test_vectors_and_colours_of_tubes_and_halos(plotter, add):
+    mesh = lines_with("vectors")
+    colours = np.full((6, 3), 255, np.uint8)
+    actor = getattr(plotter, add)(mesh, scalars=colours)
+    assert actor.scalars_title is None
+    actor = getattr(plotter, add)(mesh, scalars=colours, rgb=False)
+    assert actor.scalars_title == "Data"
+    assert actor.clim == pytest.approx((255.0 * 3**0.5,) * 2)
+    actor.scalars = mesh["h"]
+    sizes = np.linalg.norm(mesh["h"], axis=1)
+    assert actor.clim == pytest.approx((sizes.min(), sizes.max()))
+    actor.scalars = mesh["h"] / mesh["h"].max()  # from 0 to 1: colours
+    assert actor.scalars_title is None
+    with pytest.raises(ValueError, match="expected 0 to 1"):
+        getattr(plotter, add)(mesh, scalars="h", rgb=True)

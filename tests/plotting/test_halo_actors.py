@@ -319,7 +319,7 @@ def test_a_copy_looks_the_same(stage):
         ({"filter_by": "arc_length", "threshold": (1, 2, 3)}, r"threshold is \(1, 2, 3\)"),
         ({"filter_by": "arc_length", "filter_taper": -1}, "filter_taper is -1"),
         ({"filter_by": np.zeros(7)}, "7"),
-        ({"scalars": np.zeros((31, 5))}, "5"),
+        ({"scalars": np.zeros((31, 5)), "rgb": True}, "5"),
         ({"opacity": 2.0}, "opacity is 2"),
         ({"culling": "magic"}, "culling is 'magic'"),
         ({"halo_color": "nocolour"}, "nocolour"),

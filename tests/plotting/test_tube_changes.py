@@ -65,7 +65,7 @@ def test_unknown_names_list_what_there_is():
         ({"radius": -1.0}, ValueError, "radius"),
         ({"radius": [1.0]}, ValueError, r"radius has the shape \(1,\)"),
         ({"scalars": "fa"}, KeyError, "no array 'fa'.*'arc_length'"),
-        ({"scalars": np.zeros((15, 2))}, ValueError, r"\(15, 2\)"),
+        ({"scalars": np.zeros((15, 2)), "rgb": True}, ValueError, r"\(15, 2\)"),
         ({"method": "magic"}, ValueError, "method is 'magic'"),
         ({"opacity": 2}, ValueError, "opacity is 2"),
         ({"solver": "luck"}, ValueError, "solver is 'luck'"),

@@ -215,7 +215,7 @@ def bad_points():
         (NAMED, {"radius": "vectors"}, "radius has the shape (25, 3), expected (n_points)"),
         (NAMED, {"tangents": np.ones(25)}, "tangents has the shape (25,), expected (n_points, 3)"),
         (NAMED, {"tangents": np.full((25, 3), np.inf)}, "tangents 0 (line 0) is [inf, inf, inf]"),
-        (NAMED, {"scalars": "vectors"}, "give rgb=True for colours of 0..1, or the norm of vectors"),
+        (NAMED, {"scalars": np.ones((25, 2)), "rgb": True}, "colours with rgb=True"),
         (NAMED, {"scalars": "vectors", "rgb": True}, "colour 0 (line 0) is [10.0, 0.0, 0.0], expected 0 to 1"),
         (NAMED, {"scalars": "size", "rgb": True}, "drop rgb"),
         (NAMED, {"scalars": "mean", "scalar_slopes": T}, "of whole lines, which have none"),

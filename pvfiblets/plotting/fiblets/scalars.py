@@ -163,14 +163,14 @@ def find_scalars(
         values = measure(fiblets, scalars)
         return per_streamline(values.name, values.array(), fiblets.n_streamlines)
     if not isinstance(scalars, str):
-        return _of_streamlines(UNNAMED, scalars, fiblets.n_streamlines, rgb)
+        return of_streamlines(UNNAMED, scalars, fiblets.n_streamlines, rgb)
     if scalars in fiblets.per_point:
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
         return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
     if scalars in fiblets.per_streamline:
-        return _of_streamlines(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines, rgb)
+        return of_streamlines(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines, rgb)
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == "length":
@@ -217,7 +217,9 @@ def magnitudes(values: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(flat, axis=1))
 
 
-def _of_streamlines(name: str, values: Any, count: int, rgb: bool | None) -> Scalars:
+def of_streamlines(
+    name: str, values: Any, count: int, rgb: bool | None = None, *, whole: str = "streamline"
+) -> Scalars:
     """Make :class:`Scalars` of numbers, colours, vectors or words, one per streamline."""
     values = np.asarray(values)
     if values.shape == (count,) and values.dtype.kind in "USO":
@@ -225,7 +227,7 @@ def _of_streamlines(name: str, values: Any, count: int, rgb: bool | None) -> Sca
     wide = values.ndim == 2 and values.shape[0] == count and values.shape[1] > 1 and values.dtype.kind in "buif"
     if wide and not are_colours(values, rgb):
         values = magnitudes(values)
-    return per_streamline(name, values, count)
+    return per_streamline(name, values, count, whole=whole)
 
 
 def _by_word(name: str, words: np.ndarray) -> Scalars:

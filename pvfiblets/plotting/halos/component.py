@@ -61,7 +61,7 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         *,
         scalars: str | np.ndarray | None = None,
         filter_by: str | np.ndarray | None = None,
-        rgb: bool = False,
+        rgb: bool | None = None,
     ) -> HaloLineActor:
         """Add lines with depth-dependent halos to the scene.
 
@@ -74,7 +74,8 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         source : PolyData, Streamlines, FibletSet, array, list of arrays, (points, segments), HaloLines or path
             Lines in mm. One ``(n, 3)`` array is one line.
         scalars : str or array, optional
-            What colours the lines, not their halos: the name of data of ``source``;
+            What colours the lines, not their halos: the name of data of ``source``, the active scalars of a data set
+            of VTK's by default unless there is a ``color``;
             ``"orientation"`` (the absolute value of the direction as red, green, blue),
             ``"arc_length"``, ``"length"``; an array with one number or one colour (3 or 4 columns;
             floats with ``rgb``) per point or per line; or a file of numbers: ``.tsf``, ``.npy``,
@@ -82,8 +83,9 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         filter_by : str or array, optional
             What ``threshold`` filters by: the name of numbers per point or line, ``"arc_length"``,
             ``"length"``, or an array. Where there is no number (NaN), nothing shows.
-        rgb : bool, default: False
-            Take float ``scalars`` of three or four columns as colours. Those of uint8 always are.
+        rgb : bool, optional
+            Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
+            default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
 
         Returns
         -------
@@ -121,10 +123,13 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         >>> actor.threshold = 0.0
         """
         from pvfiblets.mappers.halos import HaloOptions
+        from pvfiblets.plotting.colours import active_scalars
         from pvfiblets.plotting.halos.actors import HaloLineActor
         from pvfiblets.plotting.halos.scalars import as_lines
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        if scalars is None:
+            scalars = active_scalars(source, settings["color"], rgb)
         held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
         if not getattr(held.drawn, "n_segments", 0):
             warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
@@ -162,7 +167,7 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
         *,
         scalars: str | np.ndarray | None = None,
         filter_by: str | np.ndarray | None = None,
-        rgb: bool = False,
+        rgb: bool | None = None,
     ) -> HaloPointActor:
         """Add points with depth-dependent halos to the scene.
 
@@ -175,8 +180,9 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
         source : DataSet, array, Streamlines, HaloPoints or path
             Points in mm: those of any dataset, or an ``(n, 3)`` array.
         scalars : str or array, optional
-            What colours the points, not their halos: the name of point data of ``source``, or an
-            array with one number or one colour (3 or 4 columns; floats with ``rgb``) per point.
+            What colours the points, not their halos: the name of point data of ``source``, the active scalars of a
+            data set of VTK's by default unless there is a ``color``; or an array with one number or one colour (3 or 4
+            columns; floats with ``rgb``) per point.
         filter_by : str or array, optional
             What ``threshold`` filters by: the name of numbers at points, or an array. Points without
             a number (NaN) do not show.
@@ -211,10 +217,14 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
         >>> actor = pl.add_halo_points(ball, point_size=0.15, halo_size=1.5, max_displacement=4)
         """
         from pvfiblets.mappers.halos import HaloOptions
+        from pvfiblets.plotting.colours import active_scalars
         from pvfiblets.plotting.halos.actors import HaloPointActor
-        from pvfiblets.plotting.halos.scalars import as_points
+        from pvfiblets.plotting.halos.scalars import as_points, read_points
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        source = read_points(source)
+        if scalars is None:
+            scalars = active_scalars(source, settings["color"], rgb, points=True)
         held = as_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
         if not held.drawn.n_points:
             warnings.warn("the source holds no points: nothing is drawn", UserWarning, stacklevel=5)

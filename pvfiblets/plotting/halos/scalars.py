@@ -13,7 +13,7 @@ from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.lines import told_lines, with_values
-from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
+from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, of_streamlines
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
 BUILT_IN = (ORIENTATION, ARC_LENGTH, LENGTH)
@@ -44,7 +44,7 @@ class Held:
     line_values: Mapping[str, Any] = field(default_factory=dict)
 
 
-def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: Any = None) -> Held:
+def as_lines(source: Any, *, scalars: Any = None, rgb: bool | None = None, filter_by: Any = None) -> Held:
     """Return the lines that a source means, and what colours and filters them.
 
     Parameters
@@ -54,8 +54,8 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: 
     scalars, filter_by : str, path or array, optional
         A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
         (:mod:`pvfiblets.formats.attachments`).
-    rgb : bool, default: False
-        Whether floats of three or four columns are colours.
+    rgb : bool, optional
+        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: 
     return held if filters is filter_by else filtered(held, filter_by)
 
 
-def as_points(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by: Any = None) -> Held:
+def as_points(source: Any, *, scalars: Any = None, rgb: bool | None = None, filter_by: Any = None) -> Held:
     """Return the points that a source means, and what colours and filters them.
 
     Parameters
@@ -89,8 +89,8 @@ def as_points(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by:
         :func:`pvfiblets.halos.build.as_halo_points` takes.
     scalars, filter_by : str or array, optional
         Data of the source, or an array for it.
-    rgb : bool, default: False
-        Whether floats of three or four columns are colours.
+    rgb : bool, optional
+        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
 
     Returns
     -------
@@ -98,15 +98,21 @@ def as_points(source: Any, *, scalars: Any = None, rgb: bool = False, filter_by:
     """
     if isinstance(source, HaloPoints):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
-    if isinstance(source, (str, os.PathLike)):
-        import pyvista as pv
-
-        source = pv.read(source)
+    source = read_points(source)
     try:
         points = as_halo_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
     except ValueError as error:
         raise _unknown(source, (scalars, filter_by), error) from None
     return _named(Held(points, scalars, _filter_name(filter_by)))
+
+
+def read_points(source: Any) -> Any:
+    """Return the data of a file of PyVista's; anything else as it is."""
+    if not isinstance(source, (str, os.PathLike)):
+        return source
+    import pyvista as pv
+
+    return pv.read(source)
 
 
 def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
@@ -119,7 +125,7 @@ def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
     scalars : str or array, optional
         A name, or a row of numbers or a colour for each point, or for each line.
     rgb : bool, optional
-        Whether floats of three or four columns are colours; by default they are.
+        Whether three or four columns are colours; by default those of uint8, and floats from 0 to 1.
 
     Returns
     -------
@@ -135,7 +141,8 @@ def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
         if isinstance(scalars, str) and scalars == ARC_LENGTH and isinstance(drawn, HaloLines):
             drawn = _with_arc_length(drawn)
         return replace(held, drawn=drawn, scalars=scalars)
-    rgb = _columns(scalars) > 1 if rgb is None else rgb
+    if rgb is None and _columns(scalars) > 1:
+        rgb = are_colours(np.concatenate([np.reshape(part, (-1, _columns(scalars))) for part in scalars]), None)
     if isinstance(drawn, HaloPoints):
         return _named(replace(held, drawn=as_halo_points(drawn, scalars=scalars, rgb=rgb), scalars=scalars))
     lines, line_values = as_halo_lines(drawn, scalars=scalars, rgb=rgb)
@@ -206,15 +213,15 @@ def find_scalars(held: Held) -> Scalars | None:
     if choice is None:
         return None
     if not isinstance(choice, str):
-        return per_streamline(UNNAMED, choice, drawn.n_streamlines, whole="line")
+        return of_streamlines(UNNAMED, choice, drawn.n_streamlines, whole="line")
     if choice in drawn.values:
         return _at_points(choice, drawn.values[choice])
     if choice in held.line_values:
-        return per_streamline(choice, held.line_values[choice], drawn.n_streamlines, whole="line")
+        return of_streamlines(choice, held.line_values[choice], drawn.n_streamlines, whole="line")
     if isinstance(drawn, HaloLines) and choice == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(drawn, HaloLines) and choice == LENGTH:
-        return per_streamline(LENGTH, line_lengths(drawn), drawn.n_lines, whole="line")
+        return of_streamlines(LENGTH, line_lengths(drawn), drawn.n_lines, whole="line")
     raise KeyError(_missing("scalars", choice, held))
 
 

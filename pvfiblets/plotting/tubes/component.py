@@ -64,7 +64,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         radius_slopes: float | str | np.ndarray | None = None,
         scalar_slopes: str | np.ndarray | None = None,
         scaled: bool | None = None,
-        rgb: bool = False,
+        rgb: bool | None = None,
     ) -> TubeActor:
         """Add tubes of varying radius around Hermite splines to the scene.
 
@@ -81,7 +81,8 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             per line. By default the point data ``"radius"`` if there is such, else half a percent
             of the diagonal of the bounds.
         scalars : str or array, optional
-            What colours the tubes: the name of data of ``source``; ``"radius"``, ``"arc_length"``,
+            What colours the tubes: the name of data of ``source``, the active scalars of a data set of VTK's by
+            default unless there is a ``color``; ``"radius"``, ``"arc_length"``,
             ``"length"``, or ``"orientation"`` (the absolute value of the direction as red, green,
             blue); an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
             per point or per line; or a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``.
@@ -96,8 +97,9 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         scaled : bool, optional
             Whether derivatives are by length (mm/mm), instead of by each segment's parameter
             from 0 to 1. By default by parameter where ``tangents`` are given, else by length.
-        rgb : bool, default: False
-            Take float ``scalars`` of three or four columns as colours. Those of uint8 always are.
+        rgb : bool, optional
+            Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
+            default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
 
         Returns
         -------
@@ -137,10 +139,13 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")
         """
         from pvfiblets.mappers.tubes import TubeOptions
+        from pvfiblets.plotting.colours import active_scalars
         from pvfiblets.plotting.tubes.actor import TubeActor
         from pvfiblets.plotting.tubes.scalars import as_tubes
 
         TubeOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        if scalars is None:
+            scalars = active_scalars(source, settings["color"], rgb)
         tubes, choice = as_tubes(
             source,
             scalars=scalars,

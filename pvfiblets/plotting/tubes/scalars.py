@@ -10,7 +10,7 @@ import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.lines import told_lines, with_values
-from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, per_streamline
+from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, magnitudes, of_streamlines
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
@@ -23,7 +23,7 @@ _BLOCK = 1 << 15  # segments measured at a time
 _GAUSS = ((0.5 - 0.15**0.5, 5 / 18), (0.5, 4 / 9), (0.5 + 0.15**0.5, 5 / 18))
 
 
-def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: Any) -> tuple[SplineTubes, Any]:
+def as_tubes(source: Any, *, scalars: Any = None, rgb: bool | None = None, **shape: Any) -> tuple[SplineTubes, Any]:
     """Return the tubes that a source means, and what colours them.
 
     Parameters
@@ -33,8 +33,8 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool = False, **shape: An
     scalars : str, path or array, optional
         A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
         (:mod:`pvfiblets.formats.attachments`).
-    rgb : bool, default: False
-        Whether floats of three or four columns are colours.
+    rgb : bool, optional
+        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
     **shape
         Further arguments of ``as_spline_tubes``.
 
@@ -88,7 +88,7 @@ def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
     return _with_arc_length(tubes) if scalars == ARC_LENGTH else tubes
 
 
-def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> tuple[SplineTubes, Any]:
+def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None) -> tuple[SplineTubes, Any]:
     """Store ``scalars`` with the tubes if they are an array with a row for each node.
 
     Parameters
@@ -96,10 +96,10 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> t
     tubes : SplineTubes
         Stay as they are.
     scalars : str or array or None
-        ``(n_nodes,)`` numbers, or ``(n_nodes, 3)`` or ``(n_nodes, 4)`` colours, uint8 or from 0 to 1. All else is
-        passed through.
-    rgb : bool, default: True
-        Whether floats of three or four columns are colours.
+        ``(n_nodes,)`` numbers, ``(n_nodes, k)`` vectors, which are mapped by their magnitude, or ``(n_nodes, 3)`` or
+        ``(n_nodes, 4)`` colours, uint8 or from 0 to 1. All else is passed through.
+    rgb : bool, optional
+        Whether three or four columns are colours; by default those of uint8, and floats from 0 to 1.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool = True) -> t
     if given.ndim == 2 and given.shape[1] == 1:
         given = given[:, 0]
     if given.ndim == 2:
-        given = _rgba(given, rgb)
+        given = _rgba(given) if are_colours(given, rgb) else magnitudes(given)
     rows = given.astype(np.float64)
     return replace(tubes, values={**tubes.values, UNNAMED: NodeValues(rows, _slopes(tubes, rows))}), UNNAMED
 
@@ -158,15 +158,15 @@ def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
         If an array has neither one value nor one colour per tube.
     """
     if not isinstance(scalars, str):
-        return per_streamline(UNNAMED, scalars, tubes.n_tubes, whole="tube")
+        return of_streamlines(UNNAMED, scalars, tubes.n_tubes, whole="tube")
     if scalars in tubes.values:
         return _at_nodes(scalars, tubes)
     if scalars in tubes.tube_values:
-        return per_streamline(scalars, tubes.tube_values[scalars], tubes.n_tubes, whole="tube")
+        return of_streamlines(scalars, tubes.tube_values[scalars], tubes.n_tubes, whole="tube")
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == LENGTH:
-        return per_streamline(LENGTH, tube_lengths(tubes), tubes.n_tubes, whole="tube")
+        return of_streamlines(LENGTH, tube_lengths(tubes), tubes.n_tubes, whole="tube")
     raise KeyError(
         _missing(scalars, **{"at nodes": tubes.values, "per tube": tubes.tube_values})
         + ". Only what was asked for as scalars is kept at nodes: give an array, or add the tubes with it"
@@ -248,11 +248,10 @@ def _at_nodes(name: str, tubes: SplineTubes) -> Scalars:
     return Scalars(name, "point_scalar", None, (float(finite.min()), float(finite.max())), least)
 
 
-def _rgba(colours: np.ndarray, rgb: bool) -> np.ndarray:
-    if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not (rgb or colours.dtype == np.uint8):
+def _rgba(colours: np.ndarray) -> np.ndarray:
+    if colours.shape[1] not in (3, 4):
         raise ValueError(
-            f"scalars have the shape {colours.shape} and type {colours.dtype}; expected (n_nodes,) numbers, or "
-            "(n_nodes, 3 or 4) colours of uint8; give rgb=True for colours from 0 to 1"
+            f"scalars have the shape {colours.shape}; colours (rgb=True) have 3 or 4 columns, of uint8 or from 0 to 1"
         )
     found = np.ones((len(colours), 4))
     found[:, : colours.shape[1]] = colours / (255.0 if colours.dtype == np.uint8 else 1.0)
