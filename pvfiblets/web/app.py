@@ -19,6 +19,7 @@ from pvfiblets.web import describe, layout
 from pvfiblets.web.camera import CameraActions
 from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
+from pvfiblets.web.csv_tables import selection_csv
 from pvfiblets.web.document import volume_in
 from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.filter_regions import RegionActions
@@ -125,6 +126,9 @@ class Explorer(TrameApp):
             "save_session": self.files.save_session,
             "load_session": lambda text: self.files.load_session(text),  # a browser names no folder
             "picture": self.camera.picture,
+            "save_picture": self.camera.save_picture,
+            "selection_csv": lambda: selection_csv(self.scene),
+            "profile_csv": self.selecting.profile_csv,
             "slide": self.sliders.slide,
             "release": self.sliders.release,
         }

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from pvfiblets import memory
 from pvfiblets.web.actions import Actions
+from pvfiblets.web.cameras import LARGEST_PICTURE
+from pvfiblets.web.charts import short
+from pvfiblets.web.describe import typed
+from pvfiblets.web.values import whole
+
+LONGEST = 32_768  # pixels of a side
 
 
 class CameraActions(Actions):
@@ -46,3 +55,45 @@ class CameraActions(Actions):
     def picture(self) -> bytes:
         """Return the picture as PNG."""
         return self._app.stream.picture()
+
+    def ask_picture(self, times: int = 1) -> None:
+        """Open the dialog for a picture of another size, so many times the view's."""
+        width, height = self._app.stream.settle()
+        factor = whole(times, "times", 1, 8)
+        self._app.page.picture = {"width": factor * width, "height": factor * height}
+        self._app.page.dialog = "picture"
+
+    def save_picture(self, width: Any, height: Any, dpi: Any, transparent: Any) -> str:
+        """Draw the picture at another size, and return where it can be fetched.
+
+        Parameters
+        ----------
+        width, height : str
+            Pixels, as somebody typed them.
+        dpi : str
+            Pixels per inch that the file is to say; empty for none.
+        transparent : bool
+            Leave the background out.
+
+        Raises
+        ------
+        ValueError
+            If a number is none, or the picture is too large.
+        """
+        from PIL import Image
+
+        app = self._app
+        size = [whole(typed(text, name, optional=False), name, 16, LONGEST)
+                for text, name in ((width, "width"), (height, "height"))]  # fmt: skip
+        if size[0] * size[1] > LARGEST_PICTURE:
+            raise ValueError(
+                f"a picture of {size[0]} x {size[1]} is too large; give {LARGEST_PICTURE:,} pixels at most"
+            )
+        dots = typed(dpi, "dpi", optional=True)
+        if dots is not None and not 1.0 <= dots <= 10_000.0:
+            raise ValueError(f"dpi is {short(dots)}; give 1 to 10,000 pixels per inch, or nothing")
+        taken = memory.within(lambda: app.stream.picture_of(*size, transparent=transparent is True))
+        said = {} if dots is None else {"dpi": (dots, dots)}
+        with app.exports.fresh("picture.png") as (place, offer):
+            Image.fromarray(taken).save(place, "png", **said)
+            return str(offer())

@@ -11,14 +11,14 @@ import numpy as np
 from pvfiblets.plotting.viewpoints import DIRECTIONS, point_camera
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
 
-__all__ = ["VIEWS", "Cameras", "check_camera"]
+__all__ = ["LARGEST_PICTURE", "VIEWS", "Cameras", "check_camera"]
 
 VIEWS = tuple(DIRECTIONS)
 """Names of the directions that one can look from."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))
 NEAR = 6.0  # pixels within which a click means what is drawn there
-_LARGEST_PICTURE = 64_000_000  # pixels
+LARGEST_PICTURE = 64_000_000  # pixels
 
 
 class Cameras:
@@ -150,7 +150,7 @@ class Cameras:
         """
         times = int(number(scale, "scale", 1, 8))
         width, height = self.plotter.window_size
-        if width * height * times * times > _LARGEST_PICTURE:
+        if width * height * times * times > LARGEST_PICTURE:
             raise ValueError(f"a picture of {width * times} x {height * times} is too large; give a smaller scale")
         target = None if path is None else self.files.resolve(path, new=True)
         self.plotter.render()  # or it would be the last picture, whatever has changed since

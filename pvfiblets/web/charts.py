@@ -1,12 +1,14 @@
-"""Small charts as SVG text; nothing that a user wrote goes into them."""
+"""Small charts as SVG text; what a user wrote is escaped in them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+WAY = "share of the streamline's length"
 COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5ec2c2", "#b0745a")
 
 
@@ -34,7 +36,7 @@ def histogram_chart(counts: ArrayLike) -> str:
     )
 
 
-def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: ArrayLike) -> str:
+def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: ArrayLike, title: str = "value") -> str:
     """Return a mean with its band along streamlines.
 
     Parameters
@@ -43,6 +45,8 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
         Along the streamlines, 0 to 1.
     mean, low, high : array_like, shape (n,)
         Values there; those that are not finite leave a gap.
+    title : str
+        What the values are, with their unit: the title of their axis.
     """
     x, y, below, above = (np.asarray(values, np.float64) for values in (positions, mean, low, high))
     fine = np.isfinite(y) & np.isfinite(below) & np.isfinite(above)
@@ -50,7 +54,8 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
         return ""
     least, most = float(below[fine].min()), float(above[fine].max())
     reach = (most - least) or 1.0
-    width, height, left, bottom = 290.0, 130.0, 44.0, 18.0
+    width, height, left, bottom = 290.0, 146.0, 58.0, 30.0
+    named = escape(title if len(title) <= 24 else f"{title[:23]}…")
 
     def across(values: ArrayLike) -> np.ndarray:
         return left + np.asarray(values) * (width - left - 6.0)
@@ -63,24 +68,33 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
     line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(across(x[fine]), down(y[fine]), strict=True))
     ticks = "".join(_label(left - 4.0, float(down(value)) + 4.0, f"{value:.3g}", "end") for value in (least, most))
     ends = "".join(
-        _label(float(across(share)), height - 4.0, text, anchor)
+        _label(float(across(share)), height - 17.0, text, anchor)
         for share, text, anchor in (
-            (0.0, "start", "start"),
-            (0.5, "share of the length", "middle"),
-            (1.0, "end", "end"),
+            (0.0, "0 %", "start"),
+            (0.5, "50 %", "middle"),
+            (1.0, "100 %", "end"),
         )
+    )
+    middle = (height - bottom) / 2.0
+    axes = (
+        f'<polyline points="{left:g},6 {left:g},{height - bottom:g} {width - 6.0:g},{height - bottom:g}" fill="none" '
+        f'stroke="currentColor" stroke-width=".6" opacity=".6"/>'
+        f"{_label(left + (width - left) / 2, height - 3.0, WAY, 'middle')}"
+        f'<g transform="rotate(-90 10 {middle:g})">{_label(10.0, middle + 3.0, named, "middle")}</g>'
     )
     # Under the pointer: what is there, as browsers show it.
     step = (width - left - 6.0) / max(len(x) - 1, 1)
     told = "".join(
         f'<rect x="{float(across(a)) - step / 2:.1f}" y="0" width="{step:.2f}" height="{height - bottom:g}" '
-        f'fill="transparent"><title>{100.0 * a:.0f} % of the way: {b:.4g} ({low:.4g} to {high:.4g})</title></rect>'
+        f'fill="transparent">'
+        f"<title>{100.0 * a:.0f} % of the way: {named} {b:.4g} ({low:.4g} to {high:.4g})</title></rect>"
         for a, b, low, high in zip(x[fine], y[fine], below[fine], above[fine], strict=True)
     )
     return (
         f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="profile">'
         f'<polygon points="{band}" fill="{COLOURS[0]}" opacity=".3"/>'
-        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>{ticks}{ends}{told}</svg>'
+        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>'
+        f"{axes}{ticks}{ends}{told}</svg>"
     )
 
 

@@ -40,6 +40,7 @@ def build(app: Any) -> None:
     html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True)
     _files(app)
     _sessions(app)
+    _picture(app)
     _script()
     _help()
     _rename(app)
@@ -143,6 +144,38 @@ def _sessions(app: Any) -> None:
             ):
                 html.Input(classes="pv-num", value="session.json", style="flex: 1; width: auto", aria_label="File name")
                 v3.VBtn("Save there", type="submit", variant="tonal", classes="text-none", data_action="store-session")
+
+
+def _picture(app: Any) -> None:
+    with _dialog("picture", "Save the picture", 420), v3.VCardText():
+        with html.Div(classes="pv-row"):
+            html.Label("Times the view")
+            with html.Div(classes="pv-pair"):
+                for times in (1, 2, 3, 4):
+                    v3.VBtn(f"{times}", size="x-small", variant="tonal", click=(app.camera.ask_picture, f"[{times}]"),
+                            aria_label=f"{times} times as large as the view", data_times=times)  # fmt: skip
+        for label, name, unit in (("Width", "width", "pixels"), ("Height", "height", "pixels")):
+            with html.Div(classes="pv-row"):
+                html.Label(label)
+                with html.Div(classes="pv-pair"):
+                    html.Input(classes="pv-num", inputmode="numeric", value=(f"picture.{name}",), aria_label=label,
+                               id=f"picture-{name}")  # fmt: skip
+                    html.Span(unit, classes="pv-small")
+        with html.Div(classes="pv-row"):
+            html.Label("For print")
+            with html.Div(classes="pv-pair"):
+                html.Input(classes="pv-num", inputmode="decimal", value="300", aria_label="Pixels per inch",
+                           id="picture-dpi")  # fmt: skip
+                html.Span("pixels per inch (dpi)", classes="pv-small")
+        with html.Label(classes="pv-row", style="cursor: pointer"):
+            html.Span("Background", classes="pv-label")
+            with html.Span(classes="pv-pair pv-value"):
+                html.Input(type="checkbox", id="picture-transparent")
+                html.Span("transparent")
+        html.Div("Lines and letters are as large beside the picture as on the page. Large pictures take a while.",
+                 classes="pv-small px-3 pt-2")  # fmt: skip
+        with html.Div(classes="d-flex justify-end pt-2"):
+            v3.VBtn("Save", color="primary", classes="text-none", data_action="save-picture")
 
 
 def _script() -> None:

@@ -10,6 +10,8 @@ import re
 import secrets
 import tempfile
 from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -155,6 +157,22 @@ class ExportActions(Actions):
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="pvfiblets-")
         return Path(self._folder.name) / f"{secrets.token_hex(8)}{suffix}"
+
+    @contextmanager
+    def fresh(self, name: str) -> Iterator[tuple[Path, Callable[[], str]]]:
+        """Give a place for a file that is only fetched, and what offers it under a name once it is whole."""
+        place = self._temporary(Path(name).suffix)
+
+        def offer() -> str:
+            number = secrets.token_urlsafe(24)
+            self._offer(number, _File(place, name, temporary=True))
+            return f"/download/{number}"
+
+        try:
+            yield place, offer
+        except BaseException:
+            place.unlink(missing_ok=True)
+            raise
 
     def _offer(self, number: str, file: _File) -> None:
         self._files[number] = file

@@ -168,8 +168,9 @@ def _bar(app: Any) -> None:
                     type="color", classes="pv-colour", value=("background",), aria_label="Background",
                     change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
                 )  # fmt: skip
-            _icon(
-                "mdi-camera-outline", "Save the picture (C)", name="screenshot",
+            _icon("mdi-camera-outline", "Save the picture (C: as it is)", name="picture", click=app.camera.ask_picture)
+            html.Button(  # of the key
+                hidden=True, data_action="screenshot",
                 click="utils.download('picture.png', trigger('picture'), 'image/png')",
             )  # fmt: skip
             v3.VSpacer()

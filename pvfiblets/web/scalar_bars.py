@@ -67,6 +67,8 @@ class Bars:
         if window is None or not self._shown:
             self.places, self._placed_for = [], ()
             return
+        if tuple(window.GetTileScale()) != (1, 1):
+            return  # a picture in pieces: VTK enlarges what was placed before the first
         size, dpi = tuple(window.GetSize()), window.GetDPI()
         now = (size, dpi, tuple(self._wanted))
         if now == self._placed_for:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.plotting.fiblets.scalars import UNITS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import profile_chart, short
+from pvfiblets.web.csv_tables import profile_csv
 from pvfiblets.web.distance_label import hide_distance, show_distance
 from pvfiblets.web.rpc_allowlist import number
 
@@ -136,18 +138,27 @@ class SelectionActions(Actions):
             raise ValueError("nothing is selected; pick streamlines first")
         return next((layer for layer in having if layer.id == self._app.page.chosen), having[0])
 
-    def _plot(self) -> dict[str, Any]:
+    def _profiled(self) -> tuple[list[str], dict[str, Any]]:
+        """Return what there can be a profile of, and the one that is shown."""
         scene = self._app.scene
         layer = self._owner()
         actor = scene.actor(layer.id)
         volume = actor.active_scalars.volume if actor.active_scalars is not None else None
         names = ["curvature", *actor.fiblets.per_point, *([] if volume is None else [volume.name])]
         name = self._profile if self._profile in names else None
-        found = scene.profile(layer.id, name)
+        return names, scene.profile(layer.id, name)
+
+    def profile_csv(self) -> str:
+        """Return the profile that is shown as CSV."""
+        _, found = self._profiled()
+        return profile_csv(found, UNITS.get(found["name"], found["name"]))
+
+    def _plot(self) -> dict[str, Any]:
+        names, found = self._profiled()
         mean, spread = ([float("nan") if part is None else part for part in found[key]] for key in ("mean", "std"))
         low = [a - b for a, b in zip(mean, spread, strict=True)]
         high = [a + b for a, b in zip(mean, spread, strict=True)]
-        chart = profile_chart(found["position"], mean, low, high)
+        chart = profile_chart(found["position"], mean, low, high, UNITS.get(found["name"], found["name"]))
         return {"profiles": names, "profile": found["name"], "chart": chart}
 
     def set_profile(self, name: str) -> None:

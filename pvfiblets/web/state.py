@@ -48,6 +48,7 @@ class Page:
 
     parallel: bool = False
     background: str = "#000000"
+    picture: Record = field(default_factory=dict)  # the size of one to be saved
     edges: Record = field(default_factory=dict)  # anatomical letters at the picture's edges
     measured: str = ""
     no_room: str = ""  # which colour bars are not shown

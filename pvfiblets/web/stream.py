@@ -28,6 +28,7 @@ from pvfiblets.web.touch import Fingers
 
 logger = logging.getLogger("pvfiblets.web")
 
+LARGEST_WINDOW = 4096  # pixels along each side of what is drawn at once
 REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
@@ -208,6 +209,42 @@ class PictureStream:
         while self._plotter.picture.refine():
             pass
         return encode(self._read(), "png", 100)
+
+    def picture_of(self, width: int, height: int, *, transparent: bool = False) -> NDArray[np.uint8]:
+        """Return the view at any size, drawn now and finished.
+
+        Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn in
+        pieces: enlarged windows have wider lines, more dots to an inch have not.
+
+        Parameters
+        ----------
+        width, height : int
+            Pixels.
+        transparent : bool
+            Leave the background out.
+
+        Returns
+        -------
+        ndarray of uint8, shape (height, width, 3 or 4)
+            The first row is the top.
+        """
+        pieces = max(-(-height // self._size[1]), -(-max(width, height) // LARGEST_WINDOW))
+        size = -(-width // pieces), -(-height // pieces)
+        window, interactor = self._plotter.render_window, self._plotter.iren.interactor
+        self._draw()  # all pixels, whatever the camera did just now
+        try:
+            window.SetDPI(max(1, round(self._dpi * size[1] / self._size[1])))
+            interactor.UpdateSize(*size)
+            self._plotter.render()
+            while self._plotter.picture.refine():
+                pass
+            taken = self._plotter.screenshot(None, scale=pieces, transparent_background=transparent)
+        finally:
+            window.SetDPI(self._dpi)
+            interactor.UpdateSize(*self._pixels)
+            self.request()
+        found: NDArray[np.uint8] = np.ascontiguousarray(np.asarray(taken)[:height, :width])
+        return found
 
     @property
     def milliseconds(self) -> float | None:

@@ -266,6 +266,9 @@ def _selection(app: Any) -> None:
             v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=app.selecting.clear)
         with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
             v3.VBtn("As a layer", size="small", variant="tonal", classes="text-none", click=app.selecting.as_layer)
+            v3.VBtn("Table as CSV", size="small", variant="tonal", classes="text-none", data_action="table-csv",
+                    click="trigger('selection_csv').then((t) => t && utils.download('selection.csv', t, 'text/csv'))",
+                    )  # fmt: skip
         with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2"):
             with html.Table(classes="pv-table", id="picked"):
                 with html.Thead():
@@ -283,6 +286,9 @@ def _selection(app: Any) -> None:
                     variant="outlined", hide_details=True, update_modelValue=(app.selecting.set_profile, "[$event]"),
                 )  # fmt: skip
             html.Div(v_html=("selection.chart",), id="profile")
+            v3.VBtn("Profile as CSV", size="x-small", variant="tonal", classes="text-none", data_action="profile-csv",
+                    click="trigger('profile_csv').then((t) => t && utils.download('profile.csv', t, 'text/csv'))",
+                    )  # fmt: skip
     _export(app)
 
 

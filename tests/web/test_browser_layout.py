@@ -8,7 +8,7 @@ import pytest
 
 FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
 SIZES = [(1280, 720), (800, 600), (320, 640)]
-DIALOGS = ("open", "session", "script", "help", "rename", "end")
+DIALOGS = ("open", "session", "picture", "script", "help", "rename", "end")
 LONG = "a_tractogram_of_a_study_with_a_very_long_name_that_nobody_wants_to_read.trk"
 
 

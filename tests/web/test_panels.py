@@ -52,16 +52,30 @@ def test_regions_are_rows_joined_by_a_word_and_back():
         flat(nested)
 
 
-def test_profiles_tell_what_lies_under_the_pointer():
+def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
     from xml.etree import ElementTree as ET
 
     from pvfiblets.web.charts import profile_chart
 
     mean = np.array([1.0, np.nan, 3.0])
-    chart = ET.fromstring(profile_chart([0.0, 0.5, 1.0], mean, mean - 0.5, mean + 0.5))
+    chart = ET.fromstring(profile_chart([0.0, 0.5, 1.0], mean, mean - 0.5, mean + 0.5, "curvature [1/mm]"))
     told = [title.text for title in chart.iter("title")]
-    assert told == ["0 % of the way: 1 (0.5 to 1.5)", "100 % of the way: 3 (2.5 to 3.5)"]
-    assert "share of the length" in [text.text for text in chart.iter("text")]
+    assert told == [
+        "0 % of the way: curvature [1/mm] 1 (0.5 to 1.5)",
+        "100 % of the way: curvature [1/mm] 3 (2.5 to 3.5)",
+    ]
+    written = [text.text for text in chart.iter("text")]
+    assert {"share of the streamline's length", "curvature [1/mm]", "0 %", "100 %"} <= set(written)
+
+
+def test_names_in_charts_are_text():
+    from xml.etree import ElementTree as ET
+
+    from pvfiblets.web.charts import profile_chart
+
+    chart = profile_chart([0.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0, 2.0], "<img src=x>")
+    assert "<img" not in chart
+    assert "<img src=x>" in [text.text for text in ET.fromstring(chart).iter("text")]
 
 
 def test_numbers_are_typed_with_points_commas_and_units():

@@ -155,3 +155,12 @@ def test_names_that_find_no_room_are_left_out():
     assert 7 <= small.label_font < 13
     assert place([f"part {k}" for k in range(100)], (320, 600)) is None
     assert place(["a name that is much longer than the picture is wide"], (320, 600)) is None
+
+
+def test_enlarged_pictures_have_their_bars_where_the_page_has_them(scene):
+    bars = Bars(scene, ["length"])
+    scene.plotter.window_size = 400, 320
+    before = np.array(rectangle(scene.screenshot()))
+    after = np.array(rectangle(scene.screenshot(scale=3)))
+    assert len(bars.shown) == 1
+    np.testing.assert_allclose(after / 3, before, atol=3)

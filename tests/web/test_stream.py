@@ -293,3 +293,34 @@ def test_the_picture_that_is_saved_is_finished(refined):
     saved = np.asarray(Image.open(io.BytesIO(stream.picture())))
     assert plotter.picture.samples == 16
     assert np.array_equal(saved[..., :3], np.asarray(plotter.screenshot(None)))
+
+
+def test_pictures_of_any_size_have_lines_and_bars_as_the_page_has_them(plotter):
+    ball = pv.Sphere()
+    ball["height"] = ball.points[:, 2]
+    line = plotter.add_fiblets([[(-1, -0.7, 0), (1, -0.7, 0)]], color="red", line_width=6)
+    line.lighting = False
+    plotter.add_mesh(ball, scalars="height", show_scalar_bar=False, lighting=False)
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 200, "h": 160, "p": 1.0})
+    page = np.asarray(Image.open(io.BytesIO(stream.picture())).convert("RGB")).astype(int)
+    np.testing.assert_array_equal(stream.picture_of(200, 160), page)
+
+    def thick(picture):
+        red = (picture[..., 0] > 200) & (picture[..., 1:3].max(axis=-1) < 60)
+        return red.sum(axis=0).max()
+
+    usual = thick(page)
+    assert usual in (6, 7)
+    for width, height in ((401, 319), (600, 480), (100, 80), (333, 480)):
+        found = stream.picture_of(width, height)
+        assert found.shape == (height, width, 3)
+        assert thick(found) == pytest.approx(usual * height / 160, abs=1.5)
+    larger = np.asarray(Image.fromarray(stream.picture_of(600, 480)).resize((200, 160), Image.Resampling.BOX))
+    assert np.abs(larger.astype(int) - page).mean() < 3
+    clear = stream.picture_of(300, 240, transparent=True)
+    assert clear.shape == (240, 300, 4)
+    assert clear[0, 0].tolist() == [0, 0, 0, 0]
+    assert clear[120, 150, 3] == 255
+    assert plotter.render_window.GetSize() == (200, 160)
+    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(stream.picture())).convert("RGB")), page)

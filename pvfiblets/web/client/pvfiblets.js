@@ -182,6 +182,26 @@
   document.addEventListener("keydown", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && hold(event), true);
   document.addEventListener("keyup", (event) => /^(Arrow|Home|End|Page)/.test(event.key) && letGo(true), true);
 
+  // Pictures ---------------------------------------------------------------------------------------
+
+  document.addEventListener("click", async (event) => {
+    const button = event.target.closest?.("[data-action=save-picture]");
+    if (!button || button.disabled) return;
+    const of = (name) => document.querySelector(`#picture-${name}`);
+    button.disabled = true;
+    button.classList.add("v-btn--disabled");
+    try {
+      const url = await call("save_picture", of("width").value, of("height").value, of("dpi").value, of("transparent").checked);
+      if (url) {
+        Object.assign(document.createElement("a"), { href: url, download: "picture.png" }).click();
+        set("dialog", "");
+      }
+    } finally {
+      button.disabled = false;
+      button.classList.remove("v-btn--disabled");
+    }
+  }, true);
+
   // Files ------------------------------------------------------------------------------------------
 
   const say = (text, kind = "error") => {
