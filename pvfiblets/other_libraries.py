@@ -205,4 +205,6 @@ def lines_of_grid(source: Any) -> Any:
         mesh.point_data[name] = np.array(values)
     for name, values in grid.cell_data.items():
         mesh.cell_data[name] = np.array(values)[wanted]
+    for name, values in grid.field_data.items():
+        mesh.field_data[name] = np.array(values)  # groups, which number the lines
     return mesh

@@ -44,6 +44,8 @@ _BLOCK_POINTS = 1 << 18
 
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"
+_GROUPS_OF = "groups_of"
+_EXTRACTED = "vtkOriginalCellIds"
 _SPACE = "space/"
 
 
@@ -376,13 +378,14 @@ class Streamlines:
         polydata : pyvista.PolyData or vtkPolyData
             Point data becomes `per_point`, cell data of the lines `per_streamline`. Points
             shared by several lines are repeated. Groups, their data and the affine come back
-            from the field data that :meth:`to_polydata` writes.
+            from the field data that :meth:`to_polydata` writes, groups only if no filter of VTK's has taken lines away.
 
         Returns
         -------
         Streamlines
             ``dropped["cells that are not lines"]`` counts vertices, polygons and strips;
-            ``dropped["points of no line"]`` points that no line uses.
+            ``dropped["points of no line"]`` points that no line uses; ``dropped["groups of other lines"]`` groups that
+            a filter has passed on with fewer lines.
         """
         import pyvista
 
@@ -413,7 +416,7 @@ class Streamlines:
         """PolyData with one polyline per streamline, in order, and all data.
 
         Per-point data becomes point data, per-streamline data cell data. Groups
-        (``groups/NAME``), their data (``per_group/NAME/KEY``), an affine that is not the
+        (``groups/NAME``; ``groups_of``, of how many streamlines), their data (``per_group/NAME/KEY``), an affine that is not the
         identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
         VTK loses arrays of text in some of its formats) are kept as field data.
         """
@@ -437,6 +440,8 @@ class Streamlines:
     def field_data(self) -> dict[str, Array]:
         """Return groups, group data, affine and space as flat named arrays (see :meth:`to_polydata`)."""
         field: dict[str, Array] = {_GROUP + k: v for k, v in self.groups.items()}
+        if field:
+            field[_GROUPS_OF] = np.array([len(self)])
         for group, values in self.per_group.items():
             for name, value in values.items():
                 field[f"{_PER_GROUP}{group}/{name}"] = np.atleast_1d(_vtk_values(value))
@@ -501,7 +506,16 @@ def from_cells(
             affine = array.reshape(4, 4)
         elif name.startswith(_SPACE) and array.size:
             space[name[len(_SPACE) :]] = _space_value(array)
+    if groups and _are_of_others(len(offsets) - 1, field or {}, cell_data):
+        dropped["groups of other lines"] = len(groups)
+        groups, per_group = {}, {}
     return Streamlines(points, offsets, point_data, cell_data, groups, per_group, affine, space, dropped)
+
+
+def _are_of_others(n_lines: int, field: Mapping[str, Array], cell_data: Mapping[str, Array]) -> bool:
+    """Whether groups number the lines of what a filter took these lines from: filters pass field data on as it is."""
+    of = field.get(_GROUPS_OF)
+    return _EXTRACTED in cell_data if of is None or not of.size else int(of.flat[0]) != n_lines
 
 
 def _space_value(array: Array) -> Any:

@@ -144,6 +144,34 @@ def test_lines_among_the_cells_of_a_grid():
     assert taken.counts.tolist() == [3, 5]
 
 
+def a_grouped_grid():
+    mesh = a_mesh()
+    mesh.field_data["groups/short"], mesh.field_data["groups/all"] = np.array([0]), np.array([0, 1])
+    mesh.field_data["per_group/short/volume"] = np.array([3.5])
+    mesh.field_data["affine"] = np.diag([2.0, 2.0, 2.0, 1.0])
+    return mesh.cast_to_unstructured_grid()
+
+
+def test_groups_of_a_grid():
+    found = streamlines_of(a_grouped_grid())
+    assert {name: ids.tolist() for name, ids in found.groups.items()} == {"short": [0], "all": [0, 1]}
+    assert found.per_group["short"]["volume"].tolist() == [3.5]
+    np.testing.assert_array_equal(found.affine, np.diag([2.0, 2.0, 2.0, 1.0]))
+    again = streamlines_of(found.to_polydata().cast_to_unstructured_grid())
+    assert {name: ids.tolist() for name, ids in again.groups.items()} == {"short": [0], "all": [0, 1]}
+    assert not again.dropped
+
+
+@pytest.mark.parametrize("counted", [True, False])
+def test_groups_that_a_filter_passed_on_with_fewer_lines(counted):
+    grid = a_grouped_grid()
+    if counted:
+        grid = streamlines_of(grid).to_polydata().cast_to_unstructured_grid()
+    found = streamlines_of(grid.extract_cells([1]))
+    assert (len(found), found.groups, found.per_group) == (1, {}, {})
+    assert found.dropped["groups of other lines"] == 2
+
+
 def test_blocks_are_groups():
     """Of blocks in blocks too; arrays that one lacks are dropped, and counted."""
     one, other = a_mesh(0), a_mesh(1)
