@@ -416,8 +416,8 @@ class Streamlines:
         """PolyData with one polyline per streamline, in order, and all data.
 
         Per-point data becomes point data, per-streamline data cell data. Groups
-        (``groups/NAME``; ``groups_of``, of how many streamlines), their data (``per_group/NAME/KEY``), an affine that is not the
-        identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
+        (``groups/NAME``; ``groups_of``, of how many streamlines), their data (``per_group/NAME/KEY``), an affine that
+        is not the identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
         VTK loses arrays of text in some of its formats) are kept as field data.
         """
         import pyvista

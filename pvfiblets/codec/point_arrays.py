@@ -1,8 +1,14 @@
-"""One more number per point for a set that is compressed already."""
+"""One more number, or colour, per point for a set that is compressed already.
+
+A colour is three or four numbers: of ``NAME`` they are called ``NAME[0]`` for red to ``NAME[2]`` for blue, and
+``NAME[3]`` for alpha.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +16,10 @@ import numpy.typing as npt
 from .fibletset import FibletSet
 from .quantised import quantise_values
 
-__all__ = ["with_coded_values", "with_point_values"]
+__all__ = [
+    "colour_columns", "colours_of_points", "packed_colours", "unit_colours", "with_coded_values", "with_point_colours",
+    "with_point_values",
+]  # fmt: skip
 
 
 def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
@@ -40,3 +49,87 @@ def with_coded_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits
     finite = numbers[np.isfinite(numbers)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     return replace(fiblets, per_point={**fiblets.per_point, name: quantise_values(numbers, low, high, bits)})
+
+
+def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
+    """Return the names of the three or four arrays of an array of so many columns; empty where there is none."""
+    names = [f"{name}[{k}]" for k in range(5)]
+    count = sum(name in per_point for name in names)
+    return tuple(names[:count]) if count in (3, 4) and names[count] not in per_point else ()
+
+
+def unit_colours(name: str, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
+    """Return colours as floats from 0 to 1; what is no number is 0.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    colours : array_like
+        ``(n, 3 or 4)``: integers from 0 to 255, or floats from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If they have another shape or lie outside.
+    """
+    given = np.asarray(colours)
+    if given.ndim != 2 or given.shape[1] not in (3, 4):
+        raise ValueError(f"colours {name!r} have the shape {given.shape}; expected 3 or 4 columns")
+    most = 1.0 if given.dtype.kind == "f" else 255.0
+    low, high = float(np.nanmin(given, initial=0.0)), float(np.nanmax(given, initial=0.0))
+    if low < 0.0 or high > most:
+        raise ValueError(
+            f"colours {name!r} lie between {low:g} and {high:g}; floats must lie between 0 and 1, integers up to 255"
+        )
+    return np.nan_to_num(given / np.float32(most)).astype(np.float32)
+
+
+def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) -> FibletSet:
+    """Return a set that shares the arrays of another one and has a colour per point more.
+
+    Each channel takes a byte a point, and is off by half of 1/255 at most.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        Stays as it is.
+    name : str
+        Of the colours; numbers and colours of that name are replaced.
+    colours : array_like
+        ``(n_points, 3 or 4)`` in the order of the streamlines, as :func:`unit_colours` takes them.
+
+    Returns
+    -------
+    FibletSet
+    """
+    rows = fiblets.in_coded_order(unit_colours(name, colours))
+    before = {name, *colour_columns(fiblets.per_point, name)}
+    kept = {key: values for key, values in fiblets.per_point.items() if key not in before}
+    columns = {f"{name}[{k}]": quantise_values(rows[:, k], 0.0, 1.0) for k in range(rows.shape[1])}
+    return replace(fiblets, per_point={**kept, **columns})
+
+
+def colours_of_points(fiblets: FibletSet, name: str, index: Any = slice(None)) -> npt.NDArray[np.uint8]:
+    """Return colours of points, RGBA, ``(n, 4)`` uint8.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+    name : str
+        Columns beyond 1 are taken as bytes.
+    index : slice or array_like, optional
+        Which points, in the order in which they are coded; all by default.
+    """
+    columns = [fiblets.per_point[column] for column in colour_columns(fiblets.per_point, name)]
+    return packed_colours([column.values(index) for column in columns], max(column.hi for column in columns))
+
+
+def packed_colours(columns: Sequence[npt.NDArray[Any]], most: float | None = None) -> npt.NDArray[np.uint8]:
+    """Return RGBA, ``(n, 4)`` uint8, of three or four columns from 0 to 1, or to 255 where their `most` is above 1."""
+    most = max(float(np.nanmax(column, initial=0.0)) for column in columns) if most is None else most
+    unit = 1.0 if most <= 1.0 else 255.0
+    found = np.full((len(columns[0]), 4), 255, np.uint8)
+    for k, part in enumerate(columns):
+        found[:, k] = np.round(255.0 * np.clip(np.nan_to_num(part) / unit, 0.0, 1.0))
+    return found

@@ -12,9 +12,11 @@ if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 
 Mode = Literal[
-    "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"
+    "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba",
+    "point_packed", "pixel_count",
 ]  # fmt: skip
 
+_POINT_COLOURS = ("point_rgba", "point_packed")
 _TABLE_MODES = ("streamline_scalar", "point_scalar", "pixel_count")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
@@ -44,7 +46,8 @@ class Colouring:
         ``'streamline_rgba'``: `values`, one RGB or RGBA colour per streamline.
         ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
         ``'point_scalar'``: `source`, a number per point, through `lut`.
-        ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes only.
+        ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes and halos.
+        ``'point_packed'``: `source`, an RGB or RGBA colour per point, of fiblets.
         ``'pixel_count'``: how many lines a pixel holds, through `lut`; of fiblets, with a
         `pvfiblets.mappers.density.Density`.
     color : sequence of 3 floats, default (1, 1, 1)
@@ -66,7 +69,7 @@ class Colouring:
     below_color, above_color : sequence of 3 or 4 floats, optional
         For values outside `clim`; by default the colour of the nearer end.
     has_alpha : bool, default False
-        Whether some colour of ``'point_rgba'`` has an alpha below 1.
+        Whether some colour of ``'point_rgba'`` or ``'point_packed'`` has an alpha below 1.
     opacities : numpy.ndarray, optional
         (n_streamlines,) numbers from 0 to 1; NaN is 0.
     opacity_source : str, optional
@@ -106,11 +109,12 @@ class Colouring:
             self._check_rgb()
         if self.mode == "point_scalar" and not self.source:
             raise ValueError("mode 'point_scalar' needs source: the name of a per-point array, or a volume")
-        if self.mode == "point_rgba" and not isinstance(self.source, str):
-            raise ValueError(f"mode 'point_rgba' needs source: the name of the tubes' colours, not {self.source!r}")
+        if self.mode in _POINT_COLOURS and not isinstance(self.source, str):
+            raise ValueError(f"mode {self.mode!r} needs source: the name of the points' colours, not {self.source!r}")
         if self.mode in _TABLE_MODES:
             self._check_table()
-        if self.opacity_source is not None and self.mode == "point_scalar" and self.source != self.opacity_source:
+        at_points = self.mode in ("point_scalar", "point_packed")
+        if self.opacity_source is not None and at_points and self.source != self.opacity_source:
             raise ValueError(
                 f"opacities of points are {self.opacity_source!r}, but {self.source!r} colours points: one number at "
                 "points goes with a picture; colour by the same, or by streamline, or give one opacity per streamline"
@@ -160,6 +164,7 @@ class Colouring:
             "streamline_scalar": ["colour_streamline"],
             "point_scalar": ["colour_point_scalar"],
             "point_rgba": ["colour_point_rgba"],
+            "point_packed": ["colour_point_packed"],
             "pixel_count": ["colour_point_scalar", "density_value"],
         }[self.mode]
         if self.mode in ("point_scalar", "pixel_count") and self.log_scale:
@@ -173,7 +178,7 @@ class Colouring:
     @property
     def point_source(self) -> str | VolumeSource | None:
         """Per-point value or colour that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode in ("point_scalar", "point_rgba") else self.opacity_source
+        return self.source if self.mode in ("point_scalar", *_POINT_COLOURS) else self.opacity_source
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -276,7 +281,7 @@ class Colouring:
             return True
         if self.mode == "streamline_rgba" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
-        if self.mode == "point_rgba":
+        if self.mode in _POINT_COLOURS:
             return self.has_alpha
         return self.mode in _TABLE_MODES and bool((self.table()[:, 3] < 255).any())
 

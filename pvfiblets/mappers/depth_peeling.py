@@ -17,6 +17,7 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 
 _BESIDE = {
     "colour_point_scalar": "layers_value",
+    "colour_point_packed": "layers_value",
     "opacity_point": "layers_opacity",
     "tube_normal": "layers_normal",
     "tube_shading": "layers_across",

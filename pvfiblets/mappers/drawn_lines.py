@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.codec.point_arrays import colour_columns, packed_colours
 from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segment_ids
 
 if TYPE_CHECKING:
@@ -123,6 +124,9 @@ def _fiblet_colours(lines: LineData, decoded: Streamlines, colouring: Colouring)
             colours = colouring.map_values(decoded.per_point[source])
         else:
             colours = colouring.map_values(_measured(source, lines))
+    elif colouring.mode == "point_packed":
+        columns = colour_columns(decoded.per_point, str(colouring.source))
+        colours = packed_colours([decoded.per_point[name] for name in columns])
     else:
         colours = _by_line(lines, colouring)
     return _faded(colours, lines, colouring, decoded.per_point)

@@ -52,6 +52,8 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
         return Paint("solid", color=tuple(colouring.color), **common)
     if "fibletStreamlineColours" in textures:
         return Paint("streamline", colours=textures["fibletStreamlineColours"], **common)
+    if colouring.mode == "point_packed":
+        return Paint("point", **common)
     return Paint(
         "table",
         colours=textures["fibletTable"],

@@ -37,6 +37,7 @@ FEATURES = (
     "colour_solid",
     "colour_streamline",
     "colour_point_rgba",
+    "colour_point_packed",
     "colour_point_scalar",
     "layers_value",
     "density_value",

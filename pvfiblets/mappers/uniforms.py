@@ -22,6 +22,8 @@ def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) ->
     elif "colour_point_scalar" in features:
         textures["fibletPositionMap"] = buffer.position
         lists["fibletTable"] = colouring.table
+    elif "colour_point_packed" in features:
+        textures["fibletPositionMap"] = buffer.position
     elif "colour_point_rgba" in features:
         textures["fibletColourMap"] = buffer.colours
     if "opacity_streamline" in features:

@@ -57,14 +57,15 @@ def painted_fiblets(fiblets: FibletSet, data: Any, mapper: Any) -> tuple[FibletS
         return fiblets, _plain(mapper)
     if paint.cell_colours is not None:
         return fiblets, _of_cells(paint, data)
-    if paint.numbers is None:
-        raise ValueError(
-            f"{paint.name!r} are a colour per point, and fiblets have one per line; give them to the cells, or draw "
-            "them by TubeMapper or HaloMapper"
-        )
-    from pvfiblets.codec.point_arrays import with_point_values
+    from pvfiblets.codec.point_arrays import with_point_colours, with_point_values
 
     _, ids, _ = _lines_of(data, "fiblets")
+    if paint.point_colours is not None:
+        clear = bool((paint.point_colours[:, 3] < 255).any())
+        rows = paint.point_colours[ids][:, : 4 if clear else 3]
+        colouring = Colouring("point_packed", source=paint.name, has_alpha=clear)
+        return with_point_colours(fiblets, paint.name, rows), colouring
+    assert paint.numbers is not None  # of a paint's three there is one
     return with_point_values(fiblets, paint.name, paint.numbers[ids], POINT_BITS), paint.mapped(paint.name)
 
 

@@ -195,6 +195,8 @@ def make_colouring(
         )
     if scalars.kind == "point_rgba":
         return Colouring(mode="point_rgba", source=scalars.name, has_alpha=scalars.has_alpha)
+    if scalars.kind == "point_packed":
+        return Colouring(mode="point_packed", source=scalars.name, has_alpha=scalars.has_alpha)
     if not scalars.mapped:
         return Colouring(mode=scalars.kind, values=scalars.values)
     return Colouring(

@@ -31,7 +31,7 @@ from pvfiblets.report.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLE
 __all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "rows", "varied"]
 
 VALUES = ("VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME")
-PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE")
+PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE", "PAINT_POINT")
 INTEGRATORS = (
     "VOLUME_PREINTEGRATED", "VOLUME_RIEMANN", "VOLUME_SIMPSON", "VOLUME_ROMBERG", "VOLUME_RK4",
 )  # fmt: skip
@@ -66,6 +66,8 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "PAINTED": tuple((source, "GATHER") for source in PAINTS),
     **dict.fromkeys((*PAINTS, "PAINT_LIGHT", "PAINT_ALPHA"), (("PAINTED",),)),
     "PAINT_TABLE": tuple((value, "PAINTED") for value in VALUES),
+    "VALUES_COLOUR": (("VALUES_STORED",),),
+    "PAINT_POINT": (("VALUES_COLOUR", "PAINTED"),),
     "PAINT_LOGARITHM": (("PAINT_TABLE",),),
     "PAINT_OPACITIES": (("PAINT_ALPHA",),),
     "PAINT_VALUE_OPACITY": tuple((value, "PAINT_ALPHA") for value in VALUES),

@@ -469,17 +469,14 @@ def test_what_cannot_be_drawn_is_said_once_and_mended():
     assert shot(window).any()
     mapper.SetScalarModeToUsePointFieldData()
     mapper.SelectColorArray("tints")
-    assert not shot(window).any()
-    assert "'tints' are a colour per point" in said[1]
-    mapper.SelectColorArray("height")
     assert shot(window).any()
-    assert len(said) == 2
+    assert len(said) == 1
     mapper.RemoveAllInputConnections(0)
     image = vtkImageData()
     image.SetDimensions(2, 2, 2)
     mapper.SetInputDataObject(0, image)
     assert not shot(window).any()
-    assert "connect PolyData" in said[2]
+    assert "connect PolyData" in said[1]
     window.Finalize()
 
 

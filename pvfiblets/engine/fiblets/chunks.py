@@ -25,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec import layout
+from ...codec.point_arrays import colour_columns
 from ..bindings import BLOCKS, STORAGE
 from ..errors import EngineError, GPUMemoryError
 from ..uniform_struct import Field, UniformStruct
@@ -176,6 +177,8 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
     if fiblets.anchors_low is not None:
         sizes["anchors_low"] = 6 * (n + 1)
     widest = max((values.codes.dtype.itemsize for values in fiblets.per_point.values()), default=0)
+    if any(name.endswith("[2]") and colour_columns(fiblets.per_point, name[:-3]) for name in fiblets.per_point):
+        widest = 4
     return ChunkPlan(
         (begin, end),
         (first, last),

@@ -20,9 +20,9 @@ class Paint:
 
     Parameters
     ----------
-    source : {'none', 'direction', 'solid', 'streamline', 'table'}
+    source : {'none', 'direction', 'solid', 'streamline', 'table', 'point'}
         No colour; the absolute value of its direction; one colour; a colour per streamline; the style's per-point value
-        through a table.
+        through a table, or as the colour that it is.
     color : tuple of 3 floats
         For ``'solid'``, 0 to 1.
     colours : moderngl.Texture, optional

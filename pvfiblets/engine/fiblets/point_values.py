@@ -4,6 +4,7 @@
 value                         what the GPU holds for it                   unit
 ============================  ==========================================  ==============================
 a name in ``per_point``       its codes, one or two bytes per point       the array's own
+a name of three or four       a word per point: red, green, blue, alpha   a colour, packed into a number
 ``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
 ``'curvature'``               a float32 per fiblet: the anchor's          1/mm
 a :class:`VolumeSource`       the volume                                  the volume's own
@@ -25,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec import layout
+from ...codec.point_arrays import colour_columns, colours_of_points
 from ..errors import EngineError
 from .chunks import CHUNK_BLOCK, Chunk, padded, storage_buffer
 from .measures import Measurer
@@ -39,6 +41,8 @@ __all__ = ["ValueSources"]
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
 
 Floats = npt.NDArray[np.float64]
+
+_ROWS = 1 << 20  # colours made at a time
 
 
 @dataclass
@@ -88,7 +92,7 @@ class ValueSources:
         self._volume: VolumeTexture | None = None
         self._ranges: dict[str, tuple[float, float]] = {}
 
-    def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> str | None:
+    def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> tuple[str, ...]:
         """Make the buffers of a value, and drop those of the last one.
 
         Parameters
@@ -100,8 +104,8 @@ class ValueSources:
 
         Returns
         -------
-        str or None
-            The feature that reads them.
+        tuple of str
+            The features that read them.
 
         Raises
         ------
@@ -116,14 +120,18 @@ class ValueSources:
                 self._volume = VolumeTexture(self._ctx, name)
             elif name in (ARC_LENGTH, CURVATURE):
                 self._make_starts(name, features)
-            elif name is not None:
+            elif name is not None and name in self._fiblets.per_point:
                 self._copy_stored(name)
+            elif name is not None:
+                self._copy_colours(name)
             self._active = name
         if name is None:
-            return None
+            return ()
         if isinstance(name, VolumeSource):
-            return "VALUES_VOLUME"
-        return {ARC_LENGTH: "VALUES_ARC_LENGTH", CURVATURE: "VALUES_CURVATURE"}.get(name, "VALUES_STORED")
+            return ("VALUES_VOLUME",)
+        if name in (ARC_LENGTH, CURVATURE):
+            return ("VALUES_ARC_LENGTH" if name == ARC_LENGTH else "VALUES_CURVATURE",)
+        return ("VALUES_STORED",) if name in self._fiblets.per_point else ("VALUES_STORED", "VALUES_COLOUR")
 
     def locate(self, to_data: Floats) -> None:
         """Bind the volume, if one is active, for a picture whose local coordinates lie here.
@@ -154,6 +162,8 @@ class ValueSources:
             return name.range
         self._check(name)
         if name not in (ARC_LENGTH, CURVATURE):
+            if name not in self._fiblets.per_point:
+                raise EngineError(f"{name!r} are colours, which have no range")
             stored = self._fiblets.per_point[name]
             return float(stored.lo), float(stored.hi)
         if name not in self._ranges:
@@ -162,7 +172,8 @@ class ValueSources:
         return self._ranges[name]
 
     def _check(self, name: str) -> None:
-        if name not in (ARC_LENGTH, CURVATURE) and name not in self._fiblets.per_point:
+        known = name in (ARC_LENGTH, CURVATURE) or name in self._fiblets.per_point
+        if not known and not colour_columns(self._fiblets.per_point, name):
             raise EngineError(
                 f"the fiblets hold no per-point array {name!r}; there are "
                 f"{sorted(self._fiblets.per_point)}, {ARC_LENGTH!r} and {CURVATURE!r}"
@@ -188,6 +199,18 @@ class ValueSources:
             CHUNK_BLOCK.write(
                 chunk.buffers["chunk"], value_bits=bits, value_of_code_0=stored.lo, value_per_code=scale
             )
+
+    def _copy_colours(self, name: str) -> None:
+        fiblets = self._fiblets
+        clear = len(colour_columns(fiblets.per_point, name)) > 3
+        for chunk in self._chunks:
+            first, last = chunk.plan.points
+            last = min(last + 1, fiblets.n_points)  # as of stored values
+            pieces = (
+                colours_of_points(fiblets, name, slice(at, min(at + _ROWS, last))) for at in range(first, last, _ROWS)
+            )
+            chunk.buffers["values"] = fill_buffer(self._ctx, padded(4 * (last - first)), pieces, name)
+            CHUNK_BLOCK.write(chunk.buffers["chunk"], value_bits=32 if clear else 24)
 
     def _make_starts(self, name: str, features: Sequence[str]) -> None:
         starts = dict(enumerate(self._starts(name, features)))

@@ -192,7 +192,7 @@ class FibletRenderer(LinesBehind):
             target=target,
             passes=self._passes,
             decoding=tuple(decoding),
-            values=(source,) if source else (),
+            values=source,
             clipping=clipping or planes or bool(kept.cutting),
             planes=("CLIP_PLANES",) if planes else (),
             detail=("LEVEL_OF_DETAIL",) if style.tolerance > 0.0 else (),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.codec.point_arrays import colour_columns
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups, own_colour
@@ -22,6 +23,7 @@ from pvfiblets.query.measures import COMPUTED, Distance, measure
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.codec.quantised import QuantisedPoints
     from pvfiblets.streamlines import Streamlines
 
 ORIENTATION = "orientation"
@@ -59,7 +61,8 @@ class Scalars:
     ----------
     name : str
         For the scalar bar, and for the engine where ``kind`` is ``"point_scalar"``.
-    kind : {"orientation", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "pixel_count"}
+    kind : {"orientation", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba", "point_packed", \
+            "pixel_count"}
         How the mapper has to use them.
     values : array, optional
         (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
@@ -74,7 +77,7 @@ class Scalars:
     volume : VolumeSource, optional
         To be sampled at the points, where ``kind`` is ``"point_scalar"``.
     has_alpha : bool
-        Whether some of the colours of ``"point_rgba"`` have an alpha below 1.
+        Whether some of the colours of points have an alpha below 1.
     percentile : float, optional
         Of the values, at which the range ends where it does not end at the largest.
     """
@@ -169,6 +172,8 @@ def find_scalars(
         low, high = stored.lo, stored.hi
         smallest = max(low, (high - low) / stored.levels, 1e-30)
         return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
+    if columns := colour_columns(fiblets.per_point, scalars):
+        return _of_colours(scalars, [fiblets.per_point[name] for name in columns])
     if scalars in fiblets.per_streamline:
         return of_streamlines(scalars, fiblets.per_streamline[scalars], fiblets.n_streamlines, rgb)
     if scalars == ORIENTATION:
@@ -200,6 +205,18 @@ def find_scalars(
             "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
         )
     raise KeyError(missing_message(fiblets, scalars))
+
+
+def _of_colours(name: str, columns: list[QuantisedPoints]) -> Scalars:
+    """Colours of points, of which the fiblets hold each channel."""
+    low, high = min(column.lo for column in columns), max(column.hi for column in columns)
+    if low < 0.0 or high > 255.0:
+        raise ValueError(
+            f"scalars {name!r} are vectors from {low:g} to {high:g}, of which the fiblets hold each column; colour by "
+            f"one ({name + '[0]'!r}), or by their magnitude, an array"
+        )
+    clear = len(columns) > 3 and columns[3].lo < (1.0 if high <= 1.0 else 255.0)
+    return Scalars(name, "point_packed", has_alpha=clear)
 
 
 def are_colours(values: np.ndarray, rgb: bool | None) -> bool:

@@ -209,7 +209,8 @@ class SelectionOverlay:
         filtering = mapper.filtering
         masked = filtering is not None and filtering.points is not None
         values = None if self._color is not None else mapper.colouring.point_source
-        if not self._few or mapper.region is not None or masked or not isinstance(values, str | None):
+        packed = self._color is None and mapper.colouring.mode == "point_packed"  # which tubes cannot read
+        if packed or not self._few or mapper.region is not None or masked or not isinstance(values, str | None):
             return None
         kept = None if filtering is None else filtering.streamlines
         if self._plan is not None and self._plan.kept is kept and self._plan.values == values:

@@ -13,7 +13,7 @@ import numpy as np
 
 from pvfiblets import formats
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.codec.point_arrays import with_coded_values
+from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_point_colours
 from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
@@ -105,17 +105,22 @@ def as_fiblets(
         if scalars in streamlines.per_point:
             keep.append(scalars)
             vectors = np.asarray(streamlines.per_point[scalars])
-            if vectors.ndim > 1:
+            if are_colours(vectors, _by_name(scalars, rgb)):
+                keep = [name for name in keep if name != scalars] + _hold_colours(streamlines, scalars, vectors)
+            elif vectors.ndim > 1:
                 columns = {f"{scalars}[{k}]": vectors[:, k] for k in range(vectors.shape[1]) if scalars in keep[:-1]}
-                lengths = numbers_of_points(scalars, vectors, rgb)
+                lengths = numbers_of_points(scalars, vectors)
                 streamlines.per_point = {**streamlines.per_point, **columns, scalars: lengths}
                 keep += columns
     elif scalars is not None and volume is None and not isinstance(scalars, Distance):
         values = np.asarray(scalars)
         if len(values) == streamlines.n_points != len(streamlines):
-            values = numbers_of_points(UNNAMED, values, rgb)
-            streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
-            keep.append(UNNAMED)
+            if are_colours(values, rgb):
+                keep += _hold_colours(streamlines, UNNAMED, values)
+            else:
+                values = numbers_of_points(UNNAMED, values)
+                streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
+                keep.append(UNNAMED)
             scalars = UNNAMED
     nan = options.pop("nan", "error")
     per_line = isinstance(scalars, np.ndarray) and len(scalars) == len(streamlines) and scalars.dtype.kind in "buif"
@@ -137,14 +142,14 @@ def as_fiblets(
 
 
 def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None) -> tuple[FibletSet, Colours]:
-    """Store ``scalars`` with the fiblets if they are an array with one number per point, or a file of values.
+    """Store ``scalars`` with the fiblets if they are an array with a number or colour per point, or a file of values.
 
     Parameters
     ----------
     fiblets : FibletSet
         Stays as it is.
     scalars : str or path or array or None
-        Anything but an array of ``n_points`` numbers, or rows of them, and the path of a file of values is passed
+        Anything but an array of ``n_points`` numbers, vectors or colours, and the path of a file of values is passed
         through.
     rgb : bool, optional
         As for :func:`as_fiblets`.
@@ -171,8 +176,7 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
     values = np.asarray(scalars)
     if values.shape[:1] != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
         return fiblets, values
-    values = numbers_of_points(UNNAMED, values, rgb)
-    return add_values(fiblets, UNNAMED, values), UNNAMED
+    return _with_points(fiblets, UNNAMED, values, rgb), UNNAMED
 
 
 def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool | None = None) -> FibletSet:
@@ -195,24 +199,39 @@ def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool |
     name = name_of(path)
     if where == "per_streamline":
         return replace(fiblets, per_streamline={**fiblets.per_streamline, name: values})
-    return add_values(fiblets, name, numbers_of_points(name, values, rgb))
+    return _with_points(fiblets, name, values, rgb)
 
 
-def numbers_of_points(name: str, values: np.ndarray, rgb: bool | None) -> np.ndarray:
+def _with_points(fiblets: FibletSet, name: str, values: np.ndarray, rgb: bool | None) -> FibletSet:
+    """Store numbers, vectors or colours of points."""
+    if are_colours(values, _by_name(name, rgb)):
+        return with_point_colours(fiblets, name, values)
+    return add_values(fiblets, name, numbers_of_points(name, values))
+
+
+def _hold_colours(streamlines: Streamlines, name: str, colours: np.ndarray) -> list[str]:
+    """Have streamlines hold colours of points by their channels, and return what these are called."""
+    rows = unit_colours(name, colours)
+    columns = {f"{name}[{k}]": rows[:, k] for k in range(rows.shape[1])}
+    streamlines.per_point = {key: held for key, held in streamlines.per_point.items() if key != name} | columns
+    return list(columns)
+
+
+def _by_name(name: str, rgb: bool | None) -> bool | None:
+    """Take what ends so for colours, as `add_mesh` does."""
+    return True if rgb is None and name.endswith(("_rgb", "_rgba")) else rgb
+
+
+def numbers_of_points(name: str, values: np.ndarray) -> np.ndarray:
     """Return one number per point: the values themselves, or the magnitude of vectors.
 
     Raises
     ------
     ValueError
-        If they are colours or words: fiblets store a number per point.
+        If they are words.
     """
     if values.dtype.kind not in "buif":
         raise ValueError(f"scalars {name!r} are words per point; fiblets take words per streamline, numbers per point")
-    if are_colours(values, rgb):
-        raise ValueError(
-            f"scalars {name!r} are a colour per point, and fiblets have one per streamline; add_spline_tubes and "
-            "add_halo_lines draw one per point, and rgb=False maps the magnitude"
-        )
     return values if values.ndim == 1 else magnitudes(values)
 
 

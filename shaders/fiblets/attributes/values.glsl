@@ -1,6 +1,7 @@
 // The per-point value of the G-buffer, if the style asks for one; without, nothing of this file is left but a zero.
 //
 //   stored       one or two bytes per point; code c means value_of_code_0 + value_per_code * c, the largest means NaN
+//   colours      stored as a word per point, RGBA; the value is a colour as a number (fiblets/attributes/packed_colour.glsl)
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
 //   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
 //                anchor, because the segment before an anchor is another fiblet's
@@ -13,22 +14,28 @@
 #include "fiblets/data/values.glsl"
 
 #if FEATURE_VALUES_STORED
+#if FEATURE_VALUES_COLOUR
+#include "fiblets/attributes/packed_colour.glsl"
+#endif
 uint values_first;
 uint values_last;  // index within the fiblet of the last point that a segment of it reaches
 
+#if FEATURE_VALUES_COLOUR
+vec4 point_colour(uint segment) {
+    uint word = value_word(values_first + min(segment, values_last));
+    return vec4(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u, word >> 24u) / 255.0;
+}
+
+float value_along(uint segment, float t, uint step, float rest) {
+    return packed_colour(mix(point_colour(segment + step), point_colour(segment + step + 1u), rest), value_bits == 24u);
+}
+#else
 // Two codes of 16 bits or four of 8 to a word. A chunk's points are fewer than 2^32, their bits are not.
 uint value_code(uint segment) {
     uint bits = value_bits, point = values_first + min(segment, values_last);
     uint shift = bits == 8u ? 2u : 1u, within = point & ((1u << shift) - 1u);
     return bitfieldExtract(value_word(point >> shift), int(within * bits), int(bits));
 }
-
-void begin_values(uint f) {
-    values_first = first_point_of(f);
-    values_last = fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u);
-}
-
-void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_along(uint segment, float t, uint step, float rest) {
     segment += step;
@@ -40,6 +47,14 @@ float value_along(uint segment, float t, uint step, float rest) {
     }
     return value_of_code_0 + value_per_code * mix(float(a), float(b), t);
 }
+#endif
+
+void begin_values(uint f) {
+    values_first = first_point_of(f);
+    values_last = fiblet_last(decoding_words(f)) + (ends(f) ? 0u : 1u);
+}
+
+void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 
 float value_of_point(uint i) { return 0.0; }
 

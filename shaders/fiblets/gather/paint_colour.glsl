@@ -6,6 +6,8 @@ vec4 line_colour(uint streamline, vec3 tangent, float value) { return vec4(abs(t
 uniform vec3 paint_solid;
 
 vec4 line_colour(uint streamline, vec3 tangent, float value) { return vec4(paint_solid, 1.0); }
+#elif FEATURE_PAINT_POINT
+vec4 line_colour(uint streamline, vec3 tangent, float value) { return unpacked_colour(value); }
 #else
 // Row by row, one colour a streamline; or a table's, then those of below, above and NaN (resolve/colour_point_scalar.glsl).
 uniform sampler2D paint_colours;
