@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets import cli
+from pvfiblets import cli, cli_scene_arguments
 from pvfiblets.codec.compress import compress
 from pvfiblets.engine.effects.halos import HaloPass
 from pvfiblets.mappers.spacing import MOST_STREAMLINES, line_spacing_of
@@ -202,7 +202,7 @@ def test_a_page_takes_a_look_and_says_when_it_is_one_no_more():
 
 
 def test_the_command_draws_looks(tmp_path, plotter):
-    assert tuple(LOOKS) == cli.LOOKS
+    assert tuple(LOOKS) == cli_scene_arguments.LOOKS
     from pvfiblets import formats
 
     lines, picture = tmp_path / "lines.tck", tmp_path / "ink.png"

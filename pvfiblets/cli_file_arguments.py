@@ -1,0 +1,187 @@
+"""Arguments of the commands that take files and write files."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from pvfiblets.cli_memory import add_memory_option
+from pvfiblets.cli_values import angle, positive
+from pvfiblets.codec.parameters import DEFAULT_ANGLE
+
+__all__ = ["add_connectome", "add_convert", "add_density", "add_info", "add_table", "add_verify", "json_option"]
+
+
+def add_convert(commands: Any) -> None:
+    """``convert``."""
+    convert = commands.add_parser(
+        "convert",
+        help="compress a tractogram, or write it in another format",
+        description="Compress IN to a .fiblets file, or convert between any two formats; the suffixes say which.",
+    )
+    convert.add_argument("source", metavar="IN", help="a tractogram of any format")
+    convert.add_argument("target", metavar="OUT", help="what to write: .fiblets, .tck, .trk, .trx, .vtk or .vtp")
+    convert.add_argument(
+        "--step", type=positive, metavar="MM", help="resample to this distance, and keep corners (default: keep points)"
+    )
+    convert.add_argument(
+        "--max-error",
+        type=positive,
+        metavar="MM",
+        help="greatest error of any point (default: a tenth of a step; of uneven or coarse lines 1/4000 of the extent "
+        "if that is less)",
+    )
+    convert.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help="greatest angle between true and drawn directions, at segments longer than a pixel of a full-screen view "
+        f"(default: {DEFAULT_ANGLE:g}); none: any, for smaller files where --max-error is coarse",
+    )
+    convert.add_argument(
+        "--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error, same size"
+    )
+    convert.add_argument(
+        "--per-point",
+        action="append",
+        default=[],
+        metavar="all|none|NAME",
+        help="per-point arrays to keep; a name may be given several times (default: in the order of IN, each that "
+        "still fits into 16 bytes a point); those that stay behind are printed, and listed by info",
+    )
+    convert.add_argument(
+        "--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)"
+    )
+    convert.add_argument(
+        "--exact",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="keep every bit of the points, or code them in any case (default: exact if less than a megabyte, unless "
+        "an option of coding is given, or if coding would take more bytes)",
+    )
+    _quiet_and_json(convert)
+    add_memory_option(convert)
+    convert.set_defaults(run="pvfiblets.cli_files:convert")
+
+
+def add_info(commands: Any) -> None:
+    """``info``."""
+    info = commands.add_parser(
+        "info",
+        help="say what a file holds",
+        description="Print size, counts, arrays, groups and affine of FILE; of a .fiblets file, step and promise too.",
+    )
+    info.add_argument("path", metavar="FILE", help="a tractogram of any format")
+    json_option(info)
+    add_memory_option(info)
+    info.set_defaults(run="pvfiblets.cli_files:info")
+
+
+def add_verify(commands: Any) -> None:
+    """``verify``."""
+    verify = commands.add_parser(
+        "verify",
+        help="check a .fiblets file against its checksums and against its original",
+        description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL, "
+        "and its directions from theirs. Fails if the file is damaged or an error is greater than the file promises.",
+    )
+    verify.add_argument("path", metavar="FILE", help="a .fiblets file")
+    verify.add_argument(
+        "original", metavar="ORIGINAL", nargs="?", help="what it was made from; without it, only checksums"
+    )
+    verify.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help=f"say whether directions are within this angle (default: {DEFAULT_ANGLE:g})",
+    )
+    _quiet_and_json(verify)
+    add_memory_option(verify)
+    verify.set_defaults(run="pvfiblets.cli_files:verify")
+
+
+def add_density(commands: Any) -> None:
+    """``density``."""
+    parser = commands.add_parser("density", help="write a volume of how many streamlines pass each voxel, or of more")
+    parser.description = (
+        "Add the streamlines of IN up in the voxels of a grid, with every segment cut at the voxels' faces, and write "
+        "the volume to OUT."
+    )
+    parser.add_argument("source", metavar="IN", help="a tractogram of any format; it is read in parts")
+    parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz")
+    grid = parser.add_mutually_exclusive_group(required=True)
+    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
+    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI, MGH, NRRD, MetaImage or .vti")
+    parser.add_argument(
+        "--contrast",
+        default="count",
+        metavar="WHAT",
+        help="count: streamlines that visit a voxel; length: mm in it; direction: mean |x|, |y|, |z| of the tangent; "
+        "or the mean of values: the name of an array, or a file with a number per streamline or point (default: count)",
+    )
+    parser.add_argument(
+        "--weights",
+        metavar="WHAT",
+        help="of the streamlines, such as SIFT2's: a file of numbers, or the name of an array",
+    )
+    parser.add_argument("--ends-only", action="store_true", help="count end points instead")
+    _quiet_and_json(parser)
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli_density:density")
+
+
+def add_connectome(commands: Any) -> None:
+    """``connectome``."""
+    matrix = commands.add_parser(
+        "connectome",
+        help="write a matrix of how strongly the parcels of an atlas are connected",
+        description="Write a symmetric matrix of parcels by parcels: streamlines of IN whose ends lie in both, or the "
+        "mean of their numbers. It holds the labels that LABELS has, rising.",
+    )
+    matrix.add_argument("source", metavar="IN", help="a tractogram of any format")
+    matrix.add_argument("labels", metavar="LABELS", help="a NIfTI image of whole numbers, 0 for no parcel")
+    matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file")
+    matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
+    matrix.add_argument(
+        "--contrast", default="count", metavar="NAME|FILE",
+        help="'count' (default), 'length', or numbers by the name of an array or a file",
+    )  # fmt: skip
+    matrix.add_argument(
+        "--radius", type=float, default=4.0, metavar="MM",
+        help="about an end in which its parcel is looked for; 0: the voxel it lies in (default: %(default)s)",
+    )  # fmt: skip
+    matrix.add_argument(
+        "--statistic",
+        choices=("sum", "mean", "min", "max"),
+        help="of a pair's numbers (default: sum of counts, else mean)",
+    )
+    json_option(matrix)
+    add_memory_option(matrix)
+    matrix.set_defaults(run="pvfiblets.cli_connectome:connectome")
+
+
+def add_table(commands: Any) -> None:
+    """``table``."""
+    table = commands.add_parser(
+        "table",
+        help="write a row for each streamline: length, ends, groups, values",
+        description="Write comma-separated values, a row for each streamline of IN: points, length, curvature, ends "
+        "(mm), groups, per-streamline values, and means of per-point values.",
+    )
+    table.add_argument("source", metavar="IN", help="a tractogram of any format")
+    table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
+    table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
+    add_memory_option(table)
+    table.set_defaults(run="pvfiblets.cli_files:table")
+
+
+def json_option(parser: argparse.ArgumentParser) -> None:
+    """``--json``."""
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+
+
+def _quiet_and_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    json_option(parser)

@@ -1,0 +1,147 @@
+"""Arguments of the commands that draw."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from pvfiblets.cli_scene import add_options
+from pvfiblets.cli_values import antialias, count, positive, size
+
+__all__ = ["LOOKS", "VIEWS", "add_screenshot", "add_serve", "add_show"]
+
+# Those of pvfiblets.plotting.fiblets.looks, without loading it.
+LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
+VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
+
+
+def add_screenshot(commands: Any) -> None:
+    """``screenshot``."""
+    screenshot = commands.add_parser(
+        "screenshot",
+        help="draw files into a PNG, without a display",
+        description="Draw FILEs off screen, as one scene, and write the picture.",
+    )
+    _scene(screenshot)
+    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="the picture to write")
+    screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
+    screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
+    screenshot.set_defaults(run="pvfiblets.cli_pictures:screenshot")
+
+
+def add_show(commands: Any) -> None:
+    """``show``."""
+    show = commands.add_parser(
+        "show",
+        help="open files in a window",
+        description="Draw FILEs in a window, as one scene: the left button turns it, the wheel zooms, q closes it.",
+    )
+    _scene(show)
+    show.set_defaults(run="pvfiblets.cli_pictures:show")
+
+
+def add_serve(commands: Any) -> None:
+    """``serve``."""
+    parser = commands.add_parser("serve", help="explore files in a browser; this machine draws")
+    parser.description = (
+        "Serve FILEs to browsers. This machine draws and sends pictures; browsers need nothing installed. By default "
+        "only this machine can connect, and must show a token that is printed to the terminal."
+    )
+    add = parser.add_argument
+    add("paths", metavar="FILE", nargs="*", help="tractograms of any format; a .tsf file colours the one before it")
+    add("--volume", action="append", default=[], metavar="F", help="a volume beside them; may be given several times")
+    add("--mesh", action="append", default=[], metavar="F", help="a mesh beside them; may be given several times")
+    add("--demo", action="store_true", help="open a made-up tractogram")
+    add("--host", default="127.0.0.1", help="where to listen (default: %(default)s, this machine only)")
+    add("--port", type=int, default=8080, metavar="N", help="0: any that is free (default: %(default)s)")
+    add("--root", default=".", metavar="DIR", help="the folder that browsers may open files from (default: this one)")
+    add(
+        "--token",
+        default="auto",
+        metavar="auto|none",
+        help="what a browser must show (default: auto, made anew; or the environment variable PVFIBLETS_TOKEN); none "
+        "only where nobody else can connect",
+    )
+    add("--token-file", metavar="FILE", help="a file with the token, which others cannot read; made if there is none")
+    add("--shared", action="store_true", help="all browsers see and steer the same view")
+    add("--limit", type=count, default=8, metavar="N", help="sessions at once (default: %(default)s)")
+    add(
+        "--timeout",
+        type=positive,
+        default=300.0,
+        metavar="SECONDS",
+        help="how long a session waits for its browser to come back (default: 300)",
+    )
+    add("--upload", type=int, default=2048, metavar="MB", help="most in one upload (default: %(default)s)")
+    add(
+        "--memory",
+        default="auto",
+        metavar="SIZE",
+        help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
+        "least 20%%)",
+    )
+    _look(parser)
+    _antialias(parser)
+    add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
+    add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
+    add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
+    add(
+        "--proxy",
+        action="append",
+        default=[],
+        metavar="ADDRESS",
+        help="a proxy that is believed when it says (X-Forwarded-For) for whom it asks; may be given several times",
+    )
+    add("--connections", type=count, default=1000, metavar="N", help="connections at once (default: %(default)s)")
+    add(
+        "--connections-by-address",
+        type=count,
+        default=100,
+        metavar="N",
+        help="connections at once from one address (default: %(default)s)",
+    )
+    parser.set_defaults(run="pvfiblets.cli_serve:serve")
+
+
+def _scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
+        "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json"
+    )  # fmt: skip
+    parser.add_argument(
+        "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"
+    )
+    parser.add_argument(
+        "--scalars",
+        metavar="NAME",
+        help="orientation, length, curvature, arc_length, an array of the file, or a file "
+        "of values beside it: .tsf, .npy, .txt, .csv",
+    )
+    parser.add_argument("--color", help="one colour for all, such as white or #ff8800")
+    parser.add_argument("--cmap", help="colour map, such as viridis")
+    parser.add_argument("--clim", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colour map")
+    _look(parser)
+    parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="of lines (default: 1)")
+    parser.add_argument("--opacity", type=float, metavar="SHARE", help="0 to 1 (default: 1)")
+    parser.add_argument("--background", metavar="COLOR", help="behind it all (default: black)")
+    parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
+    _antialias(parser)
+    add_options(parser)
+
+
+def _look(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--look",
+        choices=LOOKS,
+        help="of lines: widths, light and shading that give a finished picture together; other options go before it",
+    )
+
+
+def _antialias(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--antialias",
+        type=antialias,
+        metavar="HOW",
+        help="of edges: off, coverage, refined (16 samples a pixel where nothing moves) or a number of samples "
+        "(default: refined, or what the environment variable PVFIBLETS_ANTIALIAS says)",
+    )
