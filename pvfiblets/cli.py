@@ -17,6 +17,7 @@ from pvfiblets import cli_file_arguments as files
 from pvfiblets import cli_scene_arguments as scenes
 from pvfiblets.cli_batch import add_options as add_batch_options
 from pvfiblets.cli_memory import held_to
+from pvfiblets.cli_pipes import Pipes
 from pvfiblets.cli_values import angle, count, positive
 from pvfiblets.errors import EXPECTED, sentence
 
@@ -37,9 +38,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = vars(make_parser().parse_args(arguments))
     debug = options.pop("debug")
     module, function = options.pop("run").split(":")
+    pipes = Pipes(options)
     try:
-        with held_to(options.pop("max_memory", None)):
-            return getattr(import_module(module), function)(**options) or 0
+        with held_to(options.pop("max_memory", None)), pipes:
+            code = getattr(import_module(module), function)(**options) or 0
+        sys.stdout.flush()  # here, where a reader that has gone is no error
+        return code
     except BrokenPipeError:  # the reader of our output, such as `head`, has gone: not an error
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
@@ -49,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except EXPECTED as error:
         if debug:
             raise
-        print(f"pvfiblets: {sentence(error)}", file=sys.stderr)
+        print(f"pvfiblets: {pipes.renamed(sentence(error))}", file=sys.stderr)
         return 1
 
 

@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from pvfiblets.cli_memory import add_memory_option
+from pvfiblets.cli_pipes import add_format_option
 from pvfiblets.cli_values import angle, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
@@ -19,8 +20,8 @@ def add_convert(commands: Any) -> None:
         help="compress a tractogram, or write it in another format",
         description="Compress IN to a .fiblets file, or convert between any two formats; the suffixes say which.",
     )
-    convert.add_argument("source", metavar="IN", help="a tractogram of any format")
-    convert.add_argument("target", metavar="OUT", help="what to write: .fiblets, .tck, .trk, .trx, .vtk or .vtp")
+    convert.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
+    convert.add_argument("target", metavar="OUT", help="what to write: .fiblets, .tck, .trk, .trx, .vtk or .vtp; or -")
     convert.add_argument(
         "--step", type=positive, metavar="MM", help="resample to this distance, and keep corners (default: keep points)"
     )
@@ -60,6 +61,7 @@ def add_convert(commands: Any) -> None:
         help="keep every bit of the points, or code them in any case (default: exact if less than a megabyte, unless "
         "an option of coding is given, or if coding would take more bytes)",
     )
+    add_format_option(convert, reads=["source"], writes="target")
     _quiet_and_json(convert)
     add_memory_option(convert)
     convert.set_defaults(run="pvfiblets.cli_files:convert")
@@ -72,7 +74,8 @@ def add_info(commands: Any) -> None:
         help="say what a file holds",
         description="Print size, counts, arrays, groups and affine of FILE; of a .fiblets file, step and promise too.",
     )
-    info.add_argument("path", metavar="FILE", help="a tractogram of any format")
+    info.add_argument("path", metavar="FILE", help="a tractogram of any format, or -")
+    add_format_option(info, reads=["path"])
     json_option(info)
     add_memory_option(info)
     info.set_defaults(run="pvfiblets.cli_files:info")
@@ -86,7 +89,7 @@ def add_verify(commands: Any) -> None:
         description="Check FILE's checksums, and measure how far its points are from those of ORIGINAL, "
         "and its directions from theirs. Fails if the file is damaged or an error is greater than the file promises.",
     )
-    verify.add_argument("path", metavar="FILE", help="a .fiblets file")
+    verify.add_argument("path", metavar="FILE", help="a .fiblets file, or -")
     verify.add_argument(
         "original", metavar="ORIGINAL", nargs="?", help="what it was made from; without it, only checksums"
     )
@@ -97,6 +100,7 @@ def add_verify(commands: Any) -> None:
         metavar="DEG",
         help=f"say whether directions are within this angle (default: {DEFAULT_ANGLE:g})",
     )
+    add_format_option(verify, reads=["path", "original"])
     _quiet_and_json(verify)
     add_memory_option(verify)
     verify.set_defaults(run="pvfiblets.cli_files:verify")
@@ -109,8 +113,8 @@ def add_density(commands: Any) -> None:
         "Add the streamlines of IN up in the voxels of a grid, with every segment cut at the voxels' faces, and write "
         "the volume to OUT."
     )
-    parser.add_argument("source", metavar="IN", help="a tractogram of any format; it is read in parts")
-    parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz")
+    parser.add_argument("source", metavar="IN", help="a tractogram of any format, or -; it is read in parts")
+    parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz; or -")
     grid = parser.add_mutually_exclusive_group(required=True)
     grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
     grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI, MGH, NRRD, MetaImage or .vti")
@@ -127,6 +131,7 @@ def add_density(commands: Any) -> None:
         help="of the streamlines, such as SIFT2's: a file of numbers, or the name of an array",
     )
     parser.add_argument("--ends-only", action="store_true", help="count end points instead")
+    add_format_option(parser, reads=["source"], writes="target", usual="nii")
     _quiet_and_json(parser)
     add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli_density:density")
@@ -140,9 +145,9 @@ def add_connectome(commands: Any) -> None:
         description="Write a symmetric matrix of parcels by parcels: streamlines of IN whose ends lie in both, or the "
         "mean of their numbers. It holds the labels that LABELS has, rising.",
     )
-    matrix.add_argument("source", metavar="IN", help="a tractogram of any format")
+    matrix.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
     matrix.add_argument("labels", metavar="LABELS", help="a NIfTI image of whole numbers, 0 for no parcel")
-    matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file")
+    matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file; or -")
     matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
     matrix.add_argument(
         "--contrast", default="count", metavar="NAME|FILE",
@@ -157,6 +162,7 @@ def add_connectome(commands: Any) -> None:
         choices=("sum", "mean", "min", "max"),
         help="of a pair's numbers (default: sum of counts, else mean)",
     )
+    add_format_option(matrix, reads=["source"], writes="target", usual="csv")
     json_option(matrix)
     add_memory_option(matrix)
     matrix.set_defaults(run="pvfiblets.cli_connectome:connectome")
@@ -170,9 +176,10 @@ def add_table(commands: Any) -> None:
         description="Write comma-separated values, a row for each streamline of IN: points, length, curvature, ends "
         "(mm), groups, per-streamline values, and means of per-point values.",
     )
-    table.add_argument("source", metavar="IN", help="a tractogram of any format")
+    table.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
     table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
     table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
+    add_format_option(table, reads=["source"])
     add_memory_option(table)
     table.set_defaults(run="pvfiblets.cli_files:table")
 

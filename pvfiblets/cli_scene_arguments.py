@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from pvfiblets.cli_pipes import add_format_option
 from pvfiblets.cli_scene import add_options
 from pvfiblets.cli_values import antialias, count, positive, size
 
@@ -23,9 +24,10 @@ def add_screenshot(commands: Any) -> None:
         description="Draw FILEs off screen, as one scene, and write the picture.",
     )
     _scene(screenshot)
-    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="the picture to write")
+    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="the picture to write, or -")
     screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
     screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
+    add_format_option(screenshot, reads=["paths"], writes="output", usual="png")
     screenshot.set_defaults(run="pvfiblets.cli_pictures:screenshot")
 
 
@@ -37,6 +39,7 @@ def add_show(commands: Any) -> None:
         description="Draw FILEs in a window, as one scene: the left button turns it, the wheel zooms, q closes it.",
     )
     _scene(show)
+    add_format_option(show, reads=["paths"])
     show.set_defaults(run="pvfiblets.cli_pictures:show")
 
 
@@ -106,7 +109,7 @@ def add_serve(commands: Any) -> None:
 def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
-        "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json"
+        "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json; or -"
     )  # fmt: skip
     parser.add_argument(
         "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"
