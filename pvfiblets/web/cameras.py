@@ -118,19 +118,6 @@ class Cameras:
         *place, w = renderer.GetWorldPoint()
         return [float(part / w) for part in place]
 
-    def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
-        """Return the straight distance between what two pixels show.
-
-        Returns
-        -------
-        dict or None
-            ``mm``, ``from`` and ``to`` (mm); ``None`` where one of them shows nothing.
-        """
-        begin, end = self.place_at(x0, y0, tolerance=NEAR), self.place_at(x1, y1, tolerance=NEAR)
-        if begin is None or end is None:
-            return None
-        return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
-
     def screenshot(self, path: str | Path | None = None, *, scale: int = 1, transparent: bool = False) -> np.ndarray:
         """Return a picture.
 

@@ -6,6 +6,7 @@ A :class:`State` says all that a user may undo: layers, cuts, background. It hol
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +14,19 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["KINDS", "LINES", "Clip", "Filters", "Ids", "Layer", "Source", "State", "as_volume_choice", "volume_in"]
+__all__ = [
+    "KINDS",
+    "LINES",
+    "Clip",
+    "Filters",
+    "Ids",
+    "Layer",
+    "Measurement",
+    "Source",
+    "State",
+    "as_volume_choice",
+    "volume_in",
+]
 
 KINDS = ("tractogram", "tubes", "volume", "mesh", "selection")
 """What a layer may be."""
@@ -224,6 +237,30 @@ class Clip:
 
 
 @dataclass(frozen=True)
+class Measurement:
+    """A straight distance.
+
+    Attributes
+    ----------
+    begin, end : tuple of 3 floats
+        Where it is measured, mm.
+    """
+
+    begin: tuple[float, float, float]
+    end: tuple[float, float, float]
+
+    @property
+    def mm(self) -> float:
+        """How long it is."""
+        return math.dist(self.begin, self.end)
+
+    @property
+    def text(self) -> str:
+        """How long it is, for people."""
+        return f"{self.mm:.4g} mm"
+
+
+@dataclass(frozen=True)
 class State:
     """A scene's document.
 
@@ -233,11 +270,13 @@ class State:
     clips : tuple of Clip
     background : str
         ``#rrggbb``.
+    measurements : tuple of Measurement
     """
 
     layers: tuple[Layer, ...] = ()
     clips: tuple[Clip, ...] = ()
     background: str = "#000000"
+    measurements: tuple[Measurement, ...] = ()
 
     def layer(self, layer_id: str) -> Layer:
         """Return a layer.

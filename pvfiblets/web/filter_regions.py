@@ -13,6 +13,7 @@ from pvfiblets.web.actions import LineActions
 from pvfiblets.web.cameras import NEAR
 from pvfiblets.web.controls import controls, moved, typed_value
 from pvfiblets.web.describe import typed
+from pvfiblets.web.distance_label import hidden_distances
 from pvfiblets.web.document import LINES
 from pvfiblets.web.region_marks import Sight, dragged, mark
 from pvfiblets.web.rpc_allowlist import number
@@ -175,7 +176,8 @@ class RegionActions(LineActions):
     def place(self, x: float, y: float) -> None:
         """Move the region that is being placed to what a pixel of the picture shows: a line, a slice or a surface."""
         app = self._app
-        found = app.scene.place_at(x, y, tolerance=NEAR)
+        with hidden_distances(app.plotter):
+            found = app.scene.place_at(x, y, tolerance=NEAR)
         if found is None:
             app.say("There is nothing there; click on a streamline, a slice or a surface.")
             return

@@ -58,6 +58,9 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   flex-direction: column; align-items: end; gap: 4px; text-align: right; font: 12px Roboto, sans-serif; color: #fff;
   text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
 .pv-notes .v-btn { pointer-events: auto }
+.pv-measured { display: flex; flex-direction: column; align-items: end; gap: 4px; max-height: 40vh; overflow-y: auto;
+  pointer-events: auto }
+.pv-measured .v-btn { flex: none }
 .pv-bar { flex: 1 1 auto; min-width: 0; display: flex; align-items: center; overflow-x: auto; scrollbar-width: none }
 .pv-bar > * { flex: none } .pv-bar > .v-spacer { flex: 1 0 0 }
 @media (max-width: 760px) { .pv-bar { padding-right: 24px;
@@ -236,10 +239,16 @@ def _view(app: Any) -> None:
                     v3.VTooltip(hint, activator="parent", location="right")
         html.Div("{{ frame }}", classes="pv-status")
         with html.Div(classes="pv-notes"):
-            v3.VBtn(
-                "Clear {{ measured }}", v_if="measured", size="x-small", classes="text-none",
-                data_action="clear-distance", click=app.selecting.clear_distance,
-            )  # fmt: skip
+            with html.Div(v_if="measured.length", classes="pv-measured"):
+                v3.VBtn(
+                    "{{ text }}", v_for="(text, row) in measured", key="row", size="x-small", classes="text-none",
+                    append_icon="mdi-close", title="Remove this distance", data_action="remove-distance",
+                    click=(app.selecting.remove_distance, "[row]"),
+                )  # fmt: skip
+                v3.VBtn(
+                    "Clear all", v_if="measured.length > 1", size="x-small", classes="text-none",
+                    data_action="clear-distances", click=app.selecting.clear_distances,
+                )  # fmt: skip
             html.Div("{{ no_room }}", v_if="no_room", data_value="no-room")
             html.Div(
                 "Click where {{ placing_name }} shall be (Esc: stop)", v_if="tool === 'place'", data_value="placing"

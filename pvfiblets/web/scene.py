@@ -15,12 +15,24 @@ from pvfiblets.formats.attachments import name_of
 from pvfiblets.web import layers
 from pvfiblets.web.actors import add_actor, cut, filter_as, look_as, put_in_order, remove_actor, select_as, split_cuts
 from pvfiblets.web.cameras import Cameras
-from pvfiblets.web.distance_label import hide_distance
-from pvfiblets.web.document import LINES, Clip, Filters, Ids, Layer, Source, State, as_volume_choice, volume_in
+from pvfiblets.web.distance_label import show_distances
+from pvfiblets.web.document import (
+    LINES,
+    Clip,
+    Filters,
+    Ids,
+    Layer,
+    Measurement,
+    Source,
+    State,
+    as_volume_choice,
+    volume_in,
+)
 from pvfiblets.web.layer_queries import LayerQueries
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scalar_bars import Bars
 from pvfiblets.web.scene_filters import SceneFilters
+from pvfiblets.web.scene_measurements import SceneMeasurements
 from pvfiblets.web.scene_regions import SceneRegions
 from pvfiblets.web.scene_selection import SceneSelection
 from pvfiblets.web.store import Store
@@ -57,7 +69,7 @@ class _Drawn:
     whole: Any = None  # of a mesh: what the actor draws where nothing is cut
 
 
-class Scene(SceneFilters, SceneRegions, SceneSelection, LayerQueries, Cameras):
+class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, LayerQueries, Cameras):
     """What a session shows.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
@@ -85,6 +97,7 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, LayerQueries, Cameras):
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
+        self._measured: tuple[Measurement, ...] = ()  # those in the picture
 
     # The document -------------------------------------------------------------------------------
 
@@ -162,6 +175,9 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, LayerQueries, Cameras):
         put_in_order(self.plotter.renderer, [self._drawn[layer.id].actor for layer in state.layers])
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
+        if state.measurements != self._measured:
+            show_distances(self.plotter, state.measurements)
+            self._measured = state.measurements
         self.bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
 
     def _draw(self, layer: Layer, clips: tuple[Clip, ...]) -> None:
@@ -377,7 +393,6 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, LayerQueries, Cameras):
     def close(self) -> None:
         """Take all layers away and remove what was made of files; twice is harmless."""
         self._listeners.clear()
-        hide_distance(self.plotter)
         self.become(State(background=self._state.background))
         self.bars.close()
         self.store.clear()

@@ -13,6 +13,8 @@ from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
+from pvfiblets.web.distance_label import LABELS, NEAREST
+from pvfiblets.web.distance_label import LINES as LINE_LOOKS
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
@@ -71,6 +73,7 @@ class _Writer:
             self._layer(layer)
         for clip in state.clips:
             self._clip(clip)
+        self._measurements()
         self._bars()
         self._camera()
         end = "plotter.show()" if picture is None else f"plotter.screenshot({picture!r})\nplotter.close()"
@@ -276,6 +279,21 @@ class _Writer:
             self._imports |= {"import nibabel as nib", "import numpy as np", "from pvfiblets import regions"}
             self._uses_labels = True
 
+    def _measurements(self) -> None:
+        found = self._scene.state.measurements
+        if not found:
+            return
+        self._imports.add("import numpy as np")
+        self._lines += ["ends = np.array([  # of measured distances, mm"]
+        self._lines += [f"    [{one.begin}, {one.end}]," for one in found]
+        self._lines += ["])", "segments = pv.line_segments_from_points(ends.reshape(-1, 3))"]
+        self._call("line = plotter.add_mesh", "segments", {**LINE_LOOKS, "reset_camera": False})
+        self._lines += ["line.mapper.SetResolveCoincidentTopologyToPolygonOffset()"]
+        self._lines += [f"line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters{NEAREST}  # before everything"]
+        texts = repr([one.text for one in found])
+        self._call("plotter.add_point_labels", "ends.mean(axis=1)", texts, {**LABELS, "reset_camera": False})
+        self._lines += [""]
+
     def _bars(self) -> None:
         state = self._scene.state
         self._scene.bars.arrange()
@@ -329,7 +347,17 @@ class _Writer:
         if stem[0].isdigit() or keyword.iskeyword(stem):
             stem = f"layer_{stem}"
         reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
-        reserved |= {"scaled", "dataclasses", "bar", "volume", "as_raycast_volume", "cut_surface"}
+        reserved |= {
+            "scaled",
+            "dataclasses",
+            "bar",
+            "volume",
+            "as_raycast_volume",
+            "cut_surface",
+            "ends",
+            "segments",
+            "line",
+        }
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
         found, count = stem, 2

@@ -8,7 +8,6 @@ from pvfiblets.plotting.fiblets.scalars import UNITS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import profile_chart, short
 from pvfiblets.web.csv_tables import profile_csv
-from pvfiblets.web.distance_label import hide_distance, show_distance
 from pvfiblets.web.rpc_allowlist import number
 
 ROWS = 200
@@ -20,7 +19,6 @@ class SelectionActions(Actions):
     def __init__(self, app: Any) -> None:
         super().__init__(app)
         self._profile: str | None = None
-        self._measuring: list[Any] = []
         self._shown: Any = None
 
     # Tools
@@ -73,27 +71,27 @@ class SelectionActions(Actions):
 
     def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
         app = self._app
-        if hide_distance(app.plotter):
-            app.plotter.render()  # or what is seen could be the line of before
         found = app.scene.measure(*first, *last)
-        app.page.measured = "" if found is None else f"{short(found['mm'])} mm"
-        if found is not None:
-            show_distance(app.plotter, found["from"], found["to"], app.page.measured)
-        else:
+        if found is None:
             app.say("Begin and end on something that is drawn.")
+        else:
+            app.scene.add_measurement(found["from"], found["to"])
         app.stream.request()
 
-    def clear_distance(self) -> None:
-        """Take the measured distance away."""
-        hide_distance(self._app.plotter)
-        self._app.page.measured = ""
-        self._app.stream.request()
+    def remove_distance(self, row: int) -> None:
+        """Take one measured distance away."""
+        self._app.scene.remove_measurement(row)
+
+    def clear_distances(self) -> None:
+        """Take all measured distances away."""
+        self._app.scene.clear_measurements()
 
     # The tab
 
     def refresh(self) -> None:
         """Show what is selected."""
         scene, page = self._app.scene, self._app.page
+        page.measured = [one.text for one in scene.state.measurements]
         count = scene.count()
         if not count:
             page.selection, self._shown = {"count": 0}, None

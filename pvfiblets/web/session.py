@@ -34,6 +34,7 @@ from pvfiblets.web.document import (
     volume_in,
 )
 from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
+from pvfiblets.web.scene_measurements import check_measurements
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
 from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
 
@@ -69,7 +70,8 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``version``, ``layers``, ``clips``, ``background``, ``camera``; no numbers but finite ones.
+        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements`` where there are any; no
+        numbers but finite ones.
     """
     state = scene.state
 
@@ -83,6 +85,9 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     def shape_of(shape: Mapping[str, Any]) -> dict[str, Any]:
         return {**shape, "path": path_of(shape["path"])} if "path" in shape else dict(shape)
 
+    # Programs from before there were any refuse what they do not know.
+    pairs = [[list(one.begin), list(one.end)] for one in state.measurements]
+    measured = {"measurements": pairs} if pairs else {}
     return {
         "program": "pvfiblets",
         "version": VERSION,
@@ -100,6 +105,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
             }
             for clip in state.clips
         ],
+        **measured,
     }
 
 
@@ -245,7 +251,7 @@ def _checked(
     version = data.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
-    mapping(data, "session", ("program", "version", "layers"), ("clips", "background", "camera"))
+    mapping(data, "session", ("program", "version", "layers"), ("clips", "background", "camera", "measurements"))
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
@@ -255,7 +261,8 @@ def _checked(
     ids = [layer.id for layer in found] + [clip.id for clip in clips]
     if twice := [name for name in ids if ids.count(name) > 1]:
         raise ValueError(f"the id {twice[0]!r} stands twice")
-    state = State(tuple(found), tuple(clips), colour(data.get("background", "#000000"), "background"))
+    background = colour(data.get("background", "#000000"), "background")
+    state = State(tuple(found), tuple(clips), background, check_measurements(data.get("measurements", [])))
     _check_cuts(reading.store, state)
     camera = data.get("camera")
     return Prepared(state, None if camera is None else check_camera(camera), reading.store)

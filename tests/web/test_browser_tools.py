@@ -70,9 +70,18 @@ def test_a_distance_is_measured_in_millimetres(revisit):
     height, width = lit.shape
     here.drag(((first + 10 * per_mm) / width, row / height), ((first + 50 * per_mm) / width, row / height))
     here.wait(lambda: here.state("measured"), "a distance")
-    assert "mm" in here.page.inner_text("[data-action=clear-distance]")
-    assert abs(float(here.state("measured").split()[0]) - 40.0) < 1.0
-    here.page.click("[data-action=clear-distance]")
+    assert "mm" in here.page.inner_text("[data-action=remove-distance]")
+    assert abs(float(here.state("measured")[0].split()[0]) - 40.0) < 1.0
+    here.drag(((first + 10 * per_mm) / width, row / height), ((first + 30 * per_mm) / width, row / height))
+    here.wait(lambda: len(here.state("measured")) == 2, "another distance")
+    here.press("Control+z")
+    here.wait(lambda: len(here.state("measured")) == 1, "the first alone")
+    here.press("Control+y")
+    here.wait(lambda: len(here.state("measured")) == 2, "both")
+    here.page.locator("[data-action=remove-distance]").first.click()
+    here.wait(lambda: len(here.state("measured")) == 1, "the second alone")
+    assert abs(float(here.state("measured")[0].split()[0]) - 20.0) < 1.0
+    here.page.click("[data-action=remove-distance]")
     here.wait(lambda: not here.state("measured"), "no distance")
 
 

@@ -28,24 +28,37 @@ def share(x, y):
 
 
 def millimetres(desk):
-    number, unit = desk.page.measured.split()
-    assert unit == "mm"
-    return float(number)
+    desk.selecting.refresh()
+    found = [text.split() for text in desk.page.measured]
+    assert all(unit == "mm" for _, unit in found)
+    return [float(number) for number, _ in found]
 
 
-def test_a_distance_stays_in_the_picture_until_it_is_cleared(desk, scene):
+def test_distances_stay_in_the_picture_until_they_are_removed_or_undone(desk, scene):
     before = scene.screenshot()
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
-    assert millimetres(desk) == pytest.approx(8.0, abs=0.01)
+    assert millimetres(desk) == [pytest.approx(8.0, abs=0.01)]
     line = amber(scene.screenshot())
     assert line[79:83, 85:115].any(axis=0).all()
     assert not line[:, :80].any()
-    # The next one ends on the ball, not on the line before; the document knows of neither.
+    # The next one ends on the ball, not on the line before.
     desk.selecting.point("measure", [share(90, 80), share(110, 80)], False)
-    assert millimetres(desk) == pytest.approx(5.0, abs=0.01)
-    assert len(desk.history) == 0
-    desk.selecting.clear_distance()
-    assert desk.page.measured == ""
+    desk.selecting.point("measure", [share(100, 60), share(100, 100)], False)
+    assert millimetres(desk) == [pytest.approx(mm, abs=0.01) for mm in (8.0, 5.0, 10.0)]
+    three = scene.screenshot()
+    assert amber(three)[90:98, 99:102].any(axis=1).all()
+    assert desk.history.undo_label == f"measure {desk.page.measured[-1]}"
+    desk.history.undo()
+    assert len(millimetres(desk)) == 2
+    assert not amber(scene.screenshot())[90:98, 99:102].any()
+    desk.history.redo()
+    np.testing.assert_array_equal(scene.screenshot(), three)
+    desk.selecting.remove_distance(1)
+    assert millimetres(desk) == [pytest.approx(mm, abs=0.01) for mm in (8.0, 10.0)]
+    with pytest.raises(ValueError, match="row of a measurement is 2"):
+        desk.selecting.remove_distance(2)
+    desk.selecting.clear_distances()
+    assert millimetres(desk) == []
     np.testing.assert_array_equal(scene.screenshot(), before)
     desk.selecting.point("measure", [share(84, 80), share(5, 5)], False)
     assert desk.said == [("info", "Begin and end on something that is drawn.")]
@@ -53,6 +66,48 @@ def test_a_distance_stays_in_the_picture_until_it_is_cleared(desk, scene):
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
     scene.close()
     assert list(scene.plotter.actors) == []
+
+
+def test_a_region_is_placed_on_what_lies_behind_a_measured_line(desk, scene):
+    desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
+    layer = scene.open("lines.trk")
+    desk.page.chosen, desk.page.chosen_kind = layer.id, layer.kind
+    scene.show(layer.id, False)
+    desk.regions.add("sphere")
+    scene.screenshot()
+    desk.regions.begin_placing(0)
+    desk.regions.place(100, 80)
+    (row,) = scene.layer(layer.id).filters.regions["of"]
+    region = row["region"]
+    np.testing.assert_allclose(region["center"], (20, 18, 18), atol=0.3)
+
+
+def test_sessions_and_scripts_have_all_distances(desk, scene, tmp_path):
+    import json
+
+    from pvfiblets.web import session
+    from pvfiblets.web.script import as_script
+
+    places = [[share(84, 80), share(116, 80)], [share(100, 60), share(100, 100)]]
+    for pair in places:
+        desk.selecting.point("measure", pair, False)
+    picture, said = scene.screenshot(), millimetres(desk)
+    saved = json.loads(json.dumps(session.to_dict(scene)))
+    script = as_script(scene, str(tmp_path / "again.png")).replace("FOLDER = Path('.')", "")
+    script = script.replace('FOLDER = Path(".")', f"FOLDER = Path({str(scene.root)!r})")
+    exec(compile(script, "script", "exec"), {})
+    from PIL import Image
+
+    again = np.asarray(Image.open(tmp_path / "again.png").convert("RGB"))
+    np.testing.assert_array_equal(again, picture)
+    scene.clear_measurements()
+    session.from_dict(scene, saved)
+    assert millimetres(desk) == said
+    np.testing.assert_array_equal(scene.screenshot(), picture)
+    for wrong in ([[1, 2]], [[[0, 0, 0], [0, 0, "x"]]], [[[0, 0, 0], [0, 0, 1e30]]], 5, 65 * [[[0, 0, 0], [1, 0, 0]]]):
+        with pytest.raises(session.SessionError, match="measurement"):
+            session.from_dict(scene, {**saved, "measurements": wrong})
+    assert millimetres(desk) == said
 
 
 def test_tables_and_profiles_are_made_when_what_they_say_has_changed(desk, scene, monkeypatch):
