@@ -82,6 +82,9 @@ def measure_all(options: Any, temporary: Path) -> None:
     deadline = time.monotonic() + options.total
     folder = options.folder or temporary
     check = run_check(temporary, (), lambda part: print(part, "...", file=sys.stderr, flush=True))
+    print(summary(check), file=sys.stderr, flush=True)
+    if not check.opengl:
+        sys.exit("Without OpenGL there is nothing to measure.")
     about = {**machine(), "step_mm": options.step, "check": [one.as_dict() for one in check.findings],
              "check_text": summary(check)}  # fmt: skip
     pipelines = [row["name"] for row in check.opengl.get("pipelines", []) if row["available"]]
@@ -98,7 +101,8 @@ def measure_all(options: Any, temporary: Path) -> None:
                 row = measured(cell, folder, temporary / f"{section}-{number}.npy", options)
             if cell["kind"] in ("fiblets", "raw lines") and not row.get("ms", HOPELESS) < HOPELESS:
                 slow.add(key)
-            results.append({"section": section, **cell, **row})
+            asked = {"asked_segments": cell["segments"]} if "segments" in cell else {}
+            results.append({"section": section, **cell, **asked, **row})
             print({name: value for name, value in results[-1].items() if name != "passes"}, flush=True)
         write(about, results, sheet(temporary), options.output)
 
@@ -106,7 +110,10 @@ def measure_all(options: Any, temporary: Path) -> None:
 def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
     """Draw one cell in a process of its own; its data is made before, outside its time."""
     if "segments" in cell:
-        make_brain(cell["segments"], cell["step"], folder)
+        try:
+            make_brain(cell["segments"], cell["step"], folder)
+        except (OSError, MemoryError) as error:
+            return {"unmeasured": f"its data was not made: {error or type(error).__name__}"}
     wanted = {**cell, "frames": options.frames, "seconds": options.seconds, "picture": str(picture)}
     rows, reason = run_child(__file__, ["--cell", json.dumps(wanted), "--folder", folder], options.limit)
     return rows[0] if rows else {"unmeasured": reason or "it said nothing"}
@@ -188,8 +195,8 @@ def table_2(rows: list[Row]) -> list[str]:
     found = []
     for size in dict.fromkeys(tuple(row["size"]) for row in rows):
         here = [row for row in rows if tuple(row["size"]) == size]
-        counts = list(dict.fromkeys(wanted(row) for row in here))
-        cells = {(row["pipeline"], row["culling"], wanted(row)): told(row) for row in here}
+        counts = list(dict.fromkeys(row["asked_segments"] for row in here))
+        cells = {(row["pipeline"], row["culling"], row["asked_segments"]): told(row) for row in here}
         body = [
             f"| {pipeline} | {culling} | " + " | ".join(cells.get((pipeline, culling, n), "") for n in counts) + " |"
             for pipeline in dict.fromkeys(row["pipeline"] for row in here) for culling in CULLINGS
@@ -197,11 +204,6 @@ def table_2(rows: list[Row]) -> list[str]:
         heads = ["pipeline", "culling", *(f"{n / 1e6:,g} M segments" for n in counts)]
         found += [f"{size[0]}×{size[1]}:", "", *to_table(heads, body), ""]
     return found
-
-
-def wanted(row: Row) -> float:
-    """Return a row's segments, rounded so that they are the same for all."""
-    return float(f"{row['segments']:.1g}") if row["segments"] >= 1e6 else float(row["segments"])
 
 
 def listed(rows: list[Row]) -> list[str]:

@@ -5,15 +5,15 @@
 #   scripts/newer_mesa.sh [--zink] [--] COMMAND ...     COMMAND runs in this folder, with a Python that has pvfiblets' needs
 #   scripts/newer_mesa.sh --make                        makes the folder only
 #
-# The folder is kept between runs: $NEWER_MESA, by default ~/.cache/pvfiblets/newer-mesa (2 GB). As root it is made with
-# debootstrap and entered with chroot; others need mmdebstrap, uidmap and user namespaces, which does not work whole yet: files of
-# mmdebstrap belong to the user's second range of ids, so that this script can neither write beside them nor remove them.
+# The folder is kept between runs: $NEWER_MESA, by default ~/.cache/pvfiblets/newer-mesa (2 GB). It needs apt-get, dpkg-deb and
+# unshare, nothing else: packages are unpacked as files of whoever runs this, and are never installed. Who is not root enters the
+# folder through a namespace of users that knows himself alone.
 set -euo pipefail
 HERE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-. "$HERE/scripts/wanted.sh"
 ROOT=${NEWER_MESA:-${XDG_CACHE_HOME:-$HOME/.cache}/pvfiblets/newer-mesa}
 MIRROR=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
-PACKAGES=python3,python3-venv,libegl1,libegl-mesa0,libgl1,libglx-mesa0,libgl1-mesa-dri,mesa-vulkan-drivers,libx11-6,libxrender1,libgomp1,ca-certificates
+PACKAGES="base-files base-passwd bash ca-certificates coreutils dash findutils grep libc-bin sed python3 python3-venv
+    libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri mesa-vulkan-drivers libx11-6 libxrender1 libgomp1"
 READY=$ROOT/.ready
 
 zink=
@@ -33,32 +33,56 @@ if [ -z "$make_only" ] && [ $# = 0 ]; then
 fi
 
 # What the folder and its Python were made from: when that changes they are made anew.
-wanted_root() { echo "$PACKAGES $MIRROR"; }
+wanted_root() { echo $PACKAGES "$MIRROR"; } # on one line
 wanted_python() { sed -n '/^dependencies/,/^]/p' "$HERE/pyproject.toml" | tr -d '\n'; }
 
+needs() { # needs COMMAND PACKAGE
+    command -v "$1" >/dev/null || { echo "$1 is missing, which $2 has (Debian and Ubuntu)" >&2; return 1; }
+}
+
+# apt resolves what the packages need from lists of its own, for a system that has none yet; dpkg-deb unpacks them as files of
+# this user. Installing them would give some files to other users, for which namespaces need a range of ids.
 make_root() {
-    if [ "$(id -u)" = 0 ]; then
-        tool() { command -v debootstrap >/dev/null; }
-        wanted tool "debootstrap, for a newer Mesa" "debootstrap" || true
-        tool || { echo "debootstrap is missing; install it: sudo apt-get install debootstrap" >&2; return 1; }
-        debootstrap --variant=minbase --include="$PACKAGES" sid "$ROOT" "$MIRROR"
-    else
-        command -v mmdebstrap >/dev/null || {
-            echo "mmdebstrap is missing (or run this as root); install it: sudo apt-get install mmdebstrap uidmap" >&2
-            return 1
-        }
-        # A mirror that stands still for a week or two is good enough; debootstrap does not look either.
-        mmdebstrap --mode=unshare --variant=minbase --aptopt='Acquire::Check-Valid-Until "false"' \
-            --include="$PACKAGES" sid "$ROOT" "$MIRROR"
-    fi
+    local apt=$ROOT.apt keys=/usr/share/keyrings/debian-archive-keyring.gpg signed mirror=$MIRROR deb
+    needs apt-get apt && needs dpkg-deb dpkg || return 1
+    rm -rf "$apt"
+    mkdir -p "$apt/lists/partial" "$apt/archives/partial"
+    touch "$apt/status"
+    signed="signed-by=$keys"
+    if [ ! -f $keys ]; then signed="trusted=yes" mirror=${MIRROR/#http:/https:}; fi # as debootstrap has it
+    echo "deb [$signed] $mirror sid main" >"$apt/sources.list"
+    # A mirror that stands still for a week or two is good enough.
+    local settings=(-q -o "Dir::Etc::sourcelist=$apt/sources.list" -o Dir::Etc::sourceparts=- -o Dir::Etc::preferences=/dev/null
+        -o Dir::Etc::preferencesparts=/dev/null -o "Dir::State::lists=$apt/lists" -o "Dir::State::status=$apt/status"
+        -o "Dir::State::extended_states=$apt/extended" -o "Dir::Cache=$apt" -o "Dir::Cache::archives=$apt/archives" -o Dir::Log=$apt
+        -o "APT::Sandbox::User=$(id -un)" -o Acquire::Check-Valid-Until=false -o Acquire::Languages=none -o Debug::NoLocking=true)
+    apt-get "${settings[@]}" -o APT::Update::Post-Invoke= update || return 1
+    # shellcheck disable=SC2086 - several packages
+    apt-get "${settings[@]}" --yes --no-install-recommends --download-only install $PACKAGES || return 1
+    # Its links lead from /lib to /usr/lib, so it comes before all others.
+    for deb in "$apt"/archives/base-files_*.deb "$apt"/archives/*.deb; do
+        dpkg-deb --extract "$deb" "$ROOT" || return 1
+    done
+    # What scripts of these packages would have done, as far as it is used here.
+    mkdir -p "$ROOT/tmp" "$ROOT/var/cache/numba"
+    cp "$ROOT/usr/share/base-passwd/passwd.master" "$ROOT/etc/passwd"
+    cp "$ROOT/usr/share/base-passwd/group.master" "$ROOT/etc/group"
+    if [ ! -e "$ROOT/usr/bin/sh" ]; then ln -s dash "$ROOT/usr/bin/sh"; fi
+    rm -rf "$apt"
 }
 
 # Runs what comes after it inside the folder, in a mount namespace that goes when it ends: nothing stays mounted.
 inside() {
     local own=()
-    if [ "$(id -u)" != 0 ]; then own=(--user --map-root-user --map-auto); fi
+    if [ "$(id -u)" != 0 ]; then own=(--user --map-root-user); fi
+    unshare "${own[@]}" --mount true || {
+        echo "This machine lets you make no namespaces (containers want --privileged; Ubuntu from 24.04 on wants" \
+            "sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0)" >&2
+        return 1
+    }
     unshare "${own[@]}" --mount --propagation private /bin/bash -c '
         set -e
+        PATH=$PATH:/usr/sbin:/sbin # of chroot, for users
         root=$1 here=$2
         shift 2
         mkdir -p "$root$here" "$root/dev/shm"
@@ -107,6 +131,7 @@ if [ "$(cat "$READY" 2>/dev/null)" != "$(wanted_root)" ]; then
     rm -rf --one-file-system "$ROOT"
     mkdir -p "$ROOT"
     make_root >"$ROOT.log" 2>&1 || { tail -n 5 "$ROOT.log" >&2; exit 1; }
+    inside /usr/sbin/ldconfig # Python's find_library reads what it writes
     wanted_root >"$READY"
 fi
 if [ "$(cat "$READY.python" 2>/dev/null)" != "$(wanted_python)" ]; then

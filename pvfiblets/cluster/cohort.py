@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets import memory as limits
 from pvfiblets.errors import sentence
+from pvfiblets.progress_bar import progress_bar
 
 from .bids import filled
 from .connection import SHARE, connected, default_workers
@@ -294,14 +295,12 @@ def _run(
     """Yield what becomes of each job as it ends."""
     if not jobs:
         return
-    from tqdm import tqdm
-
     with _scratch(out) as scratch, connected(cluster, workers, size, dashboard=dashboard) as client:
         if progress:
             bound = "" if size is None else f", each of at most {limits.shown(size)}"
             page = f"; dashboard: {client.dashboard_link}" if client.dashboard_link else ""
             print(f"{len(client.nthreads())} workers{bound}{page}", file=sys.stderr)
-        with tqdm(total=len(jobs), desc=jobs[0].operation, unit="file", disable=not progress) as bar:
+        with progress_bar(progress, total=len(jobs), desc=jobs[0].operation, unit="file") as bar:
             for entry in _entries(client, jobs, str(scratch)):
                 bar.update()
                 yield entry

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
 from ..invalid_points import Invalid, valid_points
+from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
 from . import parameters as limits
 from .exact import plain_records, raw_bytes
@@ -159,9 +160,7 @@ def compress(
         ids = hilbert_order(streamlines)
         values = {name: streamlines.per_point[name] for name in per_point}
         coded = Streamlines(streamlines.points, streamlines.offsets, per_point=values)[ids]
-    from tqdm import tqdm
-
-    with tqdm(total=coded.n_points, unit="points", unit_scale=True, disable=not progress) as bar:
+    with progress_bar(progress, total=coded.n_points, unit="points", unit_scale=True) as bar:
         chunks: list[FibletChunk] = []
         for chunk in split_chunks(coded):
             chunks += encoder.parts(chunk)

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..progress_bar import progress_bar
 from . import copy_kernels
 from .archive import Member, array_member, write_archive
 from .fiblets_file import make_header
@@ -264,8 +265,6 @@ class Copies:
         -------
         FibletSet
         """
-        from tqdm import tqdm
-
         pages, bounds = self._plan
         b = bounds.T.ravel().tolist()
         whole = replace(
@@ -278,7 +277,7 @@ class Copies:
             groups=groups or {},
             per_group={},
         )
-        with tqdm(desc="copying", unit="B", unit_scale=True, disable=not progress) as bar:
+        with progress_bar(progress, desc="copying", unit="B", unit_scale=True) as bar:
             members = self._members(bar.update)
             bar.total = sum(int(np.prod(m.shape)) * m.dtype.itemsize for m in members.values())
             if path is None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from tqdm import tqdm
-
+from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
 
 __all__ = ["Progress", "shown"]
@@ -34,7 +33,7 @@ def shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress:
             yield chunk
             done += chunk.n_points
         return
-    with tqdm(total=total, desc=what, unit="points", unit_scale=True, disable=not progress) as bar:
+    with progress_bar(progress, total=total, desc=what, unit="points", unit_scale=True) as bar:
         for chunk in chunks:
             yield chunk
             bar.update(chunk.n_points)

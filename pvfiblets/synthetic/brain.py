@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.progress_bar import progress_bar
 from pvfiblets.streamlines import Streamlines
 
 from .tracking import BUNDLES, iter_brain_streamlines
@@ -108,8 +109,6 @@ def _pool(
     tracked: list[Streamlines], turns: int, seed: int, progress: bool
 ) -> tuple[FibletSet, npt.NDArray[np.float64], npt.NDArray[np.int64]]:
     """Code all variants, on a grid with room for moves; the box of each, ``(n, 6)`` mm; their order on the curve."""
-    from tqdm import tqdm
-
     from pvfiblets.codec.encode import Encoder
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.ordering import ends_order
@@ -122,7 +121,7 @@ def _pool(
     found.lower, found.upper = found.lower - room, found.upper + room
     encoder = Encoder(Parameters.choose(found))
     records, boxes, firsts, lasts = [], [], [], []
-    with tqdm(desc="coding", total=found.n_points, unit="points", unit_scale=True, disable=not progress) as bar:
+    with progress_bar(progress, desc="coding", total=found.n_points, unit="points", unit_scale=True) as bar:
         for chunk in _variants(tracked, turns, seed):
             starts = np.asarray(chunk.offsets)[:-1]
             least, most = np.minimum.reduceat(chunk.points, starts), np.maximum.reduceat(chunk.points, starts)

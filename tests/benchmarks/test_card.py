@@ -69,7 +69,8 @@ def test_sections_name_every_pipeline_size_and_culling(card):
 def test_the_page_tells_times_and_what_is_unmeasured(card, tmp_path):
     about = {"card": "A card (of some kind)", "driver": "4.6", "system": "Linux", "cores": 4, "date": "2026-01-01",
              "check_text": "All work."}  # fmt: skip
-    row = {"section": "table 2", "kind": "fiblets", "size": [1920, 1080], "pipeline": "compute", "segments": 5.39e9}
+    row = {"section": "table 2", "kind": "fiblets", "size": [1920, 1080], "pipeline": "compute", "segments": 5.39e9,
+           "asked_segments": 5.4e9}  # fmt: skip
     results = [
         {**row, "culling": "two-phase", "ms": 7.891},
         {**row, "culling": "none", "unmeasured": "ended by SIGBUS"},

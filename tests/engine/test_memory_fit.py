@@ -331,6 +331,6 @@ def test_progress_counts_every_byte(gl, brain, monkeypatch):
         def __exit__(self, *_):
             assert 0.99 * self.total < sum(shown) <= self.total
 
-    monkeypatch.setattr(upload, "tqdm", Bar)
+    monkeypatch.setattr("tqdm.tqdm", Bar)
     FibletRenderer(gl, brain, progress=True).release()
     assert len(shown) > 5

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 import numpy as np
 import numpy.typing as npt
-from tqdm import tqdm
 
 from ...codec import layout
 from ...codec.archive import forget
+from ...progress_bar import progress_bar
 from ..errors import EngineError, GPUMemoryError
 from .chunks import CHUNK_BLOCK, Chunk, ChunkPlan, reserve_buffer
 
@@ -175,7 +175,7 @@ def upload_fitting(
     while True:
         needed = sum(plan.nbytes for plan in fitted.plans)
         try:
-            with tqdm(total=needed, unit="B", unit_scale=True, desc="to the GPU", disable=not progress) as bar:
+            with progress_bar(progress, total=needed, unit="B", unit_scale=True, desc="to the GPU") as bar:
                 for number, plan in enumerate(fitted.plans):
                     chunks.append(upload_chunk(ctx, fitted.fiblets, plan, number, bar.update))  # kept one by one
         except GPUMemoryError:
