@@ -8,9 +8,10 @@
 5. Spline tubes (Russig et al. 2020, figure 5), halos (Everts et al. 2009, table 1), ray-cast volumes.
 
 Each cell runs in a process of its own: what a driver dies of is a row that says so. Writes ``card-CARD.json``, ``.md``
-and ``.png``, a sheet of what was drawn, after every section, so that a run that is cut short leaves what it has::
+and ``.png``, a sheet of what was drawn, after every cell, so that a run that is cut short leaves what it has, and
+``--resume`` goes on there. Brains are made as they are needed, 12 GB of them in all, and kept in ``--folder``::
 
-    python benchmarks/card.py --folder /tmp --output docs/benchmarks
+    python benchmarks/card.py --folder /tmp --output docs/benchmarks --resume
     python benchmarks/card.py --small      # a rehearsal in some minutes
 """
 
@@ -30,6 +31,7 @@ from common import add_places, card_of, machine, make_brain, on_machine, run_chi
 
 from pvfiblets.report.card_check import run_check
 from pvfiblets.report.card_file import png, summary
+from pvfiblets.whole_files import replacing
 
 SEGMENTS = (1e6, 6e6, 60e6, 434e6, 1e9, 5.4e9)
 TABLE_3 = (8e6, 81e6, 202e6, 434e6)
@@ -43,6 +45,7 @@ HALOS = ("fibres-subset", "office", "shape-small")
 VOLUMES = ("vessels-256", "vessels-512")
 MODES = ("composite", "mip", "isosurface")
 GOAL = (5.4e9, 8.0)  # segments, ms on a card of the H100's class; the paper: 33.9 ms on an RTX 2080 Ti
+LATE = "the time given was used up"
 HOPELESS = 3000.0  # ms a picture, beyond which a pipeline draws no larger set
 COLUMNS = 4
 TITLES = {
@@ -56,7 +59,7 @@ Row = dict[str, Any]
 
 
 def main() -> None:
-    """Measure section by section, and write after each."""
+    """Measure section by section, and write after each cell."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--segments", type=float, nargs="+", default=list(SEGMENTS))
     parser.add_argument("--step", type=float, default=0.1, help="mm between points; the paper's are 0.1 and 0.05")
@@ -67,6 +70,7 @@ def main() -> None:
         "--total", type=float, default=float("inf"), help="seconds for everything; what is left says so"
     )
     parser.add_argument("--small", action="store_true", help="a rehearsal: little data, small pictures")
+    parser.add_argument("--resume", action="store_true", help="keep what --output has of this card, measure the rest")
     parser.add_argument("--cell", help=argparse.SUPPRESS)
     add_places(parser)
     options = parser.parse_args()
@@ -81,30 +85,54 @@ def measure_all(options: Any, temporary: Path) -> None:
     """Measure everything."""
     deadline = time.monotonic() + options.total
     folder = options.folder or temporary
-    check = run_check(temporary, (), lambda part: print(part, "...", file=sys.stderr, flush=True))
-    print(summary(check), file=sys.stderr, flush=True)
-    if not check.opengl:
-        sys.exit("Without OpenGL there is nothing to measure.")
-    about = {**machine(), "step_mm": options.step, "check": [one.as_dict() for one in check.findings],
-             "check_text": summary(check)}  # fmt: skip
-    pipelines = [row["name"] for row in check.opengl.get("pipelines", []) if row["available"]]
+    pictures = folder / "card-pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    about, earlier = before(options) if options.resume else ({}, [])
+    about = about or {**checked(temporary), "step_mm": options.step}
+    done = {json.dumps(row["cell"]): row for row in earlier if row.get("unmeasured") != LATE}
     results: list[Row] = []
     slow: set[tuple[Any, ...]] = set()
+    pipelines = about["pipelines"]
     for section, cells in sections(options, pipelines):
         for number, cell in enumerate(cells):
             key = tuple(str(cell.get(name)) for name in ("kind", "size", "pipeline", "culling"))
-            if time.monotonic() > deadline:
-                row: Row = {"unmeasured": "the time given was used up"}
+            if json.dumps(cell) in done:
+                row: Row = done[json.dumps(cell)]
+            elif time.monotonic() > deadline:
+                row = {"unmeasured": LATE}
             elif key in slow:
                 row = {"unmeasured": "far too slow at fewer segments"}
             else:
-                row = measured(cell, folder, temporary / f"{section}-{number}.npy", options)
-            if cell["kind"] in ("fiblets", "raw lines") and not row.get("ms", HOPELESS) < HOPELESS:
+                row = measured(cell, folder, pictures / f"{slug(section)}-{number:02d}.npy", options)
+            slowly = row.get("unmeasured") != LATE and not row.get("ms", HOPELESS) < HOPELESS
+            if slowly and cell["kind"] in ("fiblets", "raw lines"):
                 slow.add(key)
-            asked = {"asked_segments": cell["segments"]} if "segments" in cell else {}
-            results.append({"section": section, **cell, **asked, **row})
-            print({name: value for name, value in results[-1].items() if name != "passes"}, flush=True)
-        write(about, results, sheet(temporary), options.output)
+            results.append({"section": section, "number": number, "cell": cell, **cell, **row})
+            print({name: value for name, value in results[-1].items() if name not in ("passes", "cell")}, flush=True)
+            if json.dumps(cell) not in done:
+                write(about, results, pictures, options.output)
+    print(f"wrote {write(about, results, pictures, options.output)}.json, .md and .png", file=sys.stderr)
+
+
+def checked(temporary: Path) -> Row:
+    """Check what the card draws, tell it, and return that beside the machine's facts."""
+    check = run_check(temporary, (), lambda part: print(part, "...", file=sys.stderr, flush=True))
+    print(summary(check), file=sys.stderr, flush=True)
+    if not check.opengl:
+        sys.exit("without OpenGL there is nothing to measure")
+    available = [row["name"] for row in check.opengl["pipelines"] if row["available"]]
+    return {**machine(), "pipelines": available, "check": [one.as_dict() for one in check.findings],
+            "check_text": summary(check)}  # fmt: skip
+
+
+def before(options: Any) -> tuple[Row, list[Row]]:
+    """Return what an earlier run wrote of this card; nothing if it measured other data."""
+    path = stem_of(machine(), options.output).with_suffix(".json")
+    if not path.exists():
+        return {}, []
+    about = json.loads(path.read_text(encoding="utf-8"))
+    results = about.pop("results")
+    return (about, results) if about["step_mm"] == options.step else ({}, [])
 
 
 def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
@@ -114,7 +142,8 @@ def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
             make_brain(cell["segments"], cell["step"], folder)
         except (OSError, MemoryError) as error:
             return {"unmeasured": f"its data was not made: {error or type(error).__name__}"}
-    wanted = {**cell, "frames": options.frames, "seconds": options.seconds, "picture": str(picture)}
+    at_most = {"frames": 5, "seconds": 1.0} if options.small else {"frames": options.frames, "seconds": options.seconds}
+    wanted = {**cell, **at_most, "picture": str(picture)}
     rows, reason = run_child(__file__, ["--cell", json.dumps(wanted), "--folder", folder], options.limit)
     return rows[0] if rows else {"unmeasured": reason or "it said nothing"}
 
@@ -122,8 +151,8 @@ def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
 def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
     """Return what is measured, section by section, the most important first."""
     small = options.small
-    sizes = ((320, 180), (640, 360)) if small else SIZES
-    segments = [2e5, 1e6] if small else options.segments
+    sizes = [list(size) for size in (((320, 180), (480, 270)) if small else SIZES)]
+    segments = [5e4, 2e5] if small else options.segments
     common = {"step": options.step}
     whole, low = max(segments), sizes[0]
     table_2 = [
@@ -132,7 +161,7 @@ def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
     ]  # fmt: skip
     table_3 = [
         row
-        for count in ([2e5] if small else TABLE_3)
+        for count in ([5e4] if small else TABLE_3)
         for row in (
             {"kind": "raw lines", "segments": count, "size": low, **common},
             {"kind": "fiblets", "segments": count, "size": low, "pipeline": "auto", "culling": "two-phase", **common},
@@ -150,29 +179,39 @@ def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
     return [("table 2", table_2), ("table 3", table_3), ("figures", figures), ("others", others)]
 
 
-def sheet(folder: Path) -> bytes | None:
-    """Return the pictures of all cells but those of table 2 as one PNG."""
-    pictures = [np.load(path) for path in sorted(folder.glob("*-*.npy")) if not path.name.startswith("table 2")]
-    pictures = [picture for picture in pictures if picture.shape[0] == 270]
-    if not pictures:
-        return None
+def sheet(results: list[Row], folder: Path) -> tuple[bytes | None, list[Row]]:
+    """Return the pictures of all cells but those of table 2 as one PNG, and their cells in its order."""
+    shown = [(row, folder / f"{slug(row['section'])}-{row['number']:02d}.npy") for row in results
+             if row["section"] != "table 2" and "ms" in row]  # fmt: skip
+    shown = [(row, path) for row, path in shown if path.exists()]
+    if not shown:
+        return None, []
+    pictures = [np.load(path) for _, path in shown]
     pictures += [np.zeros_like(pictures[0])] * (-len(pictures) % COLUMNS)
     rows = [np.concatenate(pictures[i : i + COLUMNS], axis=1) for i in range(0, len(pictures), COLUMNS)]
-    return png(np.concatenate(rows[::-1], axis=0))  # row 0 is at the bottom
+    return png(np.concatenate(rows[::-1], axis=0)), [row for row, _ in shown]  # row 0 is at the bottom
 
 
-def write(about: Row, results: list[Row], picture: bytes | None, folder: Path) -> None:
-    """Write what there is so far."""
+def stem_of(about: Row, folder: Path) -> Path:
+    """Return the path of what is written, without its ending."""
+    return folder / f"card-{slug(about['card'].split('(')[0].split('/')[0])}"
+
+
+def write(about: Row, results: list[Row], pictures: Path, folder: Path) -> Path:
+    """Write what there is so far; return the path without its ending."""
     folder.mkdir(parents=True, exist_ok=True)
-    stem = folder / f"card-{slug(about['card'].split('(')[0].split('/')[0])}"
-    stem.with_suffix(".json").write_text(json.dumps({**about, "results": results}, indent=1) + "\n", encoding="utf-8")
-    stem.with_suffix(".md").write_text(page(about, results, picture is not None, stem.name), encoding="utf-8")
-    if picture is not None:
-        stem.with_suffix(".png").write_bytes(picture)
-    print(f"wrote {stem}.json, .md and .png", file=sys.stderr)
+    stem = stem_of(about, folder)
+    picture, shown = sheet(results, pictures)
+    told = json.dumps({**about, "results": results}, indent=1) + "\n"
+    for ending, content in ((".json", told.encode()), (".md", page(about, results, shown, stem.name).encode()),
+                            (".png", picture)):  # fmt: skip
+        if content is not None:
+            with replacing(stem.with_suffix(ending)) as file:
+                file.write(content)
+    return stem
 
 
-def page(about: Row, results: list[Row], pictures: bool, name: str) -> str:
+def page(about: Row, results: list[Row], shown: list[Row], name: str) -> str:
     """Return everything in Markdown."""
     lines = [f"# {card_of(about)}", "", f"{on_machine(about)}. Milliseconds a picture: the median of a slow flight, "
              "each picture waited for; 10th to 90th percentile in the JSON file.", ""]  # fmt: skip
@@ -185,8 +224,9 @@ def page(about: Row, results: list[Row], pictures: bool, name: str) -> str:
         least = min(best, key=lambda row: row["ms"])
         lines += [f"{least['segments']:,.0f} segments take {least['ms']:.1f} ms by {least['pipeline']}; the goal is "
                   f"{GOAL[1]:g} ms, the paper has 33.9 ms on an RTX 2080 Ti.", ""]  # fmt: skip
-    if pictures:
-        lines += [f"![What was drawn]({name}.png)", ""]
+    if shown:
+        names = [f"{number + 1}. {named(row)}" for number, row in enumerate(shown)]
+        lines += [f"![What was drawn]({name}.png)", "", f"From left to right, {COLUMNS} in a row:", "", *names, ""]
     return "\n".join([*lines, "## Does it draw right?", "", "```", about["check_text"], "```", ""])
 
 
@@ -195,8 +235,8 @@ def table_2(rows: list[Row]) -> list[str]:
     found = []
     for size in dict.fromkeys(tuple(row["size"]) for row in rows):
         here = [row for row in rows if tuple(row["size"]) == size]
-        counts = list(dict.fromkeys(row["asked_segments"] for row in here))
-        cells = {(row["pipeline"], row["culling"], row["asked_segments"]): told(row) for row in here}
+        counts = list(dict.fromkeys(row["cell"]["segments"] for row in here))
+        cells = {(row["pipeline"], row["culling"], row["cell"]["segments"]): told(row) for row in here}
         body = [
             f"| {pipeline} | {culling} | " + " | ".join(cells.get((pipeline, culling, n), "") for n in counts) + " |"
             for pipeline in dict.fromkeys(row["pipeline"] for row in here) for culling in CULLINGS
@@ -210,11 +250,16 @@ def listed(rows: list[Row]) -> list[str]:
     """Return rows one by one."""
     body = []
     for row in rows:
-        what = ", ".join(str(row[key]) for key in ("kind", "feature", "set", "mode", "view", "pipeline") if key in row)
+        what = named(row)
         count = next((f"{row[key]:,.0f} {key}" for key in ("segments", "points", "voxels") if key in row), "")
         nbytes = f"{row['gpu_bytes'] / 1e6:,.0f}" if "gpu_bytes" in row else ""
         body.append(f"| {what} | {count} | {row['size'][0]}×{row['size'][1]} | {told(row)} | {nbytes} |")
     return to_table(["what", "of", "pixels", "ms", "MB on the card"], body)
+
+
+def named(row: Row) -> str:
+    """Return what a row is of."""
+    return ", ".join(str(row[key]) for key in ("kind", "feature", "set", "mode", "view", "pipeline") if key in row)
 
 
 def told(row: Row) -> str:

@@ -2,9 +2,10 @@
 # Measures a graphics card from one command: does it draw right, and how fast (benchmarks/card.py says what).
 # For a bare machine with a card, its driver's EGL, and Python with moderngl, glcontext, numpy and numba; no VTK, no display.
 #
-#   benchmarks/card.sh [--small] [--total SECONDS] [--output FOLDER] ...      PYTHON=... to name another Python
+#   benchmarks/card.sh [--small] [--total SECONDS] [--folder DATA --resume] [--output FOLDER] ...      PYTHON=... to name another Python
 #
-# Writes card-CARD.json, .md and .png into docs/benchmarks (or --output), after every section.
+# Writes card-CARD.json, .md and .png into docs/benchmarks (or --output), after every cell. --resume goes on where an earlier run
+# was cut short; with --folder it finds that run's brains (12 GB) and pictures.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 PYTHON=${PYTHON:-python3}
