@@ -252,7 +252,7 @@ def listed(rows: list[Row]) -> list[str]:
     for row in rows:
         what = named(row)
         count = next((f"{row[key]:,.0f} {key}" for key in ("segments", "points", "voxels") if key in row), "")
-        nbytes = f"{row['gpu_bytes'] / 1e6:,.0f}" if "gpu_bytes" in row else ""
+        nbytes = f"{row['gpu_bytes'] / 1e6:,.1f}" if "gpu_bytes" in row else ""
         body.append(f"| {what} | {count} | {row['size'][0]}×{row['size'][1]} | {told(row)} | {nbytes} |")
     return to_table(["what", "of", "pixels", "ms", "MB on the card"], body)
 

@@ -22,8 +22,6 @@ from .study import Options
 
 __all__ = ["features_part"]
 
-NOT_COMPARED = "drawn, not compared"
-
 
 def features_part(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
     """Yield every feature of every drawable."""
@@ -41,6 +39,6 @@ def _scene(ctx: Any, subject: Any, feature: Any) -> Scene:
 
     def judge() -> Judged:
         keys = np.frombuffer(drawn.last.depth.read(), np.uint32)
-        return Judged({EMPTY: float((keys == NO_KEY).all())}, {EMPTY: 0.0}, note=NOT_COMPARED)
+        return Judged({EMPTY: float((keys == NO_KEY).all())}, {EMPTY: 0.0}, compared=False)
 
     return Scene("", lambda _number: drawn(), judge, drawn.release)

@@ -16,23 +16,24 @@ import numpy.typing as npt
 from pvfiblets.whole_files import replacing
 
 from .card_check import CardCheck
-from .card_findings import table
+from .card_findings import table, totals
 from .machine import about
 
 __all__ = ["png", "summary", "write"]
 
 
 def summary(check: CardCheck) -> str:
-    """Return what a person reads: the driver, the table, and one sentence."""
+    """Return what a person reads: the driver, the table, and what it comes to."""
     opengl = check.opengl
     lines = [f"{name:<10}{opengl[name]}" for name in ("renderer", "driver") if name in opengl]
+    if opengl.get("software"):
+        lines[0] += " (on the CPU: no graphics card was tried)"
     lines += ["", table(check.findings), ""]
     bad = [one for one in check.findings if one.bad]
     if bad:
         which = "; ".join(f"{one.part}: {one.feature}" for one in bad[:5]) + ("; ..." if len(bad) > 5 else "")
         lines.append(f"{len(bad)} of {len(check.findings)} things differ or fail: {which}.")
-    else:
-        lines.append(f"All {len(check.findings)} things that were tried work, but for what is missing or too slow.")
+    lines.append(f"{totals(check.findings)}{'' if bad else '; nothing differs or fails'}.")
     return "\n".join(lines)
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-__all__ = ["BAD", "DIFFERS", "EMPTY", "FAILS", "MISSING", "SLOW", "WORKS", "Finding", "table", "verdict_of"]
+__all__ = [
+    "BAD", "DIFFERS", "DRAWN", "EMPTY", "FAILS", "MISSING", "SLOW", "WORKS", "Finding", "table", "totals", "verdict_of",
+]  # fmt: skip
 
 EMPTY = "empty"
 """The figure that is 1 where a picture shows nothing at all."""
-WORKS, DIFFERS, SLOW, MISSING, FAILS = "works", "differs", "too slow", "missing", "fails"
+WORKS, DRAWN, DIFFERS, SLOW, MISSING, FAILS = "works", "drawn", "differs", "too slow", "missing", "fails"
 BAD = (DIFFERS, FAILS)
 """Verdicts with which a check ends with 1."""
 
@@ -24,7 +27,7 @@ class Finding:
     part, feature : str
         What it belongs to, and what it is.
     verdict : str
-        One of ``'works'``, ``'differs'``, ``'too slow'``, ``'missing'`` and ``'fails'``.
+        One of ``'works'``, ``'drawn'`` (not compared), ``'differs'``, ``'too slow'``, ``'missing'`` and ``'fails'``.
     note : str
         Why, in a few words.
     figures : dict
@@ -61,19 +64,19 @@ class Finding:
         names = [name for name in self.limits if name != EMPTY or self.figures[name]]
         worst = sorted(names, key=lambda name: -self.figures[name] / max(self.limits[name], 1e-300))
         above = [name for name in worst if not self.figures[name] <= self.limits[name]]
-        told = [f"{name} {_number(self.figures[name])} (at most {_number(self.limits[name])})"
-                for name in above or worst[:1]]  # fmt: skip
+        told = [_told(name, self.figures[name], self.limits[name]) for name in above or worst[:1]]
         return "; ".join([self.note] * bool(self.note) + told)
 
 
-def verdict_of(figures: Mapping[str, float], limits: Mapping[str, float]) -> str:
+def verdict_of(figures: Mapping[str, float], limits: Mapping[str, float], compared: bool = True) -> str:
     """Say whether all figures are within their limits; NaN is not."""
-    return WORKS if all(figures[name] <= limit for name, limit in limits.items()) else DIFFERS
+    good = WORKS if compared else DRAWN
+    return good if all(figures[name] <= limit for name, limit in limits.items()) else DIFFERS
 
 
 def table(findings: Iterable[Finding]) -> str:
     """Return all as a person reads them, one a line."""
-    rows = [("part", "what", "verdict", "ms", "")]
+    rows = [("part", "what", "verdict", "ms", "worst error, of pixels if no unit is named; or why")]
     rows += [
         (one.part, one.feature, one.verdict, "" if one.ms is None else f"{one.ms:,.1f}", one.words) for one in findings
     ]
@@ -85,5 +88,19 @@ def table(findings: Iterable[Finding]) -> str:
     return "\n".join(lines)
 
 
-def _number(value: float) -> str:
-    return f"{value:.3g}"
+def totals(findings: Iterable[Finding]) -> str:
+    """Say in one sentence how many there are of each verdict."""
+    found = Counter(one.verdict for one in findings)
+    words = {WORKS: ("works", "work"), DRAWN: ("was drawn and not compared", "were drawn and not compared"),
+             SLOW: ("works slowly", "work slowly"),
+             MISSING: ("is missing in this OpenGL", "are missing in this OpenGL")}  # fmt: skip
+    parts = [f"{found[verdict]} {both[found[verdict] > 1]}" for verdict, both in words.items() if found[verdict]]
+    return ", ".join(parts) or "nothing works"
+
+
+def _told(name: str, value: float, limit: float) -> str:
+    """Return an error and its limit: in the unit that its name ends with, else as a share."""
+    name, _, unit = name.partition(", ")
+    if not unit:
+        return f"{name} {100.0 * value:.2g} % (at most {100.0 * limit:.3g} %)"
+    return f"{name} {value:.2g} {unit} (at most {limit:.3g} {unit})"

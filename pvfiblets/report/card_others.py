@@ -193,9 +193,9 @@ def _volume(ctx: Any, mode: str, filter: str = "trilinear", **more: Any) -> Scen
         right = truth(volume, look, [camera], PIXELS, filter)
         at = right.pixels[0]
         off = np.abs(picture[at[:, 0], at[:, 1]] - right.colours[0][0]).max(axis=1)
-        figures = {EMPTY: float(not picture.any()), "colour, median": float(np.median(off)),
+        figures = {EMPTY: float(not picture.any()), "median colour": float(np.median(off)),
                    "pixels off": float((off > OFF).mean())}  # fmt: skip
-        limits = {EMPTY: 0.0, "colour, median": COLOUR, "pixels off": PIXELS_OFF}
+        limits = {EMPTY: 0.0, "median colour": COLOUR, "pixels off": PIXELS_OFF}
         return Judged(figures, limits, {"drawn": (255.0 * picture).astype(np.uint8)})
 
     return Scene("", draw, judge, renderer.release)

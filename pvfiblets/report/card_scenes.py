@@ -33,12 +33,15 @@ class Judged:
         By name, ``(height, width)`` bool or ``(height, width, 3)`` uint8, row 0 at the bottom: what to look at where it
         differs.
     note : str
+    compared : bool
+        Whether it was held against anything; else it only had to be drawn.
     """
 
     figures: Mapping[str, float]
     limits: Mapping[str, float]
     pictures: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
+    compared: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple
         scene.release()
     figures = {name: float(value) for name, value in judged.figures.items()}
     found = Finding(
-        part, feature, verdict_of(figures, judged.limits), judged.note, figures, dict(judged.limits),
+        part, feature, verdict_of(figures, judged.limits, judged.compared), judged.note, figures, dict(judged.limits),
         float(np.median(taken)), first,
     )  # fmt: skip
     if complaint != "GL_NO_ERROR":
