@@ -16,6 +16,7 @@ _HOME = {
     "DensityMap": "query.density_map",
     "FibletSet": "codec.fibletset",
     "FormatError": "errors",
+    "ShardedSet": "codec.shards.sharded_set",
     "SplineTubes": "tubes.spline_tubes",
     "Streamlines": "streamlines",
     "clusters": "query.bundles.clusters",
@@ -45,9 +46,10 @@ __all__ = ["__version__", *_HOME, *_ROOMS]
 if TYPE_CHECKING:
     from . import synthetic
     from .codec.compress import compress as compress
-    from .codec.convert import compress_file
+    from .codec.convert import compress_file as compress_file
     from .codec.error import CodingError, measure_error
-    from .codec.fibletset import FibletSet
+    from .codec.fibletset import FibletSet as FibletSet
+    from .codec.shards.sharded_set import ShardedSet as ShardedSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot

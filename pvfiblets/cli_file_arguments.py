@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from pvfiblets.cli_memory import add_memory_option
+from pvfiblets.cli_memory import add_memory_option, bytes_of_file
 from pvfiblets.cli_pipes import add_format_option
 from pvfiblets.cli_values import angle, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
@@ -60,6 +60,13 @@ def add_convert(commands: Any) -> None:
         default=None,
         help="keep every bit of the points, or code them in any case (default: exact if less than a megabyte, unless "
         "an option of coding is given, or if coding would take more bytes)",
+    )
+    convert.add_argument(
+        "--shards",
+        type=bytes_of_file,
+        metavar="SIZE",
+        help="write a folder of .fiblets files of at most this size each (such as 2G), of streamlines that lie near "
+        "each other; it is read like one file, or in parts",
     )
     add_format_option(convert, reads=["source"], writes="target")
     _quiet_and_json(convert)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json as json_
 import math
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pvfiblets import formats
+from pvfiblets.addresses import is_url, path_of
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 from pvfiblets.formats.rewrite import rewrite
 from pvfiblets.web.values import plain
@@ -30,17 +32,22 @@ def convert(
     per_point: list[str],
     per_point_bits: int,
     exact: bool | None,
+    shards: int | None,
     quiet: bool,
     json: bool,
 ) -> None:
-    """Compress a file, or write it in another format."""
+    """Compress a file, in one or in shards, or write it in another format."""
     if Path(source).resolve() == Path(target).resolve():
         raise ValueError(f"{source} would be overwritten by itself; give another name")
     formats.registry.module_for(target, "write")  # before hours of work, not after
     if Path(target).suffix.lower() == COMPRESSED:
-        from pvfiblets.codec.convert import compress_file
+        if shards is None:
+            from pvfiblets.codec.convert import compress_file as work
+        else:
+            from pvfiblets.codec.shards.write import compress_file_in_shards
 
-        result = compress_file(
+            work = partial(compress_file_in_shards, size=shards)
+        result = work(
             source,
             target,
             step="auto" if step is None else step,
@@ -53,10 +60,11 @@ def convert(
             progress=show_progress(quiet, json),
         )
     else:
-        if step is not None or max_error is not None or max_angle != DEFAULT_ANGLE or per_point or exact is not None:
+        asked = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
+        if asked:
             raise ValueError(
-                f"--step, --max-error, --max-angle, --exact and --per-point are for {COMPRESSED} files; {target} is of "
-                "another format"
+                f"--step, --max-error, --max-angle, --exact, --per-point and --shards are for {COMPRESSED} files; "
+                f"{target} is of another format"
             )
         result = rewrite(source, target)
     if json:
@@ -79,7 +87,8 @@ def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
     facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
     facts.pop("path", None)
-    facts["bytes"] = Path(path).stat().st_size
+    if not is_url(path):
+        facts["bytes"] = bytes_of(path)
     if json:
         print_json(facts)
         return
@@ -115,9 +124,10 @@ def verify(path: str, original: str | None, *, max_angle: float | None, quiet: b
 
 def summary(source: str, target: str, result: dict[str, Any]) -> str:
     """Return the outcome of ``convert`` for people."""
-    before, after = Path(source).stat().st_size, result["bytes"]
+    before, after = bytes_of(source), result["bytes"]
+    parts = f", in {result['shards']:,} shards" if "shards" in result else ""
     lines = [
-        f"{target}: {result['streamlines']:,} streamlines, {result['points']:,} points",
+        f"{target}: {result['streamlines']:,} streamlines, {result['points']:,} points{parts}",
         f"size     {after:,} bytes, {result['bytes_per_point']:.2f} per point; "
         f"{100.0 * after / max(before, 1):.1f} % of {Path(source).name}",
     ]
@@ -132,12 +142,19 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
         if result["points"] and math.isfinite(result["error_degrees"]["max"]):
             angles = ", ".join(f"{k} {v:.2g}°" for k, v in result["error_degrees"].items())
             lines.append(f"         directions: {angles}")
-    speed = result["points_per_second"] / 1e6
-    lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
+    if "seconds" in result:  # else the source was compressed before
+        speed = result["points_per_second"] / 1e6
+        lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
     if result.get("per_point"):
         lines.append(f"values   {', '.join(result['per_point'])}")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]
     return "\n".join(lines)
+
+
+def bytes_of(path: str | Path) -> int:
+    """Return the size of a file, or of a folder's files."""
+    place = path_of(path)
+    return sum(part.stat().st_size for part in place.iterdir()) if place.is_dir() else place.stat().st_size
 
 
 def show_progress(quiet: bool, json: bool) -> bool:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from pvfiblets.errors import FibletsError
 
-__all__ = ["add_memory_option", "held_to"]
+__all__ = ["add_memory_option", "bytes_of_file", "held_to"]
 
 HALF = "50%"
 LEAST_MEMORY = 256 << 20
@@ -23,6 +23,24 @@ def add_memory_option(parser: argparse.ArgumentParser) -> None:
         help="most memory it may take, such as 4G or 25%% of this machine's (default: 50%%); files are read in parts, "
         "and lines of millions of points lie on disk meanwhile, where TMPDIR says",
     )
+
+
+def bytes_of_file(text: str) -> int:
+    """Parse the size of a file, such as ``2G``.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If it is none.
+    """
+    from pvfiblets import memory
+
+    try:
+        if "%" in text:
+            raise ValueError
+        return memory.parse(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size of a file; give one such as 2G or 500M") from None
 
 
 @contextmanager

@@ -13,11 +13,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, fields
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..addresses import is_url
 from ..errors import FormatError
 from ..streamlines import Streamlines, offsets_from_counts
 from .archive import Member, array_member, open_archive, write_archive
@@ -30,7 +32,7 @@ from .quantised import QuantisedPoints
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["VERSION", "make_header", "open_fiblets", "save"]
+__all__ = ["VERSION", "is_sharded", "make_header", "open_fiblets", "save"]
 
 VERSION = 3
 OF_CODES = 2
@@ -138,8 +140,13 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
     return header, members
 
 
+def is_sharded(path: str | PathLike[str]) -> bool:
+    """Whether a set of shards is meant: by a folder, or by an address such as ``https://...``."""
+    return is_url(path) or Path(path).is_dir()
+
+
 def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
-    """Map a ``.fiblets`` file.
+    """Map a ``.fiblets`` file; of a folder or an address, gather the shards (:mod:`.shards`) in memory.
 
     Parameters
     ----------
@@ -160,6 +167,10 @@ def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
     FileNotFoundError
         If there is no such file.
     """
+    if is_sharded(path):
+        from .shards.sharded_set import ShardedSet  # few sets are in shards
+
+        return ShardedSet.open(path).gather()
     header, arrays = open_archive(path)
     if header.get("format") != "fiblets":
         raise FormatError(path, 0, f"format {header.get('format')!r} in header.json", "'fiblets'")

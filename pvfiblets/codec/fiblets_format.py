@@ -11,6 +11,7 @@ from ..streamlines import Streamlines
 from .archive import check_members
 from .compress import compress
 from .decompress import held_in_bounds
+from .fiblets_file import is_sharded
 from .fibletset import FibletSet
 
 __all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
@@ -25,6 +26,11 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
+    if is_sharded(path):
+        from .shards.sharded_set import ShardedSet
+
+        yield from ShardedSet.open(path).iter_chunks(max_points)
+        return
     fiblets = FibletSet.open(path)
     yield from held_in_bounds(fiblets, fiblets.iter_chunks(max_points))
 
@@ -35,7 +41,9 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
 
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
-    """Header facts, in constant time."""
+    """Header facts, in constant time; of a folder of shards, from its manifest and its first shard."""
+    if is_sharded(path):
+        return _info_of_shards(path)
     f = FibletSet.open(path)
     return {
         "format": "fiblets",
@@ -56,6 +64,27 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
     }
 
 
+def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
+    from .shards.sharded_set import ShardedSet
+
+    whole = ShardedSet.open(path)
+    first, manifest = info(whole.place(0)), whole.manifest
+    return {
+        **{k: first[k] for k in ("format", "step_mm", "exact", "per_streamline", "affine")},
+        "path": fspath(path),
+        "streamlines": manifest.streamlines,
+        "points": manifest.points,
+        "fiblets": manifest.n_fiblets,
+        "bytes": whole.nbytes,
+        "shards": len(manifest.shards),
+        "promise_mm": manifest.promise_mm,
+        "bounds_mm": list(manifest.bounds),
+        "per_point": first["per_point"],
+        "groups": manifest.groups,
+        "dropped": manifest.dropped,
+    }
+
+
 def verify_file(path: str | PathLike[str]) -> None:
     """Check a file's every byte against its checksums, and its records for sense.
 
@@ -66,6 +95,11 @@ def verify_file(path: str | PathLike[str]) -> None:
     """
     from .check import check_records
 
+    if is_sharded(path):
+        from .shards.sharded_set import ShardedSet
+
+        ShardedSet.open(path).verify()
+        return
     fiblets = FibletSet.open(path)
     damaged = check_members(path)
     if damaged:

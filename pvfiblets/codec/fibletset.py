@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..addresses import is_url
 from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import Parameters
@@ -364,13 +365,16 @@ class FibletSet(SetQueries):
 
     # ---------------------------------------------------------------------------------------------------- to disk
 
-    def save(self, path: str | PathLike[str]) -> list[str]:
+    def save(self, path: str | PathLike[str], *, shards: int | None = None) -> list[str]:
         """Write a ``.fiblets`` file, or, by the suffix, a file of another format (``.trk``, ``.tck``, ``.trx``, ...).
 
         Parameters
         ----------
         path : str or PathLike
             A name without the suffix of any format is one of a ``.fiblets`` file.
+        shards : int, optional
+            Write a folder of ``.fiblets`` files of at most so many bytes each instead, of streamlines that lie near
+            each other (:class:`pvfiblets.ShardedSet` reads parts of it).
 
         Returns
         -------
@@ -383,11 +387,18 @@ class FibletSet(SetQueries):
             If the place cannot be written to.
         UnknownFormatError
             If no format has this suffix, or it can only be read, such as ``.trk.gz``.
+        ValueError
+            If shards are asked for of another format.
         """
         from ..formats import registry
         from .fiblets_file import save
 
         path = Path(path).expanduser()
+        if shards is not None:
+            from .shards.write import write_shards
+
+            write_shards(self, path, shards)
+            return []
         if path.suffix and registry.suffix_of(path) != ".fiblets":
             from .extract import save_as
 
@@ -399,6 +410,12 @@ class FibletSet(SetQueries):
     def open(cls, path: str | PathLike[str]) -> FibletSet:
         """Map a ``.fiblets`` file into memory: nothing is read before it is needed.
 
+        Parameters
+        ----------
+        path : str or PathLike
+            A file; or a folder of shards or the address of one, which are gathered in memory
+            (:class:`pvfiblets.ShardedSet` reads parts).
+
         Raises
         ------
         FormatError
@@ -406,7 +423,7 @@ class FibletSet(SetQueries):
         """
         from .fiblets_file import open_fiblets
 
-        return open_fiblets(Path(path).expanduser(), cls)
+        return open_fiblets(path if is_url(path) else Path(path).expanduser(), cls)
 
     def verify(self) -> None:
         """Check that all records agree with each other.

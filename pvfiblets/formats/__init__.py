@@ -22,10 +22,11 @@ and the value expected.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
+from pvfiblets.addresses import is_url, path_of
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.registry import UnknownFormatError, module_for, suffix_of
 from pvfiblets.streamlines import Streamlines
@@ -63,8 +64,8 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     UnknownFormatError
         If no format has this suffix.
     """
-    path = Path(path).expanduser()
-    streamlines: Streamlines = module_for(path, "read").read(path, progress=progress)
+    place = _place(path)
+    streamlines: Streamlines = module_for(place, "read").read(place, progress=progress)
     return streamlines
 
 
@@ -92,8 +93,8 @@ def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterato
     """
     if max_points < 1:
         raise ValueError(f"max_points is {max_points}, expected at least 1")
-    path = Path(path).expanduser()
-    yield from module_for(path, "iter_chunks").iter_chunks(path, max_points)
+    place = _place(path)
+    yield from module_for(place, "iter_chunks").iter_chunks(place, max_points)
 
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
@@ -107,8 +108,13 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         ``groups`` (lists of names), ``affine``, ``dimensions``, ``voxel_sizes``,
         ``voxel_order``, ``header``.
     """
-    path = Path(path).expanduser()
-    return {"format": suffix_of(path), **module_for(path, "info").info(path)}
+    place = _place(path)
+    return {"format": suffix_of(place), **module_for(place, "info").info(place)}
+
+
+def _place(path: str | PathLike[str]) -> str | Path:
+    """A path with its ``~`` expanded, or an address of a format that is read from there."""
+    return fspath(path) if is_url(path) and suffix_of(path) == ".fiblets" else path_of(path)
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
@@ -132,7 +138,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
     ValueError
         If a name or value does not fit the format, with the fix.
     """
-    path = Path(path).expanduser()
+    path = path_of(path)
     module = module_for(path, "write")
     module.write(path, streamlines)
     holds = getattr(module, "HOLDS", None)
@@ -166,4 +172,4 @@ def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None
     """
     from pvfiblets.formats import attachments
 
-    return attachments.attach(streamlines, Path(path).expanduser(), name)
+    return attachments.attach(streamlines, path_of(path), name)

@@ -1,0 +1,202 @@
+"""``manifest.json`` of a sharded set: which files there are, and what each holds.
+
+::
+
+    whole.fiblets/
+      manifest.json
+      000000.fiblets   000000.ids.npy
+      000001.fiblets   000001.ids.npy
+      ...
+
+``NUMBER.ids.npy`` holds the numbers that the shard's streamlines have in the whole set, rising. All checksums are
+SHA-256. A folder without a manifest is no set: it is written last.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import FormatError
+
+__all__ = ["MANIFEST", "Manifest", "Shard", "StoredFile"]
+
+MANIFEST = "manifest.json"
+FORMAT, VERSION = "fiblets-shards", 1
+
+Bounds = tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class StoredFile:
+    """A file of the set.
+
+    Attributes
+    ----------
+    name : str
+        Without a folder.
+    bytes : int
+    sha256 : str
+    """
+
+    name: str
+    bytes: int
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Shard:
+    """One shard.
+
+    Attributes
+    ----------
+    fiblets, ids : StoredFile
+    streamlines, points, n_fiblets : int
+    bounds : tuple of float
+        Of its points ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
+    length_mm : dict of str to float
+        ``mean, max`` over its streamlines.
+    """
+
+    fiblets: StoredFile
+    ids: StoredFile
+    streamlines: int
+    points: int
+    n_fiblets: int
+    bounds: Bounds
+    length_mm: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What the shards are parts of.
+
+    Attributes
+    ----------
+    streamlines, points, n_fiblets : int
+        Of all shards.
+    promise_mm : float
+        As :attr:`.FibletSet.promise`.
+    bounds : tuple of float
+        Of the original points, mm.
+    groups : dict of str to int
+        How many members each group has.
+    dropped : dict of str to int
+        What reading the source left out, by reason.
+    shards : tuple of Shard
+    """
+
+    streamlines: int
+    points: int
+    n_fiblets: int
+    promise_mm: float
+    bounds: Bounds
+    groups: dict[str, int]
+    dropped: dict[str, int]
+    shards: tuple[Shard, ...]
+
+    def to_json(self) -> str:
+        """Return the file's text."""
+        return json.dumps({"format": FORMAT, "version": VERSION, **asdict(self)}, indent=1, allow_nan=False) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str | bytes, path: str) -> Manifest:
+        """Read the file's text.
+
+        Parameters
+        ----------
+        text : str or bytes
+        path : str
+            What errors call it.
+
+        Raises
+        ------
+        FormatError
+            If it is not what :meth:`to_json` writes.
+        """
+        try:
+            found = json.loads(text)
+        except ValueError as error:
+            raise FormatError(path, None, f"a manifest that is no JSON ({error})", "the manifest of a set") from error
+        if not isinstance(found, dict) or found.get("format") != FORMAT:
+            said = found.get("format") if isinstance(found, dict) else type(found).__name__
+            raise FormatError(path, None, f"format {said!r} in its manifest", repr(FORMAT))
+        version = found.get("version")
+        if version != VERSION:
+            update = ": update pvfiblets to read it" if isinstance(version, int) and version > VERSION else ""
+            raise FormatError(path, None, f"version {version!r} in its manifest", f"version {VERSION}{update}")
+        try:
+            return _checked(cls._of(found))
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
+            raise FormatError(
+                path, None, f"a manifest that does not fit together ({error!r})", "one as written"
+            ) from error
+
+    @classmethod
+    def _of(cls, found: Mapping[str, Any]) -> Manifest:
+        return cls(
+            streamlines=int(found["streamlines"]),
+            points=int(found["points"]),
+            n_fiblets=int(found["n_fiblets"]),
+            promise_mm=float(found["promise_mm"]),
+            bounds=_bounds(found["bounds"]),
+            groups={str(k): int(v) for k, v in found["groups"].items()},
+            dropped={str(k): int(v) for k, v in found["dropped"].items()},
+            shards=tuple(
+                Shard(
+                    fiblets=_file(one["fiblets"]),
+                    ids=_file(one["ids"]),
+                    streamlines=int(one["streamlines"]),
+                    points=int(one["points"]),
+                    n_fiblets=int(one["n_fiblets"]),
+                    bounds=_bounds(one["bounds"]),
+                    length_mm={str(k): float(v) for k, v in one["length_mm"].items()},
+                )
+                for one in found["shards"]
+            ),
+        )
+
+    def meeting(self, bounds: npt.ArrayLike) -> list[int]:
+        """Return the numbers of the shards whose bounds meet a box ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm."""
+        box = np.asarray(bounds, float)
+        if box.shape != (6,) or not (box[::2] <= box[1::2]).all():
+            raise ValueError(
+                f"bounds are {np.array2string(box, separator=', ')}; six numbers (xmin, xmax, ymin, ymax, zmin, zmax) "
+                "with each minimum first are needed"
+            )
+        found = []
+        for number, shard in enumerate(self.shards):
+            b = np.array(shard.bounds)
+            if shard.points and (b[::2] <= box[1::2]).all() and (b[1::2] >= box[::2]).all():
+                found.append(number)
+        return found
+
+
+def _bounds(given: Any) -> Bounds:
+    b = [float(v) for v in given]
+    if len(b) != 6 or not np.isfinite(b).all():
+        raise ValueError(f"bounds {b}")
+    return (b[0], b[1], b[2], b[3], b[4], b[5])
+
+
+def _file(given: Mapping[str, Any]) -> StoredFile:
+    name, size = str(given["name"]), int(given["bytes"])
+    # Whoever wrote the manifest chooses files of its own folder, and no other.
+    if not name or name.startswith(".") or any(c in name for c in "/\\:") or size < 0:
+        raise ValueError(f"file {name!r} of {size} bytes")
+    return StoredFile(name, size, str(given["sha256"]))
+
+
+def _checked(manifest: Manifest) -> Manifest:
+    if not manifest.shards:
+        raise ValueError("no shards")
+    for name in ("streamlines", "points", "n_fiblets"):
+        parts = [getattr(shard, name) for shard in manifest.shards]
+        if min(parts) < 0 or sum(parts) != getattr(manifest, name):
+            raise ValueError(f"{name} {getattr(manifest, name)}, of shards {sum(parts)}")
+    return manifest

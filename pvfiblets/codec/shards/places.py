@@ -1,0 +1,133 @@
+"""Which shard each streamline belongs to: near ones to the same, and none larger than was asked.
+
+Streamlines are put in the order in which a Hilbert curve through space visits the middles of them (the first point of
+their middle fiblet), and the shards are consecutive stretches of that order. A streamline lies in one shard as a whole,
+so that a shard is an ordinary set.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..archive import forget
+from ..layout import PAGE, WORDS, unpack
+from ..ordering import hilbert_keys
+
+if TYPE_CHECKING:
+    from ..fibletset import FibletSet
+
+__all__ = ["shards_of", "streamline_bytes"]
+
+BITS = 16
+BLOCK = 64 * PAGE
+Ints = npt.NDArray[np.int64]
+
+
+def shards_of(fiblets: FibletSet, size: int) -> list[Ints]:
+    """Divide a set's streamlines.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        In memory or mapped. About 40 bytes a streamline are taken meanwhile.
+    size : int
+        Bytes that a shard may have, but for one of a single streamline that has more.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        For each shard the numbers of its streamlines, rising. Those without points belong to the first. There is at
+        least one shard, and none that is empty beside another.
+    """
+    if size < 1:
+        raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
+    firsts = _firsts(fiblets)
+    sizes = streamline_bytes(fiblets, firsts)
+    order = np.argsort(_keys(fiblets, firsts), kind="stable")
+    ids = order if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id)[order]
+    cuts = _cuts(sizes[order], size)
+    parts = [np.sort(ids[a:b]) for a, b in pairwise(cuts.tolist())] or [np.zeros(0, np.int64)]
+    if fiblets.n_ranks < fiblets.n_streamlines:
+        without = np.ones(fiblets.n_streamlines, bool)
+        without[ids] = False
+        parts[0] = np.sort(np.concatenate([parts[0], np.flatnonzero(without)]))
+    return parts
+
+
+def streamline_bytes(fiblets: FibletSet, firsts: Ints | None = None) -> Ints:
+    """``(n_ranks,)`` bytes that each streamline takes in a file: of records, codes, and values of points."""
+    if firsts is None:
+        firsts = _firsts(fiblets)
+    record = 4 * (WORDS["anchors"] + WORDS["decoding"]) + 2 + (0 if fiblets.anchors_low is None else 6)
+    point = sum(values.codes.dtype.itemsize for values in fiblets.per_point.values())
+    rows = sum(rows.dtype.itemsize * int(np.prod(rows.shape[1:])) for rows in fiblets.per_streamline.values())
+    stops = np.append(firsts[1:], fiblets.n_fiblets)
+    codes = np.empty(len(firsts) + 1, np.int64)
+    points = np.empty(len(firsts) + 1, np.int64)
+    codes[-1], points[-1] = len(fiblets.codes), fiblets.n_points
+    for start in range(0, len(firsts), BLOCK):
+        which = firsts[start : start + BLOCK]
+        words = np.asarray(fiblets.decoding[which])
+        base = fiblets.pages[which // PAGE]
+        taken = slice(start, start + len(which))
+        codes[taken] = unpack("code", words).astype(np.int64) + base[:, 1]
+        points[taken] = unpack("point", words).astype(np.int64) + base[:, 2]
+    counts = np.diff(points)
+    if fiblets.exact is not None:
+        return counts * (3 * fiblets.exact.dtype.itemsize + point) + rows + 4
+    sizes: Ints = (stops - firsts) * record + np.diff(codes) + counts * point + rows + 4  # 4: the last chord
+    return sizes
+
+
+def _firsts(fiblets: FibletSet) -> Ints:
+    """``(n_ranks,)`` the first fiblet of each streamline."""
+    found = [np.zeros(0, np.int64)]
+    for start in range(0, fiblets.n_fiblets, BLOCK):
+        rows = fiblets.anchors[start : start + BLOCK]
+        found.append(np.flatnonzero(unpack("begin", rows)) + start)
+        forget(fiblets.anchors, start, start + len(rows))
+    firsts = np.concatenate(found)
+    if len(firsts) != fiblets.n_ranks:
+        fiblets.verify()
+        raise ValueError(f"{len(firsts)} streamlines begin where {fiblets.n_ranks} are")
+    return firsts
+
+
+def _keys(fiblets: FibletSet, firsts: Ints) -> npt.NDArray[np.uint64]:
+    """``(n_ranks,)`` where the curve meets the middle of each streamline."""
+    middles = (firsts + np.append(firsts[1:], fiblets.n_fiblets)) // 2
+    scale = fiblets.anchor_scale * (1.0 if fiblets.anchors_low is None else 65536.0)
+    extent = max(float(scale.max()) * 65535.0, np.finfo(float).tiny)
+    keys = np.empty(len(firsts), np.uint64)
+    for start in range(0, len(middles), BLOCK):
+        words = np.asarray(fiblets.anchors[middles[start : start + BLOCK]])
+        q = np.stack([unpack(f"anchor_{axis}", words) for axis in "xyz"], axis=1).astype(float)
+        cells = np.clip(q * (scale / extent) * ((1 << BITS) - 1), 0, (1 << BITS) - 1).astype(np.int64)
+        keys[start : start + len(words)] = hilbert_keys(cells, BITS)
+    return keys
+
+
+def _cuts(sizes: Ints, size: int) -> Ints:
+    """Where stretches of at most so many bytes begin and end; a single one may be larger.
+
+    They are as even as can be: 10 bytes of 1 each, at most 4 together, are 4, 3, 3 rather than 4, 4, 2.
+    """
+    if not len(sizes):
+        return np.zeros(1, np.int64)
+    ends = np.cumsum(sizes)
+    share = int(ends[-1]) / -(-int(ends[-1]) // size)
+    cuts, done = [0], 0
+    while cuts[-1] < len(sizes):
+        before = int(ends[cuts[-1] - 1]) if cuts[-1] else 0
+        done += 1
+        wanted = min(max(share * done, before + 1), before + size)
+        # As near to the share as whole streamlines come, and never over the size.
+        at = int(np.searchsorted(ends, wanted, side="left")) + 1
+        if at > len(ends) or (at - 1 > cuts[-1] and int(ends[at - 1]) - before > size):
+            at -= 1
+        cuts.append(max(at, cuts[-1] + 1))
+    return np.array(cuts)

@@ -1,0 +1,210 @@
+"""Write a set in shards, in the memory that one shard takes and some bytes a streamline."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from ...whole_files import naming_target
+from ..extract import extract
+from ..progress import Progress
+from .manifest import MANIFEST, Manifest, Shard, StoredFile
+from .places import shards_of
+
+if TYPE_CHECKING:
+    from ..fibletset import FibletSet
+
+__all__ = ["compress_file_in_shards", "write_shards"]
+
+PIECE = 1 << 22
+Ints = npt.NDArray[np.int64]
+
+
+def compress_file_in_shards(
+    source: str | PathLike[str],
+    target: str | PathLike[str],
+    size: int,
+    *,
+    progress: Progress = False,
+    **options: Any,
+) -> dict[str, Any]:
+    """Compress a tractogram file into a folder of shards.
+
+    Parameters
+    ----------
+    source : str or PathLike
+        Any format that :func:`pvfiblets.iter_chunks` reads. A ``.fiblets`` file or folder is divided as it is, without
+        being coded again.
+    target : str or PathLike
+        Name of the folder, ending in ``.fiblets``; it appears when it is whole. While it is made, its parent folder
+        holds the set a second time.
+    size : int
+        Bytes that a shard may have at most, but for one of a single streamline that has more.
+    progress : bool or callable
+        As in :func:`pvfiblets.compress_file`.
+    **options
+        As of :func:`pvfiblets.compress_file`.
+
+    Returns
+    -------
+    dict
+        As :func:`pvfiblets.compress_file`, ``bytes`` being those of all files, and ``shards``, how many there are. Of a
+        source that was compressed before there is no time and no error.
+
+    Raises
+    ------
+    FormatError
+        If the source breaks its format.
+    FileExistsError
+        If there is something at `target` that is no sharded set.
+    ValueError
+        As :func:`pvfiblets.compress_file`, if `size` is less than 1, and if `target` has another suffix.
+    """
+    from ... import FibletSet, compress_file  # by the package's own names for them: sets are saved in shards, too
+
+    target = Path(target).expanduser()
+    _refuse_others(target)
+    if size < 1:
+        raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
+    if Path(source).suffix.lower() == ".fiblets":
+        given = sorted(name for name, value in options.items() if value not in (None, "auto", "input", "fit", "fast"))
+        if given:
+            raise ValueError(
+                f"{', '.join(given)}: {source} is compressed already, and its shards are parts of it as it is; give "
+                "the original, or leave these out"
+            )
+        whole = FibletSet.open(source)
+        manifest = write_shards(whole, target, size, progress=progress)
+        result: dict[str, Any] = {"exact": whole.exact is not None, "per_point": list(whole.per_point)}
+        result |= {"promise_mm": whole.promise, "dropped": dict(whole.dropped)}
+    else:
+        with (
+            naming_target(target),
+            tempfile.TemporaryDirectory(prefix=".fiblets-", dir=target.resolve().parent) as made,
+        ):
+            aside = Path(made) / "whole.fiblets"
+            result = compress_file(source, aside, progress=progress, **options)
+            manifest = write_shards(FibletSet.open(aside), target, size, progress=progress)
+    total = sum(file.stat().st_size for file in target.iterdir())
+    return {
+        **result,
+        "streamlines": manifest.streamlines,
+        "points": manifest.points,
+        "fiblets": manifest.n_fiblets,
+        "bytes": total,
+        "bytes_per_point": total / max(manifest.points, 1),
+        "shards": len(manifest.shards),
+    }
+
+
+def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, progress: Progress = False) -> Manifest:
+    """Write a set as a folder of shards; every point decodes to the same bits.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        In memory or mapped.
+    target, size, progress
+        As of :func:`compress_file_in_shards`.
+
+    Raises
+    ------
+    FileExistsError
+        If there is something at `target` that is no sharded set.
+    OSError
+        If it cannot be written to.
+    """
+    target = Path(target).expanduser()
+    _refuse_others(target)
+    places = shards_of(fiblets, size)
+    with naming_target(target, fiblets.nbytes), _appearing(target) as folder:
+        shards = []
+        for number, ids in enumerate(_counted(places, progress)):
+            part = extract(fiblets, ids)
+            if number:  # said once, as sums are taken of what all shards say
+                part = replace(part, dropped={})
+            name = f"{number:06}"
+            part.save(folder / f"{name}.fiblets")
+            np.save(folder / f"{name}.ids.npy", ids)
+            lengths = part.lengths()
+            shards.append(
+                Shard(
+                    fiblets=_described(folder / f"{name}.fiblets"),
+                    ids=_described(folder / f"{name}.ids.npy"),
+                    streamlines=len(part),
+                    points=part.n_points,
+                    n_fiblets=part.n_fiblets,
+                    bounds=part.bounds,
+                    length_mm={
+                        "mean": float(lengths.mean()) if len(lengths) else 0.0,
+                        "max": float(lengths.max(initial=0.0)),
+                    },
+                )
+            )
+        manifest = Manifest(
+            streamlines=fiblets.n_streamlines,
+            points=fiblets.n_points,
+            n_fiblets=fiblets.n_fiblets,
+            promise_mm=fiblets.promise,
+            bounds=fiblets.bounds,
+            groups={k: len(v) for k, v in fiblets.groups.items()},
+            dropped={k: int(v) for k, v in fiblets.dropped.items()},
+            shards=tuple(shards),
+        )
+        (folder / MANIFEST).write_text(manifest.to_json(), encoding="utf-8")
+    return manifest
+
+
+def _counted(places: list[Ints], progress: Progress) -> Iterator[Ints]:
+    """Yield the shards' streamlines, and show how far they have come."""
+    if callable(progress):
+        for number, ids in enumerate(places):
+            progress("writing shards", number / len(places))
+            yield ids
+        return
+    yield from tqdm(places, desc="writing shards", unit="shards", disable=not progress)
+
+
+def _described(path: Path) -> StoredFile:
+    found = hashlib.sha256()
+    with path.open("rb") as stream:
+        while piece := stream.read(PIECE):
+            found.update(piece)
+    return StoredFile(path.name, path.stat().st_size, found.hexdigest())
+
+
+def _refuse_others(target: Path) -> None:
+    """Refuse to take the place of anything but a sharded set, and names of other formats."""
+    if target.suffix.lower() != ".fiblets":
+        raise ValueError(f"{target}: a set in shards is a folder whose name ends in .fiblets; name it so")
+    if target.exists() and not (target / MANIFEST).is_file():
+        kind = "folder without shards" if target.is_dir() else "file"
+        raise FileExistsError(f"{target} is a {kind}, which shards would replace; remove it, or give another name")
+
+
+@contextmanager
+def _appearing(target: Path) -> Iterator[Path]:
+    """Make a folder that takes its name when all went well, in the place of an older set."""
+    folder = target.with_name(f".{target.name}.{os.getpid()}.part")
+    old = target.with_name(f".{target.name}.{os.getpid()}.old")
+    folder.mkdir()
+    try:
+        yield folder
+        if target.exists():
+            target.rename(old)
+        folder.rename(target)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
