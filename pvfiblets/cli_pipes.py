@@ -107,6 +107,8 @@ class Pipes:
             raise ValueError(
                 "- is standard output here, whose format no name tells; add --format, such as --format tck"
             )
+        if into and self._options.get("shards") is not None:
+            raise ValueError("--shards writes a folder, which standard output cannot be; give the folder's name")
         if into and self._stdout.isatty():
             raise ValueError("- is standard output, a terminal here; send it to a file or another program (> or |)")
         folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="pvfiblets-pipe-")))

@@ -265,6 +265,8 @@ def test_commands(whole: pf.FibletSet, tmp_path: Path, capsys: pytest.CaptureFix
     assert "overwritten by itself" in capsys.readouterr().err
     assert main(["convert", source, str(tmp_path / "c.trk"), "--shards", "9K"]) == 1
     assert "--shards are for .fiblets files" in capsys.readouterr().err
+    assert main(["convert", source, "-", "--format", "fiblets", "--shards", "9K"]) == 1
+    assert "give the folder's name" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["convert", source, target, "--shards", "many"])
     assert "'many' is no size of a file" in capsys.readouterr().err
