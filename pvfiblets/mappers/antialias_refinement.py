@@ -129,6 +129,9 @@ class Refinement:
     def other_tile_frames(self, renderer: Any) -> Iterator[None]:
         """Yield for each sample of a tile but that which the renderer is about to draw, with the camera shifted."""
         self._name, self._painted = _TILE, False
+        if min(_tile(renderer)) < 1:  # the renderer has no part in this tile
+            self._frame = _Frame.PLAIN
+            return
         last = int(self.positions[-1] == MIDDLE)
         for position in self.positions[: len(self.positions) - last]:
             self._frame = _Frame.ADDED
@@ -140,9 +143,7 @@ class Refinement:
         self._frame = _Frame.SAMPLE if last else _Frame.MEAN
 
     def _shift(self, renderer: Any, position: tuple[float, float]) -> None:
-        width, height, x, y = [0], [0], [0], [0]
-        renderer.GetTiledSizeAndOrigin(width, height, x, y)
-        self._back = shift(renderer.GetActiveCamera(), (width[0], height[0]), position)
+        self._back = shift(renderer.GetActiveCamera(), _tile(renderer), position)
 
     def put_back(self) -> None:
         """Put the camera back: what lies over the picture is drawn where it belongs."""
@@ -213,3 +214,10 @@ class Refinement:
             self._spent += time.perf_counter() - self._begun
         note_depths(renderer, exact=self._exact)
         self._state = state
+
+
+def _tile(renderer: Any) -> tuple[int, int]:
+    """Return width and height, in pixels, of what the window shows of a renderer."""
+    width, height, x, y = [0], [0], [0], [0]
+    renderer.GetTiledSizeAndOrigin(width, height, x, y)
+    return width[0], height[0]

@@ -308,10 +308,13 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             ``(k, 4)`` of a, b, c, d in world mm: a point is kept where ax + by + cz + d >= 0. None for no cut.
         """
         address = renderer.GetAddressAsString("")
-        if planes is None:
+        wanted = None if planes is None else np.array(planes, np.float64).reshape(-1, 4)
+        if np.array_equal(wanted, self._cuts_in.get(address)):  # type: ignore[arg-type]  # None, too
+            return
+        if wanted is None:
             self._cuts_in.pop(address, None)
         else:
-            self._cuts_in[address] = np.array(planes, np.float64).reshape(-1, 4)
+            self._cuts_in[address] = wanted
         self._actor_modified()
 
     def _cuts(self, renderer: vtkRenderer | None = None) -> tuple[Any, Any]:

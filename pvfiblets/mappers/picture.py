@@ -160,6 +160,14 @@ class Picture:
         return self._tone.changes or self._depth_of_field is not None
 
     @property
+    def settings(self) -> Hashable:
+        """All that is done to what is drawn; None if that changes from frame to frame."""
+        focus = self._depth_of_field
+        if focus is not None and (focus.focal_distance in FOLLOWED or not self.focusing.settled):
+            return None
+        return self._tone, focus, self.antialias, id(self._refinement)
+
+    @property
     def on(self) -> bool:
         """Whether anything is changed."""
         return self.has_effects or self._refinement is not None or self._smoothing is not None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["SliceActor", "SlicePlane", "before_render"]
+__all__ = ["SliceActor", "SlicePlane", "before_render", "prepare"]
 
 Array = npt.NDArray[np.float64]
 
@@ -29,6 +29,8 @@ OVERSAMPLED = 2
 """Pixels of a slice in the 3-D view along the finest voxel of all layers."""
 MOST_ACROSS = 768
 """Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
+
+_PREPARE = "UserEvent"
 
 _DISCARD = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
 
@@ -191,6 +193,8 @@ class SlicePlane:
 def before_render(renderer: Any, owner: Any, method: str) -> Any:
     """Call an owner's method whenever a renderer begins to draw; neither keeps the other alive.
 
+    :func:`prepare` calls it, too, for renderers that may have nothing to draw.
+
     Returns
     -------
     callable
@@ -203,7 +207,7 @@ def before_render(renderer: Any, owner: Any, method: str) -> Any:
         if alive is not None:
             getattr(alive, method)()
 
-    tags = [renderer.AddObserver("StartEvent", started)]
+    tags = [renderer.AddObserver(event, started) for event in ("StartEvent", _PREPARE)]
     kept = vtkWeakReference()
     kept.Set(renderer)
 
@@ -215,3 +219,8 @@ def before_render(renderer: Any, owner: Any, method: str) -> Any:
                 there.RemoveObserver(tag)
 
     return end
+
+
+def prepare(renderer: Any) -> None:
+    """Have all that stands by :func:`before_render` brought up to date, though the renderer does not draw yet."""
+    renderer.InvokeEvent(_PREPARE)

@@ -12,11 +12,12 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.mappers.kept_views import KeptViews
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports
 from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
-from pvfiblets.plotting.slices.plane import before_render
+from pvfiblets.plotting.slices.plane import before_render, prepare
 from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.slices.frames import ORIENTATIONS
 
@@ -96,6 +97,9 @@ class Workspace:
         self._callbacks: list[Callable[[Array], None]] = []
         self._where: Array = slices.position
         self._ends = [before_render(one, self, "sync") for one in renderers.values()]
+        self._kept: KeptViews | None = None
+        if plotter.render_window is not None:
+            self._kept = KeptViews(plotter.render_window, renderers.values(), _weakly(self._prepare))
         self.convention = convention
         self.thickness = thickness
         self.layout = layout
@@ -342,6 +346,12 @@ class Workspace:
                 for pane in self.panes.values():
                     pane.set_contour(name, mesh.slice(normal=pane.toward, origin=position), color, width)
 
+    def _prepare(self) -> None:
+        """Bring all views that are shown up to date."""
+        for renderer in self._renderers.values():
+            if renderer.GetDraw():
+                prepare(renderer)
+
     def _take_out(self, actor: Any) -> None:
         """Show streamlines in no pane any more."""
         for pane in self.panes.values():
@@ -392,6 +402,9 @@ class Workspace:
         if self._events is not None:
             self._events.stop()
             self._events = None
+        if self._kept is not None:
+            self._kept.stop()
+            self._kept = None
         while self._ends:
             self._ends.pop()()
 
