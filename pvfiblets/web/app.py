@@ -32,6 +32,8 @@ from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
 from pvfiblets.web.selection_tab import SelectionActions
+from pvfiblets.web.slices_tab import SliceActions
+from pvfiblets.web.slicing import ready_views
 from pvfiblets.web.sliders import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
@@ -40,7 +42,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "regions.js", "connection.js")
+SCRIPTS = ("pvfiblets.js", "regions.js", "slices.js", "connection.js")
 
 
 class Explorer(TrameApp):
@@ -60,7 +62,8 @@ class Explorer(TrameApp):
 
         self.options, self.notes = options, notes
         self.confined = Confined(options.root)
-        self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640))
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640), shape=(2, 2), border=False)
+        ready_views(self.plotter)
         self.plotter.set_background("black")
         self.plotter.enable_trackball_style()
         if options.antialias is not None:
@@ -90,6 +93,7 @@ class Explorer(TrameApp):
         self.filtering = FilterActions(self, self._charts)
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
+        self.slices = SliceActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
@@ -130,6 +134,8 @@ class Explorer(TrameApp):
             "selection_csv": lambda: selection_csv(self.scene),
             "profile_csv": self.selecting.profile_csv,
             "slide": self.sliders.slide,
+            "set_layout": self.slices.set_layout,
+            "step_slice": self.slices.step,
             "release": self.sliders.release,
         }
         for name, function in named.items():
@@ -192,6 +198,7 @@ class Explorer(TrameApp):
             self.cuts.refresh()
             self.filtering.refresh()
             self.selecting.refresh()
+            self.slices.refresh()
         self.stream.request()
 
     def _show_info(self) -> None:
@@ -309,6 +316,7 @@ class Explorer(TrameApp):
         """Show what goes with a frame; nothing is sent where it is as before."""
         with self.state:
             self.camera.refresh()
+            self.slices.refresh()
             self.regions.refresh_marks()
             left_out = self.scene.bars.left_out
             self.page.no_room = f"No room for the colours of {', '.join(left_out)}" if left_out else ""

@@ -20,7 +20,7 @@ class CutActions(Actions):
         """Show the cuts there are."""
         bounds = self._app.plotter.bounds
         items = [{"title": "all tractograms", "value": EVERY}]
-        items += [{"title": layer.name, "value": layer.id} for layer in self._app.scene.layers]
+        items += [{"title": layer.name, "value": layer.id} for layer in self._app.scene.layers if layer.kind != "image"]
         self._app.page.clips = [
             {
                 "id": clip.id,

@@ -101,7 +101,7 @@ class Charts:
         name = found.settings.get("scalars")
         if (volume := volume_in(name)) is not None:
             return self._chart((volume, "colours", ""), lambda: self._scene.histogram(layer_id))[0]
-        if found.kind == "volume":
+        if found.kind in ("volume", "image") and names:
             name = names[0]
         return self.of(layer_id, name)[0] if name in names else ""
 

@@ -14,6 +14,8 @@ KEYS = (
     ("Esc", "turn, move and zoom with the pointer"),
     ("P B L", "pick, box, lasso; with Shift what is hit is added"),
     ("M", "measure between two points"),
+    ("X", "slices, or the 3-D view alone"),
+    ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
     ("V", "show or hide the chosen layer"),
     ("Del", "remove the chosen layer"),
     ("Ctrl+Z  Ctrl+Y", "undo, redo"),

@@ -28,7 +28,7 @@ __all__ = [
     "volume_in",
 ]
 
-KINDS = ("tractogram", "tubes", "volume", "mesh", "selection")
+KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")
 """What a layer may be."""
 
 LINES = ("tractogram", "selection")
@@ -111,7 +111,8 @@ class Source:
     ids : Ids or None
         Only these streamlines of it.
     values : tuple of str
-        Files with a number for each of its points or streamlines; these have the files' names.
+        Files with a number for each of its points or streamlines; these have the files' names. Of an image, the table
+        of its labels.
     """
 
     path: str | None = None

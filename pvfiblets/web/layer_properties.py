@@ -1,4 +1,4 @@
-"""The properties of tractograms, tubes, volumes and meshes, in the order of a panel.
+"""The properties of tractograms, tubes, volumes, meshes and images of slices, in the order of a panel.
 
 Those that are settings of actors are found where these are declared (`pvfiblets.plotting.settings`); here stands
 what is the page's alone.
@@ -14,11 +14,12 @@ from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.fiblets.looks import LOOKS
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.settings import Setting, Settings
+from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.properties import Choices, Property
 
-__all__ = ["MESH", "TRACTOGRAM", "TUBES", "VOLUME", "value_names"]
+__all__ = ["IMAGE", "MESH", "TRACTOGRAM", "TUBES", "VOLUME", "value_names"]
 
 
 def value_names(fiblets: Any) -> list[str]:
@@ -54,6 +55,13 @@ def _mesh_scalars(mesh: Any) -> Choices:
     arrays = [(name, data[name]) for data in (mesh.point_data, mesh.cell_data) for name in data]
     names = dict.fromkeys(name for name, array in arrays if array.dtype.kind in "buif" and array.ndim <= 2)
     return [(None, "one colour"), *((name, name) for name in names)]
+
+
+def _meanings(image: Any) -> Choices:
+    found: list[tuple[Any, str]] = [("scalars", "values")]
+    found += [("labels", "labels")] if image.n_volumes == 1 or image.is_labels else []
+    found += [("rgb", "colours")] if image.n_volumes in (3, 4) else []
+    return [*found, ("direction", "directions")] if image.n_volumes == 3 else found
 
 
 def _table(
@@ -123,6 +131,15 @@ VOLUME = _table(
         "opacity": [own("surface_opacity", "number", "Opacity of surfaces", "From 0, not to be seen, to 1.",
                         default=0.4, limits=(0.0, 1.0), matters=lambda s: s["mode"] == "isosurface")],
         "opacity_unit_distance": [replace(_BAR, default=False, matters=lambda s: s["color"] is None)],
+    },
+)  # fmt: skip
+
+IMAGE = _table(
+    SliceSettings,
+    [],
+    {
+        "interpolation": [own(MEANING, "choice", "Numbers are", "What the numbers of the image mean.", "Drawing",
+                              "scalars", choices=_meanings, resets=("clim", "below", "above", "index"))],
     },
 )  # fmt: skip
 

@@ -54,8 +54,8 @@ class LayerQueries:
         data = self.data(layer).data
         if layer.kind in LINES:
             names = value_names(data)
-        elif layer.kind == "volume":
-            names = [data.name]
+        elif layer.kind in ("volume", "image"):
+            names = [data.name] if layer.kind == "volume" or data.n_volumes == 1 else []
         elif layer.kind == "mesh":
             scalars = next(prop for prop in layers.TABLES["mesh"] if prop.name == "scalars")
             names = [name for name, _ in scalars.choices_for(data) if name is not None]
@@ -125,8 +125,12 @@ class LayerQueries:
             "kind": layer.kind,
             "path": layer.path,
             "facts": loaded.facts,
-            "bounds": list(loaded.data.bounds),
         }
+        if layer.kind == "image":
+            corners = loaded.data.corners
+            ends = zip(corners.min(axis=0).tolist(), corners.max(axis=0).tolist(), strict=True)
+            return plain(found | {"bounds": [end for pair in ends for end in pair]})
+        found["bounds"] = list(loaded.data.bounds)
         if layer.kind == "mesh":
             return plain(found)
         explained = actor.explain()
@@ -156,7 +160,7 @@ class LayerQueries:
         """
         found = []
         for layer in self.state.layers:
-            if not layer.visible:
+            if not layer.visible or layer.kind == "image":
                 continue
             s, actor = layer.settings, self.actor(layer.id)
             entry: dict[str, Any] = {"layer": layer.id, "name": layer.name}
@@ -201,7 +205,7 @@ def _values(layer: Layer, data: Any, name: str) -> tuple[np.ndarray, float]:
             ids = np.unique(np.linspace(0, data.n_streamlines - 1, count).astype(np.int64))
             share, data = len(ids) / data.n_streamlines, data.extract(ids)
         return np.asarray(measure(data, name).array(), np.float64), share
-    if layer.kind == "volume":
+    if layer.kind in ("volume", "image"):
         every = max(data.values.size // MOST_POINTS, 1)
         return np.asarray(data.values.reshape(-1)[::every], np.float64), 1.0 / every
     if layer.kind == "tubes":

@@ -14,10 +14,11 @@ from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.settings import Settings, arguments
+from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
-from pvfiblets.web.layer_properties import MESH, TRACTOGRAM, TUBES, VOLUME
+from pvfiblets.web.layer_properties import IMAGE, MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.properties import TYPES, Choices, Property
 from pvfiblets.web.values import shown
 
@@ -33,6 +34,7 @@ __all__ = [
     "USUAL",
     "Layer",
     "Property",
+    "beginning",
     "changed",
     "check",
     "defaults",
@@ -46,6 +48,7 @@ TABLES: dict[str, tuple[Property, ...]] = {
     "volume": VOLUME,
     "mesh": MESH,
     "selection": TRACTOGRAM,
+    "image": IMAGE,
 }
 """Properties of each kind, in the order of a panel."""
 
@@ -54,6 +57,7 @@ _SETTINGS: dict[str, type[Settings]] = {
     "tubes": TubeSettings,
     "volume": VolumeSettings,
     "selection": FibletSettings,
+    "image": SliceSettings,
 }
 
 ARGUMENTS: dict[str, frozenset[str]] = {
@@ -92,6 +96,14 @@ _BY_NAME = {kind: {prop.name: prop for prop in table} for kind, table in TABLES.
 def defaults(kind: str) -> dict[str, Any]:
     """Return all settings of a kind of layer at their defaults."""
     return {prop.name: prop.default for prop in TABLES[kind] if not prop.read_only}
+
+
+def beginning(kind: str, data: Any) -> dict[str, Any]:
+    """Return the settings that a new layer of some data begins with."""
+    found = defaults(kind)
+    if kind == "image":
+        found[MEANING] = "labels" if data.is_labels else "rgb" if data.is_colours else "scalars"
+    return found
 
 
 def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
-from pvfiblets.web import dialogs, panels, tabs
+from pvfiblets.web import dialogs, panels, slices_tab, tabs
 from pvfiblets.web.elements import html, v3
 
 VIEW = "view"
@@ -34,6 +34,10 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
 .pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;
   text-shadow: 0 0 3px #fff, 0 0 3px #fff }
+.pv-seams { position: absolute; inset: 0; z-index: 1; pointer-events: none }
+.pv-seams div { position: absolute; box-shadow: 0 0 0 .5px #8888; }
+.pv-told { position: absolute; left: 8px; bottom: 6px; z-index: 2; max-width: 45%; font: 12px Roboto, sans-serif;
+  color: #ffd040; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none; font-variant-numeric: tabular-nums }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
 @media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
@@ -160,6 +164,7 @@ def _bar(app: Any) -> None:
                     click=(app.camera.view, f"['{name}']"),
                 ):  # fmt: skip
                     v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+            slices_tab.layout_menu(app)
             _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
             _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
             _icon(
@@ -222,13 +227,21 @@ def _view(app: Any) -> None:
                     )  # fmt: skip
         # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
         html.Div(v_if="tool !== 'rotate'", classes="pv-over", id="pv-over", data_tool=("tool",))
-        for edge, place in (
-            ("left", "left: 52px; top: 50%"),
-            ("right", "right: 8px; top: 50%"),
-            ("top", "top: 4px; left: 50%"),
-            ("bottom", "bottom: 4px; left: 50%"),
-        ):
-            html.Div(f"{{{{ edges.{edge} }}}}", v_if=f"edges.{edge}", classes="pv-edge", style=place, data_edge=edge)
+        slices_tab.over()
+        with html.Div(
+            v_if="['3d', 'beside'].includes(slicing.layout)", style=(
+                "{ position: 'absolute', inset: 0, pointerEvents: 'none', "
+                "right: slicing.layout === 'beside' ? '30%' : 0 }",),
+        ):  # fmt: skip
+            for edge, place in (
+                ("left", "left: 52px; top: 50%"),
+                ("right", "right: 8px; top: 50%"),
+                ("top", "top: 4px; left: 50%"),
+                ("bottom", "bottom: 4px; left: 50%"),
+            ):
+                html.Div(
+                    f"{{{{ edges.{edge} }}}}", v_if=f"edges.{edge}", classes="pv-edge", style=place, data_edge=edge
+                )
         with html.Div(classes="pv-tools"):
             for name, icon, hint in TOOLS:
                 with v3.VBtn(

@@ -22,13 +22,16 @@ from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
 
-__all__ = ["MESHES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
+__all__ = ["MESHES", "TABLES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf")
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
 
 VALUES = (".tsf",)
 """Suffixes of files with values for the lines of another file."""
+
+TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv")
+"""Suffixes of files with names and colours of labels."""
 
 _EITHER = (".vtk", ".vtp")
 _RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
@@ -160,7 +163,7 @@ class Files:
         if self.root is not None and not new:
             from pvfiblets.web.references import check_references
 
-            if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, *VALUES, ".json")):
+            if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, *VALUES, *TABLES, ".json")):
                 # Some formats name files that nobody here could find before their reader opens them.
                 raise UnknownFormatError(f"{found.name}: such files are not opened here; convert it to .vtp or .nii")
             check_references(found, [self.root, *self.allowed])
@@ -242,6 +245,14 @@ class Files:
             volume = as_raycast_volume(_of_vtk(place) if name.lower().endswith(_EITHER) else place)
             watch("reading", 1.0)
             return Loaded(kind, source, name, volume, _volume_facts(volume))
+        if kind == "image":
+            from pvfiblets.web.label_images import facts_of, read_image
+
+            if not name.lower().endswith(VOLUMES):
+                raise UnknownFormatError(f"{name}: slices are of images, which are in files of {', '.join(VOLUMES)}")
+            image = read_image(place)
+            watch("reading", 1.0)
+            return Loaded(kind, source, name, image, facts_of(image))
         if kind == "labels":
             from pvfiblets.volumes.nibabel_files import opened
 
@@ -254,20 +265,24 @@ class Files:
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
 
     def with_values(self, loaded: Loaded, paths: tuple[str, ...]) -> Loaded:
-        """Return a tractogram with the values of files more, under the files' names.
+        """Return a tractogram with the values of files more, under the files' names, or an image with names of labels.
 
         Raises
         ------
         FormatError, ValueError, OSError
             If a file is damaged, has values for other streamlines, is outside of the root or not there.
         """
-        from pvfiblets.plotting.fiblets.sources import with_values_of
+        add: Callable[[Any, Path], Any]
+        if loaded.kind == "image":
+            from pvfiblets.web.label_images import with_table as add
+        else:
+            from pvfiblets.plotting.fiblets.sources import with_values_of as add
 
         data, stamps = loaded.data, dict(loaded.stamps)
         for path in paths:
             place = self.resolve(path)
             stamps[path] = self.stamp(place)
-            data = with_values_of(data, place)
+            data = add(data, place)
         return replace(loaded, source=replace(loaded.source, values=paths), data=data, stamps=stamps)
 
     def _lines(self, place: Path, source: Source, name: str, watch: Watch) -> Loaded:
@@ -403,6 +418,13 @@ def _demo(source: Source, kind: str | None) -> Loaded:
 
         volume = brain_like(source.size)
         return Loaded("volume", source, "demo head", volume, _volume_facts(volume))
+    if source.demo == "head" and kind == "image":
+        from pvfiblets.synthetic.vessels import brain_like
+        from pvfiblets.web.label_images import LabelledImage, facts_of
+
+        volume = brain_like(source.size)
+        image = LabelledImage(volume.values[..., None], volume.affine, "demo head")
+        return Loaded(kind, source, "demo head", image, facts_of(image))
     if source.demo == "head" and kind == "colours":
         from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
         from pvfiblets.synthetic.vessels import brain_like

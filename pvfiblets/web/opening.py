@@ -19,7 +19,7 @@ from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.document import LINES
-from pvfiblets.web.loading import MESHES, VALUES, Cancelled
+from pvfiblets.web.loading import MESHES, TABLES, VALUES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
 
@@ -35,6 +35,8 @@ PURPOSES = {
     "": (*suffixes(), *VOLUMES, *MESHES, *VALUES, SESSION),
     "clip": MESHES,
     "region": (*MESHES, *LABELS),
+    "slices": VOLUMES,
+    "labels": TABLES,
 }
 """What a file may be chosen for, and the suffixes that are shown then."""
 MOST_WAITING = 16
@@ -261,6 +263,10 @@ class FileActions(Actions):
             app.cuts.add("mesh", path)
         elif purpose == "region":
             app.regions.add_file(path)
+        elif purpose == "slices":
+            app.later(self.open(path, "image"))
+        elif purpose == "labels":
+            app.slices.name_labels(path)
         elif path.lower().endswith(SESSION):
             self.load_session(self._text(path), app.confined.resolve(path).parent)
         else:

@@ -13,6 +13,7 @@ ICONS = {
     "volume": "mdi-cube-outline",
     "mesh": "mdi-triangle-outline",
     "selection": "mdi-selection-ellipse",
+    "image": "mdi-layers-outline",
 }
 
 
@@ -54,6 +55,14 @@ def layers(app: Any) -> None:
                                     prepend_icon="mdi-pencil-outline",
                                     click=(app.ask_name, "[layer.id]"),
                                 )
+                                v3.VListItem(
+                                    title="Show as slices", v_if="layer.kind === 'volume'",
+                                    prepend_icon="mdi-layers-outline", click=(app.slices.of_volume, "[layer.id]"),
+                                )  # fmt: skip
+                                v3.VListItem(
+                                    title="Names of labels…", v_if="layer.kind === 'image'",
+                                    prepend_icon="mdi-tag-outline", click=(app.slices.choose_table, "[layer.id]"),
+                                )  # fmt: skip
                                 v3.VListItem(
                                     title="Duplicate",
                                     prepend_icon="mdi-content-copy",

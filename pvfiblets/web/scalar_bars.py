@@ -39,6 +39,13 @@ class Bars:
         self._tag = plotter.renderer.AddObserver("StartEvent", started)
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the view that they lie over, pixels."""
+        left, bottom, right, top = self._plotter.renderer.GetViewport()
+        width, height = self._plotter.window_size
+        return round(width * (right - left)), round(height * (top - bottom))
+
+    @property
     def left_out(self) -> list[str]:
         """Titles of the bars that there is no room for."""
         return [one.title for one, place in zip(self._wanted, self.places, strict=True) if place is None]
@@ -69,7 +76,7 @@ class Bars:
             return
         if tuple(window.GetTileScale()) != (1, 1):
             return  # a picture in pieces: VTK enlarges what was placed before the first
-        size, dpi = tuple(window.GetSize()), window.GetDPI()
+        size, dpi = self.size, window.GetDPI()
         now = (size, dpi, tuple(self._wanted))
         if now == self._placed_for:
             return

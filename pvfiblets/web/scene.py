@@ -35,6 +35,8 @@ from pvfiblets.web.scene_filters import SceneFilters
 from pvfiblets.web.scene_measurements import SceneMeasurements
 from pvfiblets.web.scene_regions import SceneRegions
 from pvfiblets.web.scene_selection import SceneSelection
+from pvfiblets.web.scene_slices import SceneSlices
+from pvfiblets.web.slicing import Slicing
 from pvfiblets.web.store import Store
 from pvfiblets.web.values import colour, text
 
@@ -69,7 +71,9 @@ class _Drawn:
     whole: Any = None  # of a mesh: what the actor draws where nothing is cut
 
 
-class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, LayerQueries, Cameras):
+class Scene(
+    SceneFilters, SceneRegions, SceneSelection, SceneSlices, SceneMeasurements, LayerQueries, Cameras
+):  # fmt: skip
     """What a session shows.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
@@ -94,6 +98,7 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, Layer
         self._drawn: dict[str, _Drawn] = {}
         self.store = Store(self.files)
         self.bars = Bars(plotter)
+        self.slicing = Slicing(plotter)
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
@@ -163,26 +168,34 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, Layer
         wanted = {layer.id: layer for layer in state.layers}
         for layer in state.layers:  # before anything changes
             self.data(layer)
-            if layer.kind not in (*LINES, "volume"):
+            if layer.kind not in (*LINES, "volume", "image"):
                 split_cuts(layer, [clip for clip in state.clips if clip.cuts(layer)])
         for layer_id, drawn in list(self._drawn.items()):
             new = wanted.get(layer_id)
             if new is None or (new.kind, new.source) != (drawn.layer.kind, drawn.layer.source):
-                remove_actor(self.plotter, drawn.actor)
                 del self._drawn[layer_id]
+                if drawn.layer.kind == "image":
+                    self.slicing.remove(drawn.actor)
+                else:
+                    remove_actor(self.plotter, drawn.actor)
         for layer in state.layers:
             self._draw(layer, state.clips)
-        put_in_order(self.plotter.renderer, [self._drawn[layer.id].actor for layer in state.layers])
+        actors = [(layer, self._drawn[layer.id].actor) for layer in state.layers]
+        put_in_order(self.plotter.renderer, [actor for layer, actor in actors if layer.kind != "image"])
+        self.slicing.put_in_order([actor for layer, actor in actors if layer.kind == "image"])
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         if state.measurements != self._measured:
             show_distances(self.plotter, state.measurements)
             self._measured = state.measurements
-        self.bars.show([(layer, self._drawn[layer.id].actor) for layer in state.layers], state.background)
+        self.bars.show(actors, state.background)
 
     def _draw(self, layer: Layer, clips: tuple[Clip, ...]) -> None:
         """Bring one actor in step with its layer."""
         drawn = self._drawn.get(layer.id)
+        if layer.kind == "image":
+            self._draw_image(layer, drawn)
+            return
         if drawn is None:
             actor = add_actor(self.plotter, layer, self.data(layer), self.store.colours)
             drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), (), _whole(layer, actor))
@@ -202,6 +215,13 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, Layer
         if drawn.clips != clips:
             cut(actor, layer, clips, self.shape_data, drawn.whole)
         self._drawn[layer.id] = _Drawn(actor, layer, clips, drawn.whole)
+
+    def _draw_image(self, layer: Layer, drawn: _Drawn | None) -> None:
+        data = self.data(layer).data
+        if drawn is None:
+            self._drawn[layer.id] = _Drawn(self.slicing.add(layer, data), layer, ())
+        elif drawn.layer is not layer:
+            self._drawn[layer.id] = _Drawn(self.slicing.look(drawn.actor, drawn.layer, layer, data), layer, ())
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
         try:
@@ -259,7 +279,7 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, Layer
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""
-        settings = layers.defaults(loaded.kind)
+        settings = layers.beginning(loaded.kind, loaded.data)
         if self._look is not None and loaded.kind in layers.LINES:
             settings = layers.changed(loaded.kind, settings, "look", self._look, loaded.data)
         self._histograms = {key: found for key, found in self._histograms.items() if key[1] != loaded.source}
@@ -270,8 +290,12 @@ class Scene(SceneFilters, SceneRegions, SceneSelection, SceneMeasurements, Layer
             loaded.source,
             settings=settings,
         )
+        first = layer.kind == "image" and self.slicing.workspace is None
         with self.store.with_new(loaded):
-            return self._add(layer, f"open {layer.name}")
+            found = self._add(layer, f"open {layer.name}")
+        if first and len(self.layers) > 1:
+            self.reset()  # an image is larger than what it has tracts of, and its view has become smaller
+        return found
 
     def open(
         self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None

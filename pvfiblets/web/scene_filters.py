@@ -155,7 +155,9 @@ class SceneFilters:
         if not isinstance(ids, (list, tuple)):
             raise ValueError(f"layers is {shown(ids)}; give a list of ids, or none for all that are lines")
         for layer_id in ids:
-            self.layer(text(layer_id, "layer"))
+            layer = self.layer(text(layer_id, "layer"))
+            if layer.kind == "image":
+                raise ValueError(f"{layer.name!r} is an image of slices, which are not cut; choose other layers")
         return tuple(ids)
 
     # Filters ------------------------------------------------------------------------------------

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
+from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.distance_label import LABELS, NEAREST
 from pvfiblets.web.distance_label import LINES as LINE_LOOKS
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
+from pvfiblets.web.script_code import Python, code
+from pvfiblets.web.script_slices import has_images, image_arguments, slicing_lines
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
 if TYPE_CHECKING:
@@ -63,6 +66,7 @@ class _Writer:
         self._wholes: dict[Source, str] = {}
         self._uses_folder = False
         self._uses_labels = False
+        self._sliced = False
 
     def write(self, picture: str | None) -> str:
         state = self._scene.state
@@ -74,6 +78,7 @@ class _Writer:
         for clip in state.clips:
             self._clip(clip)
         self._measurements()
+        self._lines += slicing_lines(self._scene) if self._sliced else []
         self._bars()
         self._camera()
         end = "plotter.show()" if picture is None else f"plotter.screenshot({picture!r})\nplotter.close()"
@@ -96,7 +101,10 @@ class _Writer:
     def _start(self, off_screen: bool) -> None:
         width, height = self._plotter.window_size
         off = "off_screen=True, " if off_screen else ""
-        self._lines += [f"plotter = pv.Plotter({off}window_size=({width}, {height}))"]
+        sliced = has_images(self._scene)
+        views = ", shape=(2, 2), border=False" if sliced else ""
+        self._lines += [f"plotter = pv.Plotter({off}window_size=({width}, {height}){views})"]
+        self._lines += ["plotter.subplot(1, 1)  # the 3-D view"] if sliced else []
         self._lines += [f"plotter.set_background({self._scene.state.background!r})"]
         window, renderer = self._plotter.render_window, self._plotter.renderer
         if (dpi := window.GetDPI()) != USUAL_DPI:
@@ -115,6 +123,9 @@ class _Writer:
 
     def _layer(self, layer: Layer) -> None:
         name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
+        if layer.kind == "image":
+            self._image(layer, looks)
+            return
         unsaid = layers.USUAL[layer.kind]
         if isinstance(looks.get("scalars"), Source):
             looks["scalars"] = self._colours(looks["scalars"])
@@ -128,7 +139,7 @@ class _Writer:
             layer.kind, "add_fiblets"
         )
         self._call(f"{name} = plotter.{method}", self._source(layer), arguments)
-        self._lines += [f"{name}.{key} = {_code(value)}" for key, value in said.items() if key not in arguments]
+        self._lines += [f"{name}.{key} = {code(value)}" for key, value in said.items() if key not in arguments]
         if scale != 1.0:
             self._imports.add("import dataclasses")
             self._lines += [f"scaled = {{'radius': {scale} * {name}.tubes.radius,"]
@@ -140,6 +151,28 @@ class _Writer:
             self._filters(name, layer)
             self._selection(name, layer)
         self._lines += [""]
+
+    def _image(self, layer: Layer, looks: Mapping[str, Any]) -> None:
+        """Show an image as slices, in panes too; the first of them makes these."""
+        name, usual, meaning = self._names[layer.id], layers.USUAL["image"], layer.settings[MEANING]
+        said = {key: value for key, value in looks.items() if usual[key] != value}
+        arguments = image_arguments(layer, meaning, self._file) | said
+        if self._sliced:
+            self._call(f"{name} = workspace.slices.add", self._image_source(layer), arguments)
+        else:
+            self._sliced = True
+            arguments |= {"reset_camera": False}
+            self._call("workspace = plotter.slices.workspace", self._image_source(layer), arguments)
+            self._lines += [f"{name} = workspace.slices.layers[0]"]
+        self._lines += [f"{name}.name = {layer.name!r}"]
+        self._lines += [] if layer.visible else [f"{name}.visible = False"]
+        self._lines += [""]
+
+    def _image_source(self, layer: Layer) -> str:
+        if layer.source.demo is not None:
+            self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
+            return f"brain_like({layer.source.size})"
+        return self._file(str(layer.source.path))
 
     def _source(self, layer: Layer) -> str:
         """Return Python of what a layer draws."""
@@ -163,20 +196,20 @@ class _Writer:
             return f"{path}, per_point={list(loaded.kept)}"
         return path
 
-    def _colours(self, source: Source) -> _Python:
+    def _colours(self, source: Source) -> Python:
         """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
         if source.demo is not None:
             self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
             self._lines += [f"volume = brain_like({source.size})"]
-            return _Python("(volume.values, volume.affine)")
+            return Python("(volume.values, volume.affine)")
         path = str(source.path)
         if path.lower().endswith((".vtk", ".vtp")):
-            return _Python(f"pv.read({self._file(path)})")
+            return Python(f"pv.read({self._file(path)})")
         if path.lower().endswith(SAMPLED):
-            return _Python(self._file(path))
+            return Python(self._file(path))
         self._imports.add("from pvfiblets.volumes import as_raycast_volume")
         self._lines += [f"volume = as_raycast_volume({self._file(path)})"]
-        return _Python("(volume.values, volume.affine)")
+        return Python("(volume.values, volume.affine)")
 
     def _whole(self, source: Source, kept: tuple[str, ...]) -> str:
         """Return the name of the fiblets that a selection is a part of; they are made where they are not yet."""
@@ -205,7 +238,7 @@ class _Writer:
     def _filters(self, name: str, layer: Layer) -> None:
         filters = layer.filters
         for criterion, (low, high) in filters.criteria.items():
-            self._lines += [f"{name}.criterion({criterion!r}, ({_code(low)}, {_code(high)}))"]
+            self._lines += [f"{name}.criterion({criterion!r}, ({code(low)}, {code(high)}))"]
         if filters.groups is not None:
             self._lines += [f"{name}.groups_shown = {list(filters.groups)}"]
         if filters.subset is not None:
@@ -298,7 +331,7 @@ class _Writer:
         state = self._scene.state
         self._scene.bars.arrange()
         drawn = [(layer, self._scene.actor(layer.id)) for layer in state.layers]
-        size = self._plotter.window_size
+        size = self._scene.bars.size
         for (title, layer, _), place in zip(bars_of(drawn), self._scene.bars.places, strict=True):
             if place is None:
                 continue
@@ -357,6 +390,7 @@ class _Writer:
             "ends",
             "segments",
             "line",
+            "workspace",
         }
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}
@@ -372,24 +406,9 @@ class _Writer:
             if isinstance(part, str):
                 arguments.append(part)
             else:
-                arguments += [f"{key}={_code(value)}" for key, value in part.items()]
+                arguments += [f"{key}={code(value)}" for key, value in part.items()]
         line = f"{function}({', '.join(arguments)})"
         if len(line) <= _WIDEST or "\n" in first:
             self._lines += [line]
         else:
             self._lines += [f"{function}(", *(f"    {argument}," for argument in arguments), ")"]
-
-
-class _Python(str):
-    """A value that is Python already."""
-
-    __slots__ = ()
-
-
-def _code(value: Any) -> str:
-    """Return Python of a value."""
-    if isinstance(value, _Python):
-        return value
-    if isinstance(value, float) and value in (float("inf"), float("-inf")):
-        return f"float('{value}')"
-    return repr(value)

@@ -36,6 +36,7 @@ from pvfiblets.web.document import (
 from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
 from pvfiblets.web.scene_measurements import check_measurements
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
+from pvfiblets.web.slicing import SliceView, check_view
 from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
 
 if TYPE_CHECKING:
@@ -70,8 +71,8 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements`` where there are any; no
-        numbers but finite ones.
+        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements`` and ``slices`` where there
+        are any; no numbers but finite ones.
     """
     state = scene.state
 
@@ -93,6 +94,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
         "version": VERSION,
         "background": state.background,
         "camera": scene.camera(),
+        **_slices_to_dict(scene),
         "layers": [_layer_to_dict(layer, path_of, shape_of) for layer in state.layers],
         "clips": [
             {
@@ -116,6 +118,7 @@ class Prepared:
     state: State
     camera: dict[str, Any] | None
     store: Store  # with all that the document names
+    slices: SliceView | None = None
 
 
 def from_dict(scene: Scene, data: Any, folder: Path | None = None) -> None:
@@ -161,6 +164,8 @@ def apply(scene: Scene, prepared: Prepared) -> None:
     except SessionError:
         scene.forget_unused()
         raise
+    if prepared.slices is not None:
+        scene.slicing.view = prepared.slices
     if prepared.camera is not None:
         scene.set_camera(prepared.camera)
 
@@ -197,6 +202,11 @@ def load(scene: Scene, path: str) -> None:
 
 
 # To JSON --------------------------------------------------------------------------------------------
+
+
+def _slices_to_dict(scene: Scene) -> dict[str, Any]:
+    there = any(layer.kind == "image" for layer in scene.layers)
+    return {"slices": scene.slicing.view.as_json()} if there else {}
 
 
 def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
@@ -251,7 +261,8 @@ def _checked(
     version = data.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
-    mapping(data, "session", ("program", "version", "layers"), ("clips", "background", "camera", "measurements"))
+    optional = ("clips", "background", "camera", "measurements", "slices")
+    mapping(data, "session", ("program", "version", "layers"), optional)
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
@@ -265,7 +276,8 @@ def _checked(
     state = State(tuple(found), tuple(clips), background, check_measurements(data.get("measurements", [])))
     _check_cuts(reading.store, state)
     camera = data.get("camera")
-    return Prepared(state, None if camera is None else check_camera(camera), reading.store)
+    slices = None if data.get("slices") is None else check_view(data["slices"])
+    return Prepared(state, None if camera is None else check_camera(camera), reading.store, slices)
 
 
 class _Paths:
@@ -322,8 +334,8 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     if kind not in KINDS:
         raise ValueError(f"the kind of a layer is {shown(kind)}; choose one of {', '.join(KINDS)}")
     source = _source_from_dict(value["source"], paths)
-    if source.values and kind not in LINES:
-        raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms alone have")
+    if source.values and kind not in (*LINES, "image"):
+        raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms and images alone have")
     if (kind == "selection") != (source.ids is not None):
         raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
     visible = truth(value.get("visible", True), "visible")
@@ -389,9 +401,10 @@ def _check_cuts(store: Store, state: State) -> None:
     for clip in state.clips:
         make_region(clip.shape, store.shape)
         for layer_id in clip.layers or ():
-            state.layer(layer_id)
+            if state.layer(layer_id).kind == "image":
+                raise ValueError(f"{clip.name!r} cuts an image of slices, which are not cut")
     for layer in state.layers:
-        if layer.kind not in (*LINES, "volume"):
+        if layer.kind not in (*LINES, "volume", "image"):
             split_cuts(layer, [clip for clip in state.clips if clip.cuts(layer)])
 
 

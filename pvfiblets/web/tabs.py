@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.web import slices_tab
 from pvfiblets.web.controls import NAMES
 from pvfiblets.web.elements import html, v3
 from pvfiblets.web.writing import EXPORTS
 
-TABS = (("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("info", "Info"))
+TABS = (
+    ("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("slices", "Slices"), ("info", "Info"),
+)  # fmt: skip
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
 WHAT = (("selected", "selected ones"), ("shown", "all that filters leave"), ("all", "all of the layer"))
 WHERE = (("folder", "the served folder"), ("computer", "this computer"))
@@ -27,6 +30,8 @@ def build(app: Any) -> None:
                 _filter(app)
             with html.Div(v_if="tab === 'selection'", id="tab-selection"):
                 _selection(app)
+            with html.Div(v_if="tab === 'slices'", id="tab-slices"):
+                slices_tab.build(app)
             with html.Div(v_if="tab === 'info'", id="tab-info"):
                 _info()
 

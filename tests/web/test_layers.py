@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets
+from pvfiblets.slices.image import as_slice_image
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.web import layers
@@ -29,6 +30,7 @@ def data(lines):
         "tubes": as_spline_tubes([np.array([(0, 0, 0), (5, 1, 0), (10, 0, 0)], float)], radius=1.0),
         "volume": RaycastVolume(np.arange(64.0).reshape(4, 4, 4)),
         "mesh": mesh,
+        "image": as_slice_image(np.arange(64.0).reshape(4, 4, 4)),
     }
 
 
@@ -133,6 +135,7 @@ def _thing(kind, made={}):  # noqa: B006 - made once
         made["tractogram"] = made["selection"] = pvfiblets.compress(pvfiblets.Streamlines.from_list([line]))
         made["tubes"] = as_spline_tubes([line], radius=1.0)
         made["volume"] = RaycastVolume(np.arange(64.0).reshape(4, 4, 4))
+        made["image"] = as_slice_image(np.arange(64.0).reshape(4, 4, 4))
     return made[kind]
 
 

@@ -237,7 +237,7 @@ class SlicesComponent:
         except Exception:
             stack.remove()
             raise
-        self._workspaces.append(workspace)
+        self._workspaces = [*(one for one in self._workspaces if not one.removed), workspace]
         if render:
             self._plotter.render()
         return workspace

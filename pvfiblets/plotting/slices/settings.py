@@ -7,10 +7,10 @@ from numbers import Integral, Real
 from typing import Any
 
 from pvfiblets.plotting.setting_places import Place
-from pvfiblets.plotting.settings import Argument, Setting, Settings, truth
-from pvfiblets.plotting.shared_settings import CMAP, Common
+from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
+from pvfiblets.plotting.shared_settings import CMAP, MAPS, Common
 
-__all__ = ["LAYER", "SliceCommon", "SliceSettings"]
+__all__ = ["LAYER", "MEANING", "SliceCommon", "SliceSettings"]
 
 
 class _Layer(Place):
@@ -24,6 +24,24 @@ class _Layer(Place):
 
 
 LAYER = _Layer()
+
+
+MEANING = "meaning"
+"""A row of the page that is no setting of layers: what the numbers of the image mean."""
+
+
+def _of(*meanings: str) -> Any:
+    """Return what says whether an image is of one of some kinds, as the page's other rows are."""
+    return lambda settings: settings[MEANING] in meanings
+
+
+def _reach(layer: Any) -> tuple[float, float]:
+    """Return what a slider of the window should offer: nearly all values, and the window as it is."""
+    low, high = layer.window
+    if layer.kind != "scalars":
+        return min(low, 0.0), max(high, 1.0)
+    least, most = layer.image.percentiles(0.0, 100.0, layer.index)
+    return min(least, low), max(most, high)
 
 
 def _pair(name: str, value: Any, expected: str) -> tuple[float, float]:
@@ -76,6 +94,8 @@ class SliceSettings(Settings):
         header='str, list, colormap or LookupTable, default: "gray"',
         where=LAYER,
         check=lambda _name, value: CMAP.check(value),
+        row=Row("Map", "Colours from the low end of the window to the high one.", type="choice",
+                choices=[("gray", "gray"), *(one for one in MAPS if one[0] != "gray")], matters=_of("scalars")),
     )
     clim: Setting[tuple[float, float]] = Setting(
         None,
@@ -86,6 +106,9 @@ class SliceSettings(Settings):
         where=LAYER,
         check=_window,
         read=lambda layer: layer.window,
+        row=Row("Window", "Values of the first and the last colour; empty: those of the percentages.", type="range",
+                optional=True, read=lambda layer: list(layer.window), span=_reach,
+                matters=_of("scalars", "direction")),
     )
     percentiles: Setting[tuple[float, float]] = Setting(
         (1.0, 99.0),
@@ -94,34 +117,45 @@ class SliceSettings(Settings):
         header="(float, float), default: (1, 99)",
         where=LAYER,
         check=_percentiles,
+        row=Row("Per cent", "Of the voxels, those of 0 left out, below both ends of a window that says no numbers.",
+                type="range", default=[1.0, 99.0], limits=(0.0, 100.0), resets=("clim",), matters=_of("scalars")),
     )
     log_scale: Setting[bool] = Setting(
-        False, "Whether the colours spread over the logarithm of the values.", kind="bool", where=LAYER, check=truth
-    )
+        False, "Whether the colours spread over the logarithm of the values.", kind="bool", where=LAYER, check=truth,
+        row=Row("Logarithmic", group="Drawing", matters=_of("scalars")),
+    )  # fmt: skip
     below: Setting[float | None] = Setting(
-        None, "Values below are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold
-    )
+        None, "Values below are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold,
+        row=Row("Hide below", "Values below are hidden; empty: none.", type="number", optional=True,
+                matters=_of("scalars", "direction", "rgb")),
+    )  # fmt: skip
     above: Setting[float | None] = Setting(
-        None, "Values above are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold
-    )
+        None, "Values above are hidden; ``None`` for none.", kind="float | None", where=LAYER, check=_threshold,
+        row=Row("Hide above", "Values above are hidden; empty: none.", type="number", optional=True,
+                matters=_of("scalars", "direction", "rgb")),
+    )  # fmt: skip
     opacity: Setting[float] = Setting(
-        1.0, "From 0, not to be seen, to 1.", kind="float", where=LAYER, low=0.0, high=1.0
+        1.0, "From 0, not to be seen, to 1.", kind="float", where=LAYER, low=0.0, high=1.0, row=Row("Opacity")
     )
     blend: Setting[str] = Setting(
         "over", "Whether it lies over the layers before it, or is added to them.", kind="str",
-        choices=("over", "add"), where=LAYER,
+        choices=("over", "add"), where=LAYER, row=Row("Blend", group="Drawing"),
     )  # fmt: skip
     interpolation: Setting[str] = Setting(
         "linear", "Between voxels; labels are never interpolated.", kind="str",
         choices=("nearest", "linear", "cubic"), where=LAYER,
+        row=Row("Between voxels", group="Drawing", matters=_of("scalars", "rgb", "direction")),
     )  # fmt: skip
     index: Setting[int] = Setting(
         0, "Which volume of an image of four axes is shown, from 0; negative ones count from the end.", kind="int",
         where=LAYER, check=_index,
+        row=Row("Volume", "Which volume of an image of several, from 0.", group="Drawing", type="number", whole=True,
+                limits=lambda image: (0, image.n_volumes - 1), matters=_of("scalars", "labels")),
     )  # fmt: skip
     outline: Setting[bool] = Setting(
-        False, "Whether labels are shown by their outlines alone.", kind="bool", where=LAYER, check=truth
-    )
+        False, "Whether labels are shown by their outlines alone.", kind="bool", where=LAYER, check=truth,
+        row=Row("Outlines", matters=_of("labels")),
+    )  # fmt: skip
     visible: Setting[bool] = Setting(True, "Whether it is shown.", kind="bool", where=LAYER, check=truth)
 
 

@@ -158,6 +158,16 @@ class SliceStack:
         layer.watch(None)
         self.changed()
 
+    def reorder(self, layers: Iterable[SliceLayer | str]) -> None:
+        """Lay some layers below all others, in an order of which the lowest is the first."""
+        first = [self.layer(one) if isinstance(one, str) else one for one in layers]
+        order = [*first, *(one for one in self._layers if one not in first)]
+        if sorted(map(id, order)) != sorted(map(id, self._layers)):
+            raise ValueError(f"the order {first} has a layer twice, or one of other slices")
+        if order != self._layers:
+            self._layers = order
+            self.changed()
+
     def add_glyphs(
         self,
         source: Any,

@@ -96,6 +96,8 @@ class Workspace:
         self._active: SliceLayer | None = None
         self._callbacks: list[Callable[[Array], None]] = []
         self._where: Array = slices.position
+        self._removed = False
+        self._told = True
         self._ends = [before_render(one, self, "sync") for one in renderers.values()]
         self._kept: KeptViews | None = None
         if plotter.render_window is not None:
@@ -212,6 +214,16 @@ class Workspace:
         for pane in self.panes.values():
             pane.cross_hair = shown
 
+    @property
+    def told(self) -> bool:
+        """Whether the axial pane says position and values in its corner."""
+        return self._told
+
+    @told.setter
+    def told(self, told: bool) -> None:
+        self._told = bool(told)
+        self.say(None)
+
     # Values -------------------------------------------------------------------------------------
 
     def values(self, radius: float = 2.0) -> PointValues:
@@ -303,13 +315,16 @@ class Workspace:
         for pane in self.panes.values():
             pane.changed()
         position = self.slices.position
-        self.panes["axial"].say(self._told())
+        self.panes["axial"].say(self._words)
         if (position != self._where).any():
             self._where = position
             for callback in self._callbacks:
                 callback(position)
 
-    def _told(self) -> str:
+    @property
+    def _words(self) -> str:
+        if not self._told:
+            return ""
         lines = ["{:.1f} {:.1f} {:.1f} mm".format(*self.position)]
         if self.voxel is not None:
             lines[0] += "   voxel {} {} {}".format(*self.voxel)
@@ -325,7 +340,7 @@ class Workspace:
 
     def say(self, text: str | None) -> None:
         """Write into the axial pane's corner; None for position and values, as usual."""
-        self.panes["axial"].say(self._told() if text is None else text)
+        self.panes["axial"].say(self._words if text is None else text)
 
     def sync(self) -> None:
         """Have each pane show the 3-D view's streamlines in its slab, and contours; a renderer is about to draw."""
@@ -359,8 +374,15 @@ class Workspace:
             actor.mapper.cut_in(pane.renderer, None)
 
     def render(self) -> None:
-        """Draw all views."""
-        self._plotter.render()
+        """Draw all views, unless somebody else draws all that there is, as servers do."""
+        interactor = None if self._plotter.iren is None else self._plotter.iren.interactor
+        if interactor is None or interactor.GetEnableRender():
+            self._plotter.render()
+
+    @property
+    def removed(self) -> bool:
+        """Whether :meth:`remove` has been called."""
+        return self._removed
 
     def picked_in_view(self, x: float, y: float) -> Array | None:
         """Return the position of the slice that a pixel of the 3-D view shows; None if it shows none."""
@@ -410,6 +432,7 @@ class Workspace:
 
     def remove(self) -> None:
         """Take panes, slices and gestures away; twice is harmless."""
+        self._removed = True
         self.stop()
         for actor in self._tracts:
             self._take_out(actor)

@@ -1,0 +1,61 @@
+// Keys of slices: see pvfiblets/web/slices_tab.py. Where the pointer is says which pane is meant.
+(() => {
+  "use strict";
+
+  const call = (name, ...args) => window.trame?.trigger(name, args);
+  const get = (name) => window.trame?.state?.get(name);
+  let at = [0.1, 0.1];
+
+  // Where the pointer is, as shares of the picture from its upper left.
+  const place = (event) => {
+    const box = document.querySelector("#pv-view")?.getBoundingClientRect();
+    return box ? [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height] : at;
+  };
+  const within = (share) => share >= 0 && share <= 1;
+
+  document.addEventListener("pointermove", (event) => {
+    const here = place(event);
+    if (here.every(within)) at = here;
+  }, true);
+
+  const STEPS = {
+    ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0],
+    PageUp: [0, 0, 1], PageDown: [0, 0, -1],
+  };
+  const taken = (target) => Boolean(target.closest?.(
+    "input, textarea, select, [contenteditable], [role=listbox], [role=slider], [role=tab], .v-overlay",
+  ));
+
+  // One step at a time is on its way; those that come meanwhile are added up.
+  let waiting = null, busy = false;
+  const step = async (steps) => {
+    waiting = (waiting ?? [0, 0, 0]).map((sum, k) => Math.max(-100, Math.min(100, sum + steps[k])));
+    if (busy) return;
+    busy = true;
+    while (waiting) {
+      const now = waiting;
+      waiting = null;
+      await call("step_slice", ...at, ...now);
+    }
+    busy = false;
+  };
+
+  window.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || get("dialog") || taken(event.target)) return;
+    const slicing = get("slicing");
+    if (event.key.toLowerCase() === "x") {
+      call("set_layout", slicing?.layout === "beside" ? "3d" : "beside");
+    } else if (STEPS[event.key] && slicing?.shown) step(STEPS[event.key]);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }, true);
+
+  // A wheel over what lies over the picture goes through slices, too.
+  document.addEventListener("wheel", (event) => {
+    if (!event.target.closest?.("#pv-paint") || !get("slicing")?.shown) return;
+    event.preventDefault();
+    at = place(event);
+    step([0, 0, event.deltaY < 0 ? 1 : -1]);
+  }, { capture: true, passive: false });
+})();

@@ -1,0 +1,60 @@
+"""Images of a scene as slices: names of their labels, and how they are looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.web import layers
+from pvfiblets.web.document import Layer
+from pvfiblets.web.slicing import SliceView, check_view
+from pvfiblets.web.values import shown
+
+if TYPE_CHECKING:
+    from pvfiblets.web.loading import Files, Loaded
+    from pvfiblets.web.slicing import Slicing
+    from pvfiblets.web.store import Store
+
+__all__ = ["SceneSlices"]
+
+
+class SceneSlices:
+    """The part of :class:`~pvfiblets.web.scene.Scene` that is about slices."""
+
+    if TYPE_CHECKING:
+        files: Files
+        store: Store
+        slicing: Slicing
+        layer: Callable[[str], Layer]
+        _change: Callable[..., None]
+
+    def load_labels(self, layer_id: str, path: str | Path) -> Loaded:
+        """Read names and colours of an image's labels, for :meth:`name_labels`; may run in a thread of its own."""
+        layer = self.layer(layer_id)
+        if layer.kind != "image":
+            raise ValueError(f"{layer.name!r} is of kind {layer.kind}; labels are of images that are shown as slices")
+        name = self.files.name(self.files.resolve(path))
+        twin = self.store.fork()
+        return twin.data(replace(layer, source=replace(layer.source, values=(name,))))
+
+    def name_labels(self, layer_id: str, loaded: Loaded) -> Layer:
+        """Show an image as labels, with the names and colours that :meth:`load_labels` read."""
+        layer = self.layer(layer_id)
+        with self.store.with_new(loaded):
+            checked = layers.check(layer.kind, MEANING, "labels", loaded.data)
+            settings = layers.changed(layer.kind, layer.settings, MEANING, checked, loaded.data)
+            changed = replace(layer, source=loaded.source, settings=settings)
+            self._change(changed, f"names of labels of {layer.name}")
+        return changed
+
+    def set_slices(self, **changes: Any) -> SliceView:
+        """Look at slices in another way, which is nothing to undo; arguments and errors as of :func:`.check_view`."""
+        view = self.slicing.view
+        known = view.as_json()
+        if unknown := [name for name in changes if name not in known]:
+            raise ValueError(f"slices have no {shown(unknown[0])}; they have {', '.join(known)}")
+        self.slicing.view = check_view({**known, **changes})
+        return self.slicing.view

@@ -1,0 +1,250 @@
+"""Images of a scene as slices: a workspace of panes and the 3-D view, made when the first image is shown.
+
+A layer of the kind ``"image"`` is a :class:`.SliceLayer` of the workspace's one stack. How views are laid out and where
+the cross-hair is are no part of what can be undone, as the camera is none: a :class:`SliceView` says it, and sessions
+keep it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.web.document import Layer
+from pvfiblets.web.layers import looks
+from pvfiblets.web.values import mapping, number, numbers, shown, truth
+
+if TYPE_CHECKING:
+    from pvfiblets.web.label_images import LabelledImage
+
+__all__ = ["CONVENTIONS", "LAYOUTS", "NAMES", "SliceView", "Slicing", "check_view", "ready_views"]
+
+LAYOUTS = {
+    "3d": "3-D",
+    "beside": "3-D and three slices",
+    "axial": "Axial, large",
+    "coronal": "Coronal, large",
+    "sagittal": "Sagittal, large",
+    "grid": "Four alike",
+}
+"""How views may be laid out, for people."""
+
+CONVENTIONS = ("radiological", "neurological")
+NAMES = ("axial", "coronal", "sagittal", "3d")
+"""Views in the order of the plotter's renderers."""
+
+_THICKEST = 1000.0  # mm
+
+
+@dataclass(frozen=True)
+class SliceView:
+    """How slices are looked at.
+
+    Attributes
+    ----------
+    layout : str
+        Of `LAYOUTS`.
+    convention : str
+        Of `CONVENTIONS`.
+    thickness : float
+        Of the slabs whose streamlines are shown, mm.
+    cross_hair : bool
+    planes : bool
+        Whether slices are shown in the 3-D view.
+    position : tuple of 3 floats or None
+        The cross-hair, mm; the middle of the first image until it is known.
+    """
+
+    layout: str = "beside"
+    convention: str = "radiological"
+    thickness: float = 3.0
+    cross_hair: bool = True
+    planes: bool = True
+    position: tuple[float, float, float] | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return it in JSON's types."""
+        return {**asdict(self), "position": None if self.position is None else list(self.position)}
+
+
+def check_view(value: Any) -> SliceView:
+    """Return how slices are looked at, of what somebody sent.
+
+    Raises
+    ------
+    ValueError
+        If something in it makes no sense.
+    """
+    usual = SliceView()
+    given = mapping(value, "slices", (), tuple(asdict(usual)))
+    found: dict[str, Any] = {}
+    for name, choices in (("layout", tuple(LAYOUTS)), ("convention", CONVENTIONS)):
+        if name in given:
+            if not isinstance(given[name], str) or given[name] not in choices:
+                raise ValueError(f"{name} of slices is {shown(given[name])}; choose one of {', '.join(choices)}")
+            found[name] = given[name]
+    if "thickness" in given:
+        found["thickness"] = number(given["thickness"], "thickness of the slab", 1e-6, _THICKEST, unit=" of mm")
+    for name in ("cross_hair", "planes"):
+        if name in given:
+            found[name] = truth(given[name], name)
+    if given.get("position") is not None:
+        x, y, z = numbers(given["position"], "position", 3)
+        found["position"] = x, y, z
+    return replace(usual, **found)
+
+
+def ready_views(plotter: Any) -> None:
+    """Have a plotter of four views begin with the 3-D view alone, which is the active one."""
+    for renderer in list(plotter.renderers)[:3]:
+        renderer.SetDraw(False)
+        renderer.SetInteractive(False)
+        renderer.SetViewport(0.0, 0.0, 0.001, 0.001)
+    plotter.subplot(1, 1)
+    plotter.renderer.SetViewport(0.0, 0.0, 1.0, 1.0)
+
+
+class Slicing:
+    """The images of a scene, as slices in its plotter.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Of four views, of which the last is the 3-D view, if there is to be an image.
+
+    Attributes
+    ----------
+    workspace : Workspace or None
+        None as long as there is no image.
+    """
+
+    def __init__(self, plotter: Any) -> None:
+        self._plotter = plotter
+        self._view = SliceView()
+        self.workspace: Any = None
+
+    # What is seen
+
+    @property
+    def view(self) -> SliceView:
+        """How slices are looked at."""
+        if self.workspace is None:
+            return self._view
+        x, y, z = (float(part) for part in self.workspace.position)
+        return replace(self._view, position=(x, y, z))
+
+    @view.setter
+    def view(self, view: SliceView) -> None:
+        self._view = view
+        workspace = self.workspace
+        if workspace is None:
+            return
+        workspace.layout, workspace.convention = view.layout, view.convention
+        workspace.thickness, workspace.cross_hair = view.thickness, view.cross_hair
+        for plane in workspace.slices:
+            if plane.visible != view.planes:
+                plane.visible = view.planes
+        if view.position is not None and tuple(workspace.position) != view.position:
+            workspace.position = view.position
+
+    def boxes(self) -> list[dict[str, Any]]:
+        """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""
+        if self.workspace is None:
+            return []
+        found = []
+        height = self._plotter.window_size[1]
+        for name, renderer in zip(NAMES, self._plotter.renderers, strict=False):
+            if not renderer.GetDraw():
+                continue
+            left, bottom, right, top = renderer.GetViewport()
+            pane = self.workspace.panes.get(name)
+            found.append({
+                "name": name, "x": left, "y": 1.0 - top, "w": right - left, "h": top - bottom,
+                "mm": 0.0 if pane is None else pane.scale * height,  # the picture's height
+                "letters": {} if pane is None else dict(pane.sides),
+            })  # fmt: skip
+        return found
+
+    # Layers
+
+    def add(self, layer: Layer, image: LabelledImage) -> Any:
+        """Show an image above those that are there; return its layer of the stack."""
+        meaning = layer.settings[MEANING]
+        made = {"kind": meaning, "labels": image.table if meaning == "labels" else None}
+        made |= looks(layer.kind, layer.settings)
+        if self.workspace is None:
+            self.workspace = self._plotter.slices.workspace(
+                image, layout="3d", reset_camera=False, render=False, name="slices", **made
+            )
+            self._smooth_alike()
+            self.workspace.told = False  # the page says it
+            found = self.workspace.slices.layers[0]
+            self.view = self._view
+        else:
+            found = self.workspace.slices.add(image, **made)
+        self._call(found, layer)
+        return found
+
+    def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage) -> Any:
+        """Bring an image in step with its layer; return its layer of the stack, which may be another one.
+
+        Raises
+        ------
+        ValueError
+            If a value is refused; all is as it was.
+        """
+        if old.settings[MEANING] != new.settings[MEANING]:
+            found = self.add(new, data)
+            self.workspace.slices.remove_layer(image)
+            return found
+        before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
+        try:
+            for name, value in after.items():
+                if before[name] != value:
+                    setattr(image, name, value)
+        except Exception:
+            for name, value in before.items():
+                setattr(image, name, value)
+            raise
+        self._call(image, new)
+        return image
+
+    def _call(self, image: Any, layer: Layer) -> None:
+        """Have the image shown or not, and named, as its layer is."""
+        if image.visible != layer.visible:
+            image.visible = layer.visible
+        if image.name != layer.name:
+            image.name = layer.name
+            self.workspace.slices.changed()
+
+    def remove(self, image: Any) -> None:
+        """Take an image away; with the last one the panes go, too."""
+        stack = self.workspace.slices
+        stack.remove_layer(image)
+        if not stack.layers:
+            self.close()
+
+    def put_in_order(self, images: Sequence[Any]) -> None:
+        """Lay images over each other in an order, the lowest first."""
+        if self.workspace is not None:
+            self.workspace.slices.reorder(images)
+
+    def close(self) -> None:
+        """Take panes and slices away; the 3-D view fills the picture."""
+        if self.workspace is not None:
+            self._view = self.view
+            self.workspace.remove()
+            self.workspace = None
+            ready_views(self._plotter)
+
+    def _smooth_alike(self) -> None:
+        """Have edges in panes as smooth as in the 3-D view."""
+        plotter = self._plotter
+        value = plotter.picture.antialias
+        for at in range(3):
+            plotter.subplot(*divmod(at, 2))
+            plotter.picture.antialias = value
+        plotter.subplot(1, 1)
+

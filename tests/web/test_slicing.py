@@ -1,0 +1,153 @@
+"""Images as slices: layers, panes, sessions, undo and scripts."""
+
+from __future__ import annotations
+
+import nibabel
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.web import session
+from pvfiblets.web.history import History
+from pvfiblets.web.scene import Scene
+from pvfiblets.web.script import as_script
+from pvfiblets.web.slicing import ready_views
+
+
+@pytest.fixture
+def scene(folder):
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=(2, 2), border=False)
+    plotter.set_background("black")
+    plotter.disable_anti_aliasing()
+    ready_views(plotter)
+    scene = Scene(plotter, folder)
+    yield scene
+    scene.close()
+    plotter.close()
+
+
+def shown(scene):
+    """Return which views are drawn."""
+    names = ("axial", "coronal", "sagittal", "3d")
+    return {name for name, one in zip(names, scene.plotter.renderers, strict=True) if one.GetDraw()}
+
+
+def test_an_image_is_shown_as_slices_beside_the_3d_view(scene):
+    scene.open("lines.trk")
+    assert shown(scene) == {"3d"}
+    image = scene.open("head.nii.gz", "image")
+    assert shown(scene) == {"axial", "coronal", "sagittal", "3d"}
+    scene.set(image.id, "clim", [-1.0, 1.0])
+    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
+    picture = scene.screenshot()
+    # The head is 1 in the middle of 16 voxels of 4 mm, and falls by the distance; the axial pane shows that.
+    pane = scene.slicing.workspace.panes["axial"]
+    x, y = (round(part) for part in pane.pixel_of(np.array([30.0, 30.0, 30.0])))
+    assert (abs(picture[159 - y, x].astype(int) - 240) < 5).all()
+    assert scene.slicing.workspace.values().images["head.nii.gz"] == pytest.approx(0.885, abs=0.02)
+
+
+def test_settings_undo_and_order_are_those_of_layers(scene):
+    history = History(scene, together=0.0)
+    first = scene.open("head.nii.gz", "image")
+    atlas = scene.open("atlas.nii.gz", "image")
+    stack = scene.slicing.workspace.slices
+    assert atlas.settings["meaning"] == "scalars"
+    scene.set(atlas.id, "meaning", "labels")
+    assert [one.kind for one in stack.layers] == ["scalars", "labels"]
+    scene.set(first.id, "cmap", "hot")
+    scene.set(first.id, "below", 0.25)
+    assert (stack.layers[0].cmap, stack.layers[0].below) == ("hot", 0.25)
+    with pytest.raises(ValueError, match="percentages"):
+        scene.set(first.id, "percentiles", [5.0, 5.0])
+    assert stack.layers[0].percentiles == (1.0, 99.0)
+    scene.show(first.id, False)
+    assert not stack.layers[0].visible
+    for _ in range(4):
+        history.undo()
+    assert [one.kind for one in stack.layers] == ["scalars", "scalars"]
+    assert stack.layers[0].cmap == "gray"
+    history.undo()
+    history.undo()
+    assert not scene.layers
+    assert shown(scene) == {"3d"}
+    history.redo()
+    assert shown(scene) == {"axial", "coronal", "sagittal", "3d"}
+
+
+def test_labels_have_the_names_of_a_table(scene, folder):
+    (folder / "names.tsv").write_text("index\tname\tcolor\n3\tleft <b>part</b>\t#ff0000\n5\tright\t#00ff00\n")
+    (folder / "empty.tsv").write_text("nothing\n")
+    atlas = scene.open("atlas.nii.gz", "image")
+    named = scene.name_labels(atlas.id, scene.load_labels(atlas.id, "names.tsv"))
+    assert named.settings["meaning"] == "labels"
+    scene.set_slices(position=[4.0, 30.0, 30.0])
+    assert scene.slicing.workspace.values().images["atlas.nii.gz"] == (3, "left <b>part</b>")
+    with pytest.raises(ValueError, match="columns index and name"):
+        scene.load_labels(atlas.id, "empty.tsv")
+    with pytest.raises(PermissionError, match="outside"):
+        scene.load_labels(atlas.id, "../names.tsv")
+
+
+def test_sessions_keep_images_and_how_they_are_looked_at(scene, folder):
+    image = scene.open("head.nii.gz", "image")
+    scene.set(image.id, "cmap", "hot")
+    scene.set_slices(layout="sagittal", convention="neurological", thickness=7.0, position=[10.0, 20.0, 30.0])
+    told = session.to_dict(scene)
+    scene.remove(image.id)
+    assert "slices" not in session.to_dict(scene)
+    scene.set_slices(layout="3d", position=[0.0, 0.0, 0.0])
+    session.from_dict(scene, told)
+    workspace = scene.slicing.workspace
+    assert (workspace.layout, workspace.convention, workspace.thickness) == ("sagittal", "neurological", 7.0)
+    assert workspace.position.tolist() == [10.0, 20.0, 30.0]
+    assert workspace.slices.layers[0].cmap == "hot"
+    for name, value in (("layout", "heap"), ("thickness", -1), ("position", [1, 2]), ("planes", 1), ("other", 1)):
+        with pytest.raises(session.SessionError, match=name):
+            session.from_dict(scene, {**told, "slices": {name: value}})
+    assert workspace.layout == "sagittal"
+
+
+def test_the_script_makes_the_same_picture(scene, folder):
+    scene.open("lines.trk")
+    image = scene.open("head.nii.gz", "image")
+    scene.set(image.id, "clim", [-1.0, 1.0])
+    (folder / "names.tsv").write_text("index\tname\n3\tone\n5\tother\n")
+    atlas = scene.open("atlas.nii.gz", "image")
+    scene.name_labels(atlas.id, scene.load_labels(atlas.id, "names.tsv"))
+    scene.set(atlas.id, "opacity", 0.3)
+    scene.set_slices(position=[18.0, 22.0, 12.0], thickness=9.0)
+    picture = scene.screenshot()
+    text = as_script(scene, "found.png").replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    text = text.replace("'found.png'", repr(str(folder / "found.png")))
+    exec(compile(text, "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+
+
+def test_images_are_not_cut_and_need_four_views(scene, folder, plotter):
+    image = scene.open("head.nii.gz", "image")
+    with pytest.raises(ValueError, match="not cut"):
+        scene.add_clip("plane", layers=[image.id])
+    one = Scene(plotter, folder)
+    with pytest.raises(ValueError, match=r"shape=\(2, 2\)"):
+        one.open("head.nii.gz", "image")
+    assert not one.layers
+    one.close()
+    with pytest.raises(ValueError, match="slices are of images"):
+        scene.open("lines.trk", "image")
+    assert scene.histogram(image.id)["name"]
+    assert scene.info(image.id)["facts"]["voxels"] == [16, 16, 16]
+
+
+def test_an_image_of_colours_and_one_of_several_volumes(scene, folder):
+    many = np.stack([np.full((6, 6, 6), value, np.float32) for value in (1.0, 2.0, 3.0)], axis=-1)
+    nibabel.save(nibabel.Nifti1Image(many, np.eye(4)), folder / "many.nii")
+    image = scene.open("many.nii", "image")
+    scene.set(image.id, "index", 2)
+    scene.set_slices(position=[2.0, 2.0, 2.0])
+    assert scene.slicing.workspace.values().images["many.nii"] == 3.0
+    with pytest.raises(ValueError, match="index"):
+        scene.set(image.id, "index", 3)
+    scene.set(image.id, "meaning", "direction")
+    assert scene.slicing.workspace.slices.layers[0].kind == "direction"
