@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+import warnings
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import pyvista as pv
 
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
 from pvfiblets.plotting.linked_property import LinkedProperty, own_writes
+from pvfiblets.plotting.linked_table import LinkedTable
 from pvfiblets.plotting.setting_places import COLOURS, PROPERTY
 from pvfiblets.plotting.settings import Given, Setting, Settings
 
@@ -17,12 +19,15 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
-class Coloured(Settings, LinkedProperty):
+class Coloured(Settings, LinkedProperty, LinkedTable):
     """The part of actors that has colours; see :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`.
 
     What an actor draws, and what ``scalars`` mean for that, is its own: it brings ``scalars`` and
     overrides the two members that raise here.
     """
+
+    # What to say of the property's line width, where it is not drawn.
+    _WIDTH: ClassVar[str] = ""
 
     _mapper: Any
     prop: Any
@@ -36,8 +41,11 @@ class Coloured(Settings, LinkedProperty):
         self._choice = choice
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
+        self._watch_table()
+        self._hidden = False  # scalars, by the mapper's scalar_visibility
         self._bar_changed: Callable[[Any], None] | None = None
         self._property_color: tuple[float, ...] | None = None
+        self._property_width: float | None = None
 
     @property
     def _drawn(self) -> Any:
@@ -57,6 +65,7 @@ class Coloured(Settings, LinkedProperty):
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
         self._property_color = self.prop.GetColor()
+        self._property_width = self.prop.GetLineWidth()
         with own_writes():
             for name, value in given.items():
                 one = self.DECLARED[name]
@@ -142,6 +151,7 @@ class Coloured(Settings, LinkedProperty):
 
     def _set(self, setting: str, value: Any) -> None:
         """Change one setting; a refused value leaves all as it was."""
+        self.take_table()
         before = getattr(self._settings, setting)
         setattr(self._settings, setting, value)
         try:
@@ -171,15 +181,49 @@ class Coloured(Settings, LinkedProperty):
 
     def _show(self, scalars: Scalars | None) -> None:
         """Hand the mapper its colours."""
+        self._keep_table()
+        scalars = None if self._hidden else scalars
         if scalars is not None and scalars.mapped:
-            update_table(self._table, self._settings, scalars, self._theme, self._drawn)
-            self._fade_table(self._table)
+            with own_writes():
+                update_table(self._table, self._settings, scalars, self._theme, self._drawn)
+                self._fade_table(self._table)
+            self._note_table()
         self._mapper.colouring = self._faded(make_colouring(self._settings, scalars, self._table, self._theme))
         self._scalars = scalars
         colour = pv.Color(self._settings.color, default_color=self._theme.color)
         with own_writes():
             self.prop.color = colour if scalars is None else "white"
         self._property_color = self.prop.GetColor()
+
+    def take_table(self) -> None:
+        """Take over what somebody else has written to the look-up table, before the next picture and other settings."""
+        if self._keep_table():
+            self._show(self._scalars)
+            self._bar()
+
+    def _keep_table(self) -> bool:
+        """Have what was written to the look-up table as settings; say whether there was something."""
+        found = self._table_settings() if self._touched else {}
+        for name, value in found.items():
+            setattr(self._settings, name, value)
+        return bool(found)
+
+    def _table_touched(self) -> None:
+        """Show it at once, as far as it can be: before a picture VTK asks what is translucent."""
+        if self._scalars is None or not self._scalars.mapped:
+            return
+        try:
+            colouring = self._faded(make_colouring(self._settings, self._scalars, self._table, self._theme))
+        except ValueError:  # between two changes that belong together
+            return
+        self._mapper.colouring = colouring
+
+    def _hide_scalars(self, hidden: bool) -> None:
+        """Show one colour in place of scalars, or these again."""
+        if hidden != self._hidden:
+            self._hidden = hidden
+            self._recolour()
+            self._bar()
 
     def _fade_table(self, table: pv.LookupTable) -> None:
         """Give a look-up table its opacities, if it has any of its own."""
@@ -190,10 +234,17 @@ class Coloured(Settings, LinkedProperty):
 
     def _property_changed(self) -> None:
         """Take over another colour of the property; scalars that were chosen go before it."""
+        width = self.prop.GetLineWidth()
+        if self._WIDTH and width != self._property_width:
+            self._property_width = width
+            warnings.warn(f"prop.line_width changes nothing here: {self._WIDTH}", UserWarning, stacklevel=2)
         color = self.prop.GetColor()
         if color != self._property_color:
             self._property_color = color
-            if self._choice is None:
+            if self._hidden:
+                self._settings.color = pv.Color(color)
+                self._show(None)
+            elif self._choice is None:
                 self.color = color
 
 
@@ -204,6 +255,33 @@ class Plotted:
     def lookup_table(self) -> pv.LookupTable:
         """The table that colours both the picture and the scalar bar."""
         return self._shown_by().lookup_table
+
+    @lookup_table.setter
+    def lookup_table(self, table: pv.LookupTable) -> None:
+        actor = cast("Any", self._shown_by())
+        clim = actor.clim  # as a mapper's own, which its table takes on
+        actor.cmap = table
+        actor.clim = clim
+
+    def SetLookupTable(self, table: Any) -> None:  # noqa: N802 - VTK's name
+        """Colour by another look-up table, whose range becomes the mapper's."""
+        if not isinstance(table, pv.LookupTable):
+            copy = pv.LookupTable()
+            copy.DeepCopy(table)
+            table = copy
+        self.lookup_table = table
+
+    def GetLookupTable(self) -> pv.LookupTable:  # noqa: N802 - VTK's name
+        """Return the actor's look-up table."""
+        return self.lookup_table
+
+    def SetScalarRange(self, *limits: Any) -> None:  # noqa: N802 - VTK's name
+        """Set the values of the first and last colour, two numbers or a pair."""
+        self.scalar_range = limits[0] if len(limits) == 1 else limits
+
+    def GetScalarRange(self) -> tuple[float, float]:  # noqa: N802 - VTK's name
+        """Return the values of the first and last colour."""
+        return self.scalar_range
 
     @property
     def scalar_range(self) -> tuple[float, float]:
@@ -217,6 +295,15 @@ class Plotted:
     def _shown_by(self) -> Coloured:
         return cast("Coloured", cast("Any", self).actor)
 
+    def _begin(self) -> None:
+        actor: Any = cast("Any", self).actor
+        if isinstance(actor, Coloured):
+            try:
+                actor.take_table()
+            except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
+                cast("Any", self)._error = error  # noqa: SLF001  its other half
+        super()._begin()  # type: ignore[misc]  # of the mapper
+
 
 class PlottedLines(Plotted):
     """The part of a mapper of lines or points that gives PyVista's scripts its data."""
@@ -227,6 +314,31 @@ class PlottedLines(Plotted):
         if cast("Any", self).is_readable:
             return cast("pv.PolyData", pv.wrap(cast("Any", self).GetDataSetInput()))
         return self._shown_by()._as_polydata()  # noqa: SLF001
+
+    @property
+    def scalar_visibility(self) -> bool:
+        """Whether scalars colour, if there are any; else the colour of the actor's property."""
+        actor = self._shown_by()
+        return not actor._hidden and actor._scalars is not None  # noqa: SLF001
+
+    @scalar_visibility.setter
+    def scalar_visibility(self, shown: bool) -> None:
+        self._shown_by()._hide_scalars(not shown)  # noqa: SLF001
+
+    def SetScalarVisibility(self, shown: Any) -> None:  # noqa: N802 - VTK's name
+        """Have scalars colour, or not."""
+        if cast("Any", self).actor is None:  # as it is made
+            super().SetScalarVisibility(shown)  # type: ignore[misc]  # of vtkMapper
+        else:
+            self.scalar_visibility = bool(shown)
+
+    def ScalarVisibilityOn(self) -> None:  # noqa: N802 - VTK's name
+        """Have scalars colour."""
+        self.scalar_visibility = True
+
+    def ScalarVisibilityOff(self) -> None:  # noqa: N802 - VTK's name
+        """Have the colour of the actor's property count."""
+        self.scalar_visibility = False
 
     def _wrapped(self, data: Any) -> Any:
         return pv.wrap(data)

@@ -11,20 +11,25 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["LinkedProperty", "own_writes"]
+__all__ = ["LinkedProperty", "is_own_write", "own_writes"]
 
 _writing = 0
 
 
 @contextmanager
 def own_writes() -> Iterator[None]:
-    """While open, no actor takes changes of a property for a user's."""
+    """While open, no actor takes changes of a property or look-up table for a user's."""
     global _writing
     _writing += 1
     try:
         yield
     finally:
         _writing -= 1
+
+
+def is_own_write() -> bool:
+    """Say whether what is being changed is by this package."""
+    return _writing > 0
 
 
 class LinkedProperty:

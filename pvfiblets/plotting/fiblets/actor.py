@@ -365,7 +365,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         low, high = self._table.scalar_range
         if most > low and most != high and self._scalars is not None:
             self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))
-            self._table.scalar_range = low, most
+            with own_writes():
+                self._table.scalar_range = low, most
+            self._note_table()
 
     def _read_density_tone(self) -> str:
         return self._tone

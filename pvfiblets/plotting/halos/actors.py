@@ -55,6 +55,8 @@ class HaloActor(HaloSettings, Coloured, pv.Actor):
 
     _KIND: ClassVar[type]
 
+    _WIDTH = "widths of halos are in mm; see actor.line_width of lines, actor.point_size of points"
+
     def __init__(
         self,
         held: Held,

@@ -61,6 +61,8 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
     Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020).
     """
 
+    _WIDTH = "tubes have a radius in mm, given as radius; actor.min_width is in pixels"
+
     def __init__(
         self,
         tubes: SplineTubes,

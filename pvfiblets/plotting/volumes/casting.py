@@ -10,6 +10,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.coloured import Coloured
 from pvfiblets.plotting.colours import make_colouring, update_table
+from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.volumes.opacity import (
     along_logarithm,
     from_logarithm,
@@ -44,6 +45,7 @@ class RaySettings(VolumeSettings, Coloured):
     """
 
     _volume: RaycastVolume
+    _alpha_written: Any = None
 
     def _init_rays(self, given: Given) -> tuple[RaycastOptions, Colouring | None]:
         """Take the settings, and return what they make of the volume; fields that are None have their defaults."""
@@ -115,6 +117,7 @@ class RaySettings(VolumeSettings, Coloured):
 
     def _set(self, setting: str, value: Any) -> None:
         """Change one setting of the colours; a refused value leaves all as it was."""
+        self.take_table()
         before = self._settings
         self._settings = replace(before, **{setting: value})
         try:
@@ -150,6 +153,26 @@ class RaySettings(VolumeSettings, Coloured):
 
     def _made(self, wanted: dict[str, Any]) -> tuple[RaycastOptions, Colouring | None]:
         """Return casting and colours of the present settings with some fields changed, and bring the table in step."""
+        self._keep_table()
+        with own_writes():
+            made = self._made_anew(wanted)
+        self._note_table()
+        return made
+
+    def _keep_table(self) -> bool:
+        found = self._table_settings() if self._touched else {}
+        if "cmap" in found and isinstance(found["cmap"], pv.LookupTable):
+            values = np.asarray(found["cmap"].values, np.float64)
+            if not np.array_equal(values[:, 3], self._alpha_written):
+                self._choices = {**self._choices, "opacity": values[:, 3] / 255.0}
+        if found:
+            self._settings = replace(self._settings, **found)
+        return bool(found)
+
+    def _table_touched(self) -> None:
+        """Wait for the next picture: the table's opacities go into integrals."""
+
+    def _made_anew(self, wanted: dict[str, Any]) -> tuple[RaycastOptions, Colouring | None]:
         assert self._scalars is not None
         settings, mode = self._settings, wanted.get("mode", self._casting.mode)
         low, high = value_limits(self.thresholds)
@@ -167,6 +190,7 @@ class RaySettings(VolumeSettings, Coloured):
         clim = tuple(self._table.scalar_range)
         seen = along_logarithm(alpha, clim) if settings.log_scale else alpha
         self._table.values[:, 3] = 255 if mode == SURFACE else np.round(255.0 * seen)
+        self._alpha_written = np.array(self._table.values[:, 3])
         own["surfaces"] = self._surfaces() if mode == SURFACE else None
         if mode == LIGHT:
             own["transfer"] = self._transfer(alpha)
