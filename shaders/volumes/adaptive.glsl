@@ -13,6 +13,9 @@
 // A stretch is looked at in its middle too, M. It is halved if the light of both halves is not that of the whole; or if the value
 // may have turned between the samples and met there what it does not meet at them. A tent or a parabola through A, M, B
 // reaches no farther beyond the three than |A - 2 M + B|.
+//
+// What is halved begins and ends where the field bends, at the faces between cells of eight voxels: turns of two faces between three
+// samples can cancel in them, however far the value reaches between.
 
 uniform sampler2D media;          // at places of the table: (c, kappa); below, (K in two floats, by how much it grows to the next, 0)
 uniform float places_per_entry;
@@ -85,14 +88,24 @@ vec4 light_between(Look a, Look b, float mm) {
 
 float largest(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 
+// Mm to the end of the cell that the ray is about to be in.
+float to_end_of_cell(Ray ray, float t, float step) {
+#if FEATURE_VOLUME_NEAREST
+    vec3 p = at(ray, t) + 0.5;      // a cell of its own around each voxel
+#else
+    vec3 p = at(ray, t);
+#endif
+    vec3 cell = floor(p + 1e-3 * step * ray.d), out_of = (cell + vec3(greaterThanEqual(ray.d, vec3(0.0))) - p) * ray.inverse;
+    return max(min(out_of.x, min(out_of.y, out_of.z)), 1e-3 * step);
+}
+
 // Of a stretch from t on, of some mm, the look at whose beginning is known, before which a part of the light is left.
 vec4 adaptive_stretch(Ray ray, float t, float mm, float step, float left, inout Look a) {
     int place = 0, size = FINEST;
-    while (mm * float(size) > 2.001 * step * float(FINEST) && size > 1) size /= 2;
     vec4 light = vec4(0.0);
-    float part = mm / float(FINEST);
-    Look m = look_along(ray, t + 0.5 * part * float(size));
-    Look b = look_along(ray, t + part * float(size));
+    float last = t + mm, within = min(to_end_of_cell(ray, t, step), mm), part = within / float(FINEST);
+    Look m = look_along(ray, t + 0.5 * within);
+    Look b = look_along(ray, t + within);
     for (;;) {
         float length = part * float(size);
         vec4 first = light_between(a, m, 0.5 * length), second = light_between(m, b, 0.5 * length);
@@ -113,7 +126,15 @@ vec4 adaptive_stretch(Ray ray, float t, float mm, float step, float left, inout 
             light += (1.0 - light.a) * halves;
             place += size;
             a = b;
-            if (place >= FINEST || light.a >= opaque_from) break;
+            if (light.a >= opaque_from) break;
+            if (place >= FINEST) {
+                t += within;
+                if (last - t < 1e-3 * step) break;
+                within = min(to_end_of_cell(ray, t, step), last - t);
+                part = within / float(FINEST);
+                place = 0;
+                size = FINEST / 2;      // twice that below
+            }
             if ((place & (2 * size - 1)) == 0) size *= 2;
             m = look_along(ray, t + part * (float(place) + 0.5 * float(size)));
             b = look_along(ray, t + part * float(place + size));

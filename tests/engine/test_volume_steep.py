@@ -80,13 +80,12 @@ def test_light_is_within_a_hundredth_from_thin_to_dense(gl, camera, name):
     through = reference.rays(matrix, SIZE, volume)
     renderer = VolumeRenderer(gl, volume)
     for look in TABLES:
-        for kappa_step in (1e-3, 0.1, 10.0, 1e3):
+        for kappa_step in (1e-3, 1.0, 10.0, 1e3):
             transfer = steep_transfer(look, kappa_step)
             found = light(renderer, matrix, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999))
             right = reference.composite(volume, transfer, through).reshape(found.shape)
             off = np.abs(found - right).max(axis=-1)  # 8 bits of colours and of opacity are in it
-            assert (off < 1e-2).mean() > 0.999, (look, kappa_step)
-            assert off.max() < (2.5e-2 if name == "ball" and look == "peaks" else 1e-2), (look, kappa_step)
+            assert off.max() < 1e-2, (look, kappa_step)
     renderer.release()
 
 
@@ -100,8 +99,8 @@ def test_the_same_of_noise_but_for_few_pixels(gl, camera):
             transfer = steep_transfer(look, kappa_step)
             found = light(renderer, matrix, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999))
             off = np.abs(found - reference.composite(volume, transfer, through).reshape(found.shape)).max(axis=-1)
-            assert (off < 1e-2).mean() > 0.99
-            assert off.max() < 0.25
+            assert (off < 1e-2).mean() > 0.997, (look, kappa_step)  # more kinks than show may cancel within a step
+            assert off.max() < 0.25, (look, kappa_step)
     renderer.release()
 
 
@@ -123,6 +122,21 @@ def test_light_is_within_a_hundredth_at_edges_from_voxel_to_voxel(gl, camera, na
         renderer, matrix, RaycastOptions("composite", transfer=transfer, integrator="preintegrated", stop=0.9999)
     )
     assert np.abs(once - right).max() > 1.1e-2 or name == "noise"
+    renderer.release()
+
+
+def test_rays_along_an_axis_look_as_closely(gl, camera):
+    """Of two axes such a ray never leaves its cell."""
+    volume = field("ball")
+    middle = (np.array(volume.shape) - 1) / 2
+    matrix = camera(SIZE, eye=middle + [0, -40, 0], target=middle, near=3, far=120, height=16.0)
+    renderer = VolumeRenderer(gl, volume)
+    for look in ("peak", "edge"):
+        transfer = steep_transfer(look, 10.0)
+        found = light(renderer, matrix, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999))
+        right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume)).reshape(found.shape)
+        assert found.max() > 0.5
+        assert np.abs(found - right).max() < 1e-2
     renderer.release()
 
 
