@@ -68,6 +68,12 @@ def add_convert(commands: Any) -> None:
         help="write a folder of .fiblets files of at most this size each (such as 2G), of streamlines that lie near "
         "each other; it is read like one file, or in parts",
     )
+    convert.add_argument(
+        "--verify",
+        choices=("all", "sample"),
+        default="all",
+        help="compare all of the finished file with IN, or about a million points of it (default: %(default)s)",
+    )
     add_format_option(convert, reads=["source"], writes="target")
     _quiet_and_json(convert)
     add_memory_option(convert)

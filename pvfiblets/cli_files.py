@@ -33,6 +33,7 @@ def convert(
     per_point_bits: int,
     exact: bool | None,
     shards: int | None,
+    verify: Literal["all", "sample"],
     quiet: bool,
     json: bool,
 ) -> None:
@@ -57,14 +58,15 @@ def convert(
             per_point=which_per_point(per_point),
             per_point_bits=per_point_bits,
             exact=exact,
+            verify=verify,
             progress=show_progress(quiet, json),
         )
     else:
-        asked = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
-        if asked:
+        own = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
+        if own or verify != "all":
             raise ValueError(
-                f"--step, --max-error, --max-angle, --exact, --per-point and --shards are for {COMPRESSED} files; "
-                f"{target} is of another format"
+                "--step, --max-error, --max-angle, --exact, --per-point, --verify and --shards are for "
+                f"{COMPRESSED} files; {target} is of another format"
             )
         result = rewrite(source, target)
     if json:
@@ -134,6 +136,9 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
     if result.get("exact"):
         lines.append("error    none: exact, every bit of the points is kept")
     elif result.get("error_mm"):
+        if (every := result["compared_every"]) > 1:
+            ending = "th" if every % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(every % 10, "th")
+            lines.append(f"compared every {every}{ending} streamline with its original (--verify all: each)")
         lines += [
             "error    " + ", ".join(f"{k} {v:.2g} mm" for k, v in result["error_mm"].items()),
         ]

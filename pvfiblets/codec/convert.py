@@ -32,10 +32,10 @@ from .compress import (
     not_kept,
     quantise_chosen,
 )
-from .decompress import iter_chunks
 from .exact import raw_bytes
 from .fiblets_file import make_header
 from .fibletset import FibletSet
+from .file_error import compare_file
 from .layout import WORDS
 from .ordering import Order, check_order
 from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of
@@ -44,9 +44,11 @@ from .quantised import QuantisedPoints
 
 if TYPE_CHECKING:
     from .encode import Effort
-    from .error import CodingError
 
-__all__ = ["compress_file", "measure_file_error"]
+__all__ = ["compress_file"]
+
+SAMPLE_POINTS = 1_000_000
+"""About so many are compared where a sample will do."""
 
 
 def compress_file(
@@ -61,6 +63,7 @@ def compress_file(
     per_point: PerPoint = "fit",
     per_point_bits: int = 8,
     exact: bool | None = None,
+    verify: Literal["all", "sample"] = "all",
     progress: Progress = False,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a ``.fiblets`` file.
@@ -81,6 +84,9 @@ def compress_file(
         fits into 16 bytes a point. ``dropped`` names the others, in the result and in the file.
     order : {'input'}
         Another order needs all streamlines at once, and is refused here.
+    verify : {'all', 'sample'}
+        Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
+        That the promise is kept is seen to while coding, in either case.
     progress : bool or callable
         Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1 (0 while that
         cannot be told). What it raises stops the work.
@@ -89,9 +95,9 @@ def compress_file(
     -------
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
-        error_steps{...}, error_degrees{max, mean, p99}, promise_mm, seconds`` (to read and code), ``points_per_second,
-        seconds_to_measure, dropped, per_point`` (names of the arrays kept), and ``exact`` (whether every bit of the
-        points is).
+        error_steps{...}, error_degrees{max, mean, p99}, compared_every`` (1 for all streamlines), ``promise_mm,
+        seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped, per_point`` (names of the arrays
+        kept), and ``exact`` (whether every bit of the points is).
 
     Raises
     ------
@@ -108,6 +114,8 @@ def compress_file(
             f"pvfiblets.compress(pvfiblets.read(source), order={order!r}).save(target) does it where memory suffices"
         )
 
+    if verify not in ("all", "sample"):
+        raise ValueError(f"verify is {verify!r}; 'all' or 'sample' is needed")
     check_exact(exact, step, order)
     promise = None
     if step != "auto":
@@ -197,7 +205,8 @@ def compress_file(
         write_archive(target, header, members | more)
     seconds = time.perf_counter() - started
     originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
-    error = _compare(originals, found.n_points, target, progress)
+    every = 1 if verify == "all" else max(1, round(found.n_points / SAMPLE_POINTS))
+    error = compare_file(originals, found.n_points, target, progress, every=every)
     size = Path(target).stat().st_size
     return {
         "streamlines": encoder.n_streamlines,
@@ -206,6 +215,7 @@ def compress_file(
         "bytes": size,
         "bytes_per_point": size / max(encoder.n_points, 1),
         **error.summary(),
+        "compared_every": every,
         "promise_mm": header_set.promise,
         "seconds": seconds,
         "points_per_second": encoder.n_points / seconds,
@@ -239,6 +249,7 @@ def _keep_exactly(
         "error_mm": {**none, "p999": 0.0},
         "error_steps": {**none, "p999": 0.0},
         "error_degrees": {**none, "p99": 0.0},
+        "compared_every": 1,
         "promise_mm": fiblets.promise,
         "seconds": seconds,
         "points_per_second": whole.n_points / seconds,
@@ -247,66 +258,6 @@ def _keep_exactly(
         "per_point": list(fiblets.per_point),
         "exact": True,
     }
-
-
-def measure_file_error(
-    fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: Progress = False
-) -> CodingError:
-    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
-
-    Raises
-    ------
-    FormatError
-        If one of the files breaks its format.
-    ValueError
-        If the two do not hold the same streamlines and points.
-    """
-    total = FibletSet.open(fiblets).n_points
-    return _compare(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
-
-
-def _compare(
-    originals: Iterable[Streamlines],
-    total: int,
-    target: str | PathLike[str],
-    progress: Progress,
-) -> CodingError:
-    """Decode the file alongside the original; both come in chunks, which need not be cut at the same places."""
-    from .error import ErrorTally
-
-    coded = FibletSet.open(target)
-    tally = ErrorTally(coded, by_streamline=False)
-    decoded = iter_chunks(coded, CHUNK_POINTS, np.float64)
-    rest: Streamlines | None = None
-    seen = 0
-    for chunk in shown(originals, total, "measuring", progress):
-        done = 0
-        while done < len(chunk):
-            if rest is None or len(rest) == 0:
-                rest = next(decoded, None)
-                if rest is None:
-                    raise ValueError(f"the original has more streamlines than the {coded.n_streamlines} of the fiblets")
-            n = min(len(rest), len(chunk) - done)
-            a, b = _plain(chunk, done, done + n), _plain(rest, 0, n)
-            if not tally.resampled and not np.array_equal(a.offsets, b.offsets):
-                differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
-                raise ValueError(
-                    f"streamline {seen + differs} has {a.counts[differs]} points in the original, {b.counts[differs]} "
-                    "in the fiblets: errors can be measured only against what was compressed"
-                )
-            tally.add(a, b)
-            rest = _plain(rest, n, len(rest))
-            done += n
-            seen += n
-    if seen != coded.n_streamlines:
-        raise ValueError(f"the fiblets hold {coded.n_streamlines} streamlines, the original {seen}")
-    return tally.result()
-
-
-def _plain(s: Streamlines, a: int, b: int) -> Streamlines:
-    """Streamlines ``a`` to ``b`` without their data."""
-    offsets = np.asarray(s.offsets)
-    return Streamlines(s.points[offsets[a] : offsets[b]], offsets[a : b + 1] - offsets[a])
 
 
 class _Whole:

@@ -94,11 +94,11 @@ class ErrorTally:
             for first, last in original.blocks(SPAN):
                 self._add_parts(original.points, decoded.points, int(offsets[first]), int(offsets[last]), offsets)
             return
-        # Points come in the set's own type by default, and its rounding is part of their error.
-        drawn = decoded.points.astype(self._dtype).astype(np.float64)
         if self.resampled:
             from .line_distance import line_distances
 
+            # Points come in the set's own type by default, and its rounding is part of their error.
+            drawn = decoded.points.astype(self._dtype).astype(np.float64)
             others = np.asarray(decoded.offsets, np.int64)
             away = line_distances(original.points, offsets, drawn, others, self._promise)
             back = line_distances(drawn, others, original.points, offsets, self._promise)
@@ -107,9 +107,9 @@ class ErrorTally:
             self._add_distances(np.concatenate([away, back])[order], offsets + others)
             return
         firsts = self._firsts.of_next(original.n_points)
-        self._add_angles(original.points, np.asarray(decoded.points, np.float64), offsets, firsts)
-        delta = original.points.astype(np.float64) - drawn
-        self._add_distances(np.sqrt((delta**2).sum(1)), offsets)
+        drawn = np.asarray(decoded.points, np.float64)
+        self._add_angles(original.points, drawn, offsets, firsts)
+        self._add_distances(self._distances(original.points, drawn), offsets)
 
     def _add_parts(
         self, true: npt.NDArray[Any], drawn: npt.NDArray[Any], a: int, b: int, offsets: npt.NDArray[np.int64]
@@ -124,18 +124,26 @@ class ErrorTally:
             here, there = np.asarray(true[rows]), np.asarray(drawn[rows], np.float64)
             firsts = np.concatenate([np.zeros(lead, bool), self._firsts.of_next(last - first), np.zeros(more, bool)])
             self._add_angles(here, there, own, firsts, slice(lead, lead + last - first))
-            delta = here.astype(np.float64) - there.astype(self._dtype).astype(np.float64)
-            self._add_distances(np.sqrt((delta**2).sum(1))[lead : lead + last - first], own)
+            self._add_distances(self._distances(here, there)[lead : lead + last - first], own)
             forget(true, 0, last)
             forget(drawn, 0, last)
 
+    def _distances(self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Distances of points in the set's own type, whose rounding is part of their error."""
+        from .error_kernels import distances  # numba loads only for those who measure
+
+        distance = np.empty(len(true))
+        distances(true, drawn, self._dtype == np.float32, distance)
+        return distance
+
     def _add_distances(self, distance: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]) -> None:
         """Take in distances, of streamlines whose own begin at these offsets."""
-        bins = np.minimum(distance * (_BINS / self._edge), _BINS).astype(np.int64)
-        self._histogram += np.bincount(bins, minlength=_BINS + 1)
-        self._sum += float(distance.sum())
+        from .error_kernels import add_up
+
+        total, largest = add_up(distance, np.ones(len(distance), np.uint8), _BINS / self._edge, False, self._histogram)
+        self._sum += total
         self._n += len(distance)
-        self._largest = max(self._largest, float(distance.max(initial=0.0)))
+        self._largest = max(self._largest, largest)
         if not self._by_streamline:
             return
         lengths = np.diff(offsets)
@@ -156,15 +164,14 @@ class ErrorTally:
         firsts: npt.NDArray[np.bool_],
         which: slice = slice(None),
     ) -> None:
-        from .tangent_kernels import tangent_angles  # numba loads only for those who measure
+        from .error_kernels import add_up
+        from .tangent_kernels import tangent_angles
 
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
         tangent_angles(true, drawn, offsets, firsts, self._pixel, degrees, uses)
-        degrees, uses = degrees[which], uses[which]
-        bins = np.ceil(degrees * _PER_DEGREE).astype(np.int64)
-        self._angles += np.bincount(bins, uses, minlength=len(self._angles)).astype(np.int64)
-        self._angle_sum += float(degrees @ uses)
-        self._largest_angle = max(self._largest_angle, float(degrees.max(initial=0.0)))
+        total, largest = add_up(degrees[which], uses[which], _PER_DEGREE, True, self._angles)
+        self._angle_sum += total
+        self._largest_angle = max(self._largest_angle, largest)
 
     def result(self) -> CodingError:
         """The errors so far; percentiles are rounded up: to 1/16000 of the promise, to a hundredth of a degree."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import FibletsError, FormatError
-from .convert import measure_file_error
 from .fiblets_format import verify_file
 from .fibletset import FibletSet
+from .file_error import measure_file_error
 from .parameters import DEFAULT_ANGLE
 from .progress import Progress
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.codec import archive, fiblets_file, fiblets_format, layout
-from pvfiblets.codec.convert import measure_file_error
+from pvfiblets.codec.file_error import measure_file_error
 from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
 

@@ -13,9 +13,10 @@ import pytest
 
 from pvfiblets import formats
 from pvfiblets.codec import convert, encode, parameters
-from pvfiblets.codec.convert import compress_file, measure_file_error
+from pvfiblets.codec.convert import compress_file
 from pvfiblets.codec.encode import Encoder
 from pvfiblets.codec.fibletset import FibletSet
+from pvfiblets.codec.file_error import measure_file_error
 from pvfiblets.codec.parameters import Parameters, survey
 from pvfiblets.codec.record_writer import join
 from pvfiblets.formats import scratch

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import shutil
 import tempfile
@@ -79,7 +80,8 @@ def compress_file_in_shards(
     if size < 1:
         raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
     if Path(source).suffix.lower() == ".fiblets":
-        given = sorted(name for name, value in options.items() if value not in (None, "auto", "input", "fit", "fast"))
+        usual = inspect.signature(compress_file).parameters
+        given = sorted(name for name, value in options.items() if name not in usual or value != usual[name].default)
         if given:
             raise ValueError(
                 f"{', '.join(given)}: {source} is compressed already, and its shards are parts of it as it is; give "

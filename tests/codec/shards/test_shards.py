@@ -261,6 +261,9 @@ def test_commands(whole: pf.FibletSet, tmp_path: Path, capsys: pytest.CaptureFix
     assert "good" in capsys.readouterr().out
     assert main(["convert", target, str(tmp_path / "c.trk")]) == 0
     assert len(pf.read(tmp_path / "c.trk")) == 60
+    assert main(["convert", target, str(tmp_path / "d.fiblets"), "--shards", "9K", "--quiet"]) == 0
+    assert len(pf.FibletSet.open(tmp_path / "d.fiblets")) == len(pf.FibletSet.open(target))
+    capsys.readouterr()
     assert main(["convert", target, target, "--shards", "9K"]) == 1
     assert "overwritten by itself" in capsys.readouterr().err
     assert main(["convert", source, str(tmp_path / "c.trk"), "--shards", "9K"]) == 1
