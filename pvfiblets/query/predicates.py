@@ -25,6 +25,7 @@ __all__ = [
     "Condition",
     "Ends",
     "FlagsOf",
+    "Listed",
     "Predicate",
     "ends_in",
     "passes",
@@ -123,6 +124,25 @@ class _Not(Predicate):
         return ~self.a.holds(flags)
 
 
+@dataclass(frozen=True, eq=False)
+class Listed(Predicate):
+    """Streamlines that are known already, to be joined with conditions.
+
+    Attributes
+    ----------
+    mask : numpy.ndarray
+        ``(n_streamlines,)`` bool.
+    """
+
+    mask: Mask
+
+    def conditions(self) -> Iterator[Condition]:  # noqa: D102 - Predicate's
+        return iter(())
+
+    def holds(self, flags: Callable[[Condition], Flags]) -> Mask:  # noqa: ARG002, D102 - Predicate's
+        return self.mask
+
+
 def passes(region: Region, *, sampling: float | None = None) -> Predicate:
     """Streamlines of which some point lies in the region.
 
@@ -207,7 +227,21 @@ def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = 
             from .passing import region_flags
 
             found[region, sampling] = region_flags(fiblets, region, sampling, bits=bits)
+    for listed in _listed(predicate):
+        if listed.mask.shape != (fiblets.n_streamlines,):
+            raise ValueError(
+                f"a mask of streamlines has the shape {listed.mask.shape}; give {fiblets.n_streamlines:,}"
+            )
     return predicate.holds(lambda condition: found[_key(condition, needed)])
+
+
+def _listed(predicate: Predicate) -> Iterator[Listed]:
+    """Yield the lists that a condition is made of."""
+    if isinstance(predicate, Listed):
+        yield predicate
+    for part in (getattr(predicate, "a", None), getattr(predicate, "b", None)):
+        if isinstance(part, Predicate):
+            yield from _listed(part)
 
 
 def _needed(predicate: Predicate) -> dict[_Key, int]:

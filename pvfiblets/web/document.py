@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.web.painting import Painting
+
 __all__ = [
     "KINDS",
     "LINES",
@@ -272,12 +274,15 @@ class State:
     background : str
         ``#rrggbb``.
     measurements : tuple of Measurement
+    painting : Painting or None
+        Regions that are painted on slices.
     """
 
     layers: tuple[Layer, ...] = ()
     clips: tuple[Clip, ...] = ()
     background: str = "#000000"
     measurements: tuple[Measurement, ...] = ()
+    painting: Painting | None = None
 
     def layer(self, layer_id: str) -> Layer:
         """Return a layer.

@@ -15,6 +15,7 @@ from pvfiblets.formats.attachments import name_of
 from pvfiblets.web import layers
 from pvfiblets.web.actors import add_actor, cut, filter_as, look_as, put_in_order, remove_actor, select_as, split_cuts
 from pvfiblets.web.cameras import Cameras
+from pvfiblets.web.canvas import Canvas
 from pvfiblets.web.distance_label import show_distances
 from pvfiblets.web.document import (
     LINES,
@@ -33,6 +34,7 @@ from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scalar_bars import Bars
 from pvfiblets.web.scene_filters import SceneFilters
 from pvfiblets.web.scene_measurements import SceneMeasurements
+from pvfiblets.web.scene_painting import ScenePainting
 from pvfiblets.web.scene_regions import SceneRegions
 from pvfiblets.web.scene_selection import SceneSelection
 from pvfiblets.web.scene_slices import SceneSlices
@@ -72,7 +74,7 @@ class _Drawn:
 
 
 class Scene(
-    SceneFilters, SceneRegions, SceneSelection, SceneSlices, SceneMeasurements, LayerQueries, Cameras
+    SceneFilters, SceneRegions, SceneSelection, SceneSlices, ScenePainting, SceneMeasurements, LayerQueries, Cameras
 ):  # fmt: skip
     """What a session shows.
 
@@ -99,6 +101,7 @@ class Scene(
         self.store = Store(self.files)
         self.bars = Bars(plotter)
         self.slicing = Slicing(plotter)
+        self.canvas = Canvas(self.slicing)
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
@@ -183,6 +186,7 @@ class Scene(
         actors = [(layer, self._drawn[layer.id].actor) for layer in state.layers]
         put_in_order(self.plotter.renderer, [actor for layer, actor in actors if layer.kind != "image"])
         self.slicing.put_in_order([actor for layer, actor in actors if layer.kind == "image"])
+        self.canvas.become(state.painting, [(layer, actor) for layer, actor in actors if layer.kind in LINES])
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         if state.measurements != self._measured:

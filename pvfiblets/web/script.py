@@ -19,7 +19,7 @@ from pvfiblets.web.distance_label import LINES as LINE_LOOKS
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import Python, code
-from pvfiblets.web.script_slices import has_images, image_arguments, slicing_lines
+from pvfiblets.web.script_slices import has_images, image_arguments, painting_lines, slicing_lines
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
 if TYPE_CHECKING:
@@ -78,6 +78,9 @@ class _Writer:
         for clip in state.clips:
             self._clip(clip)
         self._measurements()
+        if state.painting is not None:
+            self._imports |= {"import numpy as np", "from pvfiblets import regions"}
+            self._lines += painting_lines(self._scene, self._names, self._ids)
         self._lines += slicing_lines(self._scene) if self._sliced else []
         self._bars()
         self._camera()
@@ -391,6 +394,8 @@ class _Writer:
             "segments",
             "line",
             "workspace",
+            "painter",
+            "live",
         }
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
         taken = {*reserved, *self._names.values(), *self._wholes.values()}

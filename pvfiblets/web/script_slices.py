@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from pvfiblets.web.document import LINES
+from pvfiblets.web.painting import runs_of
 from pvfiblets.web.script_code import Python
 
 if TYPE_CHECKING:
     from pvfiblets.web.document import Layer
     from pvfiblets.web.scene import Scene
 
-__all__ = ["has_images", "image_arguments", "slicing_lines"]
+__all__ = ["has_images", "image_arguments", "painting_lines", "slicing_lines"]
 
 
 def has_images(scene: Scene) -> bool:
@@ -36,3 +40,44 @@ def slicing_lines(scene: Scene) -> list[str]:
     if not view.planes:
         found += ["for plane in workspace.slices:", "    plane.visible = False"]
     return [*found, f"workspace.position = {view.position}", ""]
+
+
+def painting_lines(scene: Scene, names: Mapping[str, str], ids: Callable[[Any], str]) -> list[str]:
+    """Return lines that make the painted regions, show them and choose streamlines by them.
+
+    Parameters
+    ----------
+    scene : Scene
+    names : mapping of str to str
+        Python's names of layers, by id.
+    ids : callable
+        From runs of whole numbers to the Python of these.
+    """
+    painting, painter = scene.state.painting, scene.canvas.painter
+    if painting is None or painter is None:
+        return []
+    matrix = [[float(part) for part in row] for row in painting.matrix]
+    found = [f"painter = regions.RegionPainter(({painting.shape}, np.array({matrix})))"]
+    flat = painter.labels.reshape(-1)
+    for one in painting.regions:
+        found += [f"painter.add({one.name!r}, {one.color!r})"]
+        runs = np.array(runs_of(np.flatnonzero(flat == one.label)), np.int64).reshape(-1, 2)
+        if len(runs) == 1:
+            found += [f"painter.set_voxels({one.name!r}, np.arange({runs[0, 0]}, {runs[0, 1]}))"]
+        elif len(runs):
+            found += [f"painter.set_voxels({one.name!r}, {ids(runs)})"]
+    used = scene.canvas.used(painting)
+    for layer in scene.layers if used else ():
+        if layer.kind not in LINES:
+            continue
+        found += [f"live = regions.LiveRegions({names[layer.id]}.fiblets, painter)"]
+        for name, use in used:
+            found += [f"{names[layer.id]}.include_painted(live, {_WORDS[use]}={name!r})"]
+    if has_images(scene):
+        shown = {k: (one.name, one.color if one.visible else "#00000000") for k, one in enumerate(painting.regions, 1)}
+        found += ["workspace.slices.add((painter.labels, painter.grid.affine), name='painted', opacity=0.55,"]
+        found += [f"                     labels={shown})"]
+    return [*found, ""]
+
+
+_WORDS = {"passes": "include", "misses": "exclude", "ends_in": "ends_in", "stays_in": "stays_in"}

@@ -33,6 +33,7 @@ from pvfiblets.web.document import (
     as_volume_choice,
     volume_in,
 )
+from pvfiblets.web.painting import as_json, check_painting
 from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
 from pvfiblets.web.scene_measurements import check_measurements
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
@@ -71,8 +72,8 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements`` and ``slices`` where there
-        are any; no numbers but finite ones.
+        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements``, ``slices`` and
+        ``painting`` where there are any; no numbers but finite ones.
     """
     state = scene.state
 
@@ -108,6 +109,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
             for clip in state.clips
         ],
         **measured,
+        **_painting_to_dict(scene),
     }
 
 
@@ -204,6 +206,11 @@ def load(scene: Scene, path: str) -> None:
 # To JSON --------------------------------------------------------------------------------------------
 
 
+def _painting_to_dict(scene: Scene) -> dict[str, Any]:
+    painting, painter = scene.state.painting, scene.canvas.painter
+    return {} if painting is None or painter is None else {"painting": as_json(painting, painter.labels)}
+
+
 def _slices_to_dict(scene: Scene) -> dict[str, Any]:
     there = any(layer.kind == "image" for layer in scene.layers)
     return {"slices": scene.slicing.view.as_json()} if there else {}
@@ -261,7 +268,7 @@ def _checked(
     version = data.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
-    optional = ("clips", "background", "camera", "measurements", "slices")
+    optional = ("clips", "background", "camera", "measurements", "slices", "painting")
     mapping(data, "session", ("program", "version", "layers"), optional)
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
@@ -273,7 +280,9 @@ def _checked(
     if twice := [name for name in ids if ids.count(name) > 1]:
         raise ValueError(f"the id {twice[0]!r} stands twice")
     background = colour(data.get("background", "#000000"), "background")
-    state = State(tuple(found), tuple(clips), background, check_measurements(data.get("measurements", [])))
+    measurements = check_measurements(data.get("measurements", []))
+    painting = None if data.get("painting") is None else check_painting(data["painting"])
+    state = State(tuple(found), tuple(clips), background, measurements, painting)
     _check_cuts(reading.store, state)
     camera = data.get("camera")
     slices = None if data.get("slices") is None else check_view(data["slices"])

@@ -124,6 +124,7 @@ class Slicing:
         self._plotter = plotter
         self._view = SliceView()
         self.workspace: Any = None
+        self.painted: Any = None  # of the stack, above all others
 
     # What is seen
 
@@ -223,8 +224,17 @@ class Slicing:
         """Take an image away; with the last one the panes go, too."""
         stack = self.workspace.slices
         stack.remove_layer(image)
-        if not stack.layers:
+        if all(one is self.painted for one in stack.layers):
             self.close()
+
+    def add_painted(self, image: Any, opacity: float) -> None:
+        """Show what is painted above all images."""
+        self.painted = self.workspace.slices.add(image, kind="labels", name="painted", opacity=opacity)
+
+    def remove_painted(self) -> None:
+        """Show it no more."""
+        self.workspace.slices.remove_layer(self.painted)
+        self.painted = None
 
     def put_in_order(self, images: Sequence[Any]) -> None:
         """Lay images over each other in an order, the lowest first."""
@@ -236,7 +246,7 @@ class Slicing:
         if self.workspace is not None:
             self._view = self.view
             self.workspace.remove()
-            self.workspace = None
+            self.workspace = self.painted = None
             ready_views(self._plotter)
 
     def _smooth_alike(self) -> None:

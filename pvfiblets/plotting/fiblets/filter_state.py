@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.query.predicates import Predicate, passes
+from pvfiblets.query.predicates import Listed, Predicate, passes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -162,7 +162,9 @@ def checked_range(limits: Any) -> tuple[float, float]:
 
 
 def as_predicate(condition: Any, make_region: Callable[[Any], Region]) -> Predicate:
-    """Return a predicate; of a region alone, that of streamlines which pass through it."""
+    """Return a predicate; of a region alone, that of streamlines which pass through it, of a mask that of its own."""
+    if isinstance(condition, np.ndarray) and condition.dtype == bool and condition.ndim == 1:
+        return Listed(condition.copy())
     return condition if isinstance(condition, Predicate) else passes(make_region(condition))
 
 

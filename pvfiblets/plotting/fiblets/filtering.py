@@ -22,6 +22,7 @@ from pvfiblets.plotting.fiblets.filter_state import (
     in_groups,
     unique_name,
 )
+from pvfiblets.plotting.fiblets.painted import follow_painted
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
 from pvfiblets.query.predicates import select
@@ -116,10 +117,11 @@ class Filtering(Clipping):
 
         Parameters
         ----------
-        condition : Predicate or region-like
+        condition : Predicate, region-like or numpy.ndarray
             ``regions.passes(…)``, ``regions.ends_in(…)``, ``regions.stays_in(…)`` and what ``&``,
             ``|`` and ``~`` make of them. A region alone, a closed mesh, a label volume or six
-            bounds stand for the streamlines that pass through it. In data coordinates.
+            bounds stand for the streamlines that pass through it. In data coordinates. A mask,
+            (n_streamlines,) bool, stands for itself.
         name : str, optional
             Replaces the condition of the same name.
 
@@ -129,6 +131,54 @@ class Filtering(Clipping):
             The name, for :meth:`remove_condition`.
         """
         return self._add_condition(as_predicate(condition, as_region), name, "include")
+
+    def include_painted(self, live: Any, *, name: str | None = None, **how: Any) -> str:
+        """Show only streamlines that lie to painted regions as is said, and ask again after each stroke.
+
+        Parameters
+        ----------
+        live : LiveRegions
+            Of this actor's fiblets (:class:`pvfiblets.regions.LiveRegions`).
+        name : str, optional
+            Replaces the condition of the same name.
+        **how
+            Of :meth:`.LiveRegions.select`: ``include``, ``exclude``, ``ends_in``, ``stays_in``, ``in_order``, each
+            names of regions.
+
+        Returns
+        -------
+        str
+            The name, for :meth:`remove_condition`, after which strokes change nothing here.
+
+        Raises
+        ------
+        KeyError
+            If there is no region of a name.
+        ValueError
+            If the painted regions are about other fiblets.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> from pvfiblets import Streamlines, regions
+        >>> lines = [np.array([(0, y, 0), (9, y, 0)], float) for y in (1, 5)]
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> actor = pl.add_fiblets(Streamlines.from_list(lines))
+        >>> painter = regions.RegionPainter(((10, 10, 3), np.eye(4)))
+        >>> region = painter.add("A")
+        >>> live = regions.LiveRegions(actor.fiblets, painter)
+        >>> _ = painter.paint("A", (4, 5, 0), 1.0)
+        >>> name = actor.include_painted(live, include="A")
+        >>> actor.shown.tolist()
+        [False, True]
+        >>> _ = painter.paint("A", (4, 1, 0), 1.0)
+        >>> actor.shown.tolist()
+        [True, True]
+        """
+        if live.fiblets is not self._data:
+            raise ValueError("live is of other fiblets; make it of this actor's: regions.LiveRegions(actor.fiblets, …)")
+        return follow_painted(self, live, name, how)
 
     def exclude(self, condition: Any, *, name: str | None = None) -> str:
         """Hide streamlines for which a condition holds; parameters and result as for :meth:`include`."""

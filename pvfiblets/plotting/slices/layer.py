@@ -81,6 +81,13 @@ class SliceLayer(SliceSettings):
         """Call that whenever another picture is needed."""
         self._changed = changed
 
+    def data_changed(self) -> None:
+        """Show the image's values anew, which somebody has changed in place."""
+        for one in self._resamplers.values():
+            one.changed()
+        if self._changed is not None:
+            self._changed()
+
     def _checked(self, name: str, value: Any) -> Any:
         if name == "index" and not -self.n_volumes <= value < self.n_volumes:
             raise ValueError(

@@ -49,7 +49,7 @@ class Resampler:
         self._n = values.shape[3] if values.ndim == 4 else 1
         flat = values.reshape(-1, self._n, order="F") if values.ndim == 4 else values.reshape(-1, order="F")
         self._flat = np.ascontiguousarray(flat)  # kept: VTK's array is a view of it
-        image = vtkImageData()
+        image = self._image = vtkImageData()
         image.SetDimensions(*values.shape[:3])
         image.GetPointData().SetScalars(numpy_to_vtk(self._flat))
         self._inverse = inverse
@@ -61,6 +61,11 @@ class Resampler:
         self._reslice.AutoCropOutputOff()
         self._reslice.TransformInputSamplingOff()
         self._reslice.BorderOn()  # half a voxel beyond the centres of the outer ones, as far as they reach
+
+    def changed(self) -> None:
+        """Take note that values, of which there is no copy here, have changed."""
+        self._image.GetPointData().GetScalars().Modified()
+        self._image.Modified()
 
     def at(self, grid: PlaneGrid, interpolation: str = "linear") -> npt.NDArray[np.float64]:
         """Return what the image is at the pixels of a plane.

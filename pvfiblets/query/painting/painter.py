@@ -241,6 +241,13 @@ class RegionPainter:
             open_ &= near
         return self._put(name, self._grown(at, open_, plane))
 
+    def set_voxels(self, name: str, voxels: npt.ArrayLike) -> Stroke:
+        """Give a region some `voxels` more: ``(n,)`` places in the flat grid, in C order."""
+        places = np.asarray(voxels)
+        if places.dtype.kind not in "iu" or places.ndim != 1 or not self._holds(places):
+            raise ValueError(f"voxels are {places.dtype} of shape {places.shape}; give whole numbers (n,) in the grid")
+        return self._put(name, np.unique(places.astype(np.int64)))
+
     def clear(self, name: str) -> Stroke:
         """Take all voxels out of a region."""
         return self._put(None, np.flatnonzero(self.labels.ravel() == self.label(name)))
@@ -253,7 +260,7 @@ class RegionPainter:
             return None
         last = self._done.pop()
         self._undone.append(last)
-        return self._apply(Stroke(last.voxels, last.after, last.before))
+        return self.apply(Stroke(last.voxels, last.after, last.before))
 
     def redo(self) -> Stroke | None:
         """Do the stroke again that was undone last; None if there is none."""
@@ -261,7 +268,7 @@ class RegionPainter:
             return None
         last = self._undone.pop()
         self._done.append(last)
-        return self._apply(last)
+        return self.apply(last)
 
     # --------------------------------------------------------------------------------------------------------- files
 
@@ -340,14 +347,18 @@ class RegionPainter:
         if len(voxels):
             self._done = [*self._done, stroke][-MOST_STEPS:]
             self._undone = []
-            self._apply(stroke)
+            self.apply(stroke)
         return stroke
 
-    def _apply(self, stroke: Stroke) -> Stroke:
+    def apply(self, stroke: Stroke) -> Stroke:
+        """Have voxels as a stroke leaves them, as whoever keeps strokes of its own does; there is no step to undo."""
         self.labels.reshape(-1)[stroke.voxels] = stroke.after
         for listener in list(self.listeners):
             listener(stroke)
         return stroke
+
+    def _holds(self, places: npt.NDArray[Any]) -> bool:
+        return not len(places) or (int(places.min()) >= 0 and int(places.max()) < self.grid.n_voxels)
 
     def _voxels(self, places: npt.NDArray[np.float64]) -> Ints:
         return np.floor((places - self.grid.corner) @ self.grid.linear.T).astype(np.int64)

@@ -1,0 +1,137 @@
+"""Regions painted on slices: voxels, undo, sessions, files, and the streamlines that pass them."""
+
+from __future__ import annotations
+
+import nibabel
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.web import session
+from pvfiblets.web.history import History
+from pvfiblets.web.script import as_script
+from tests.web.test_slicing import scene  # noqa: F401 - a fixture
+
+
+@pytest.fixture
+def painted(scene):  # noqa: F811
+    """Return a scene with sixty lines and an image of 16 voxels of 4 mm, and one empty region."""
+    scene.open("lines.fiblets")
+    scene.open("head.nii.gz", "image")
+    assert scene.add_painted().name == "region 1"
+    return scene
+
+
+def shown(scene):  # noqa: F811
+    return np.flatnonzero(scene.actor(scene.layers[0].id).shown)
+
+
+def test_a_brush_filters_streamlines_at_once_and_one_gesture_is_one_step(painted):
+    history = History(painted, together=0.0)
+    painted.set_painted("region 1", use="passes")
+    assert len(shown(painted)) == 60  # of no voxel nothing is asked
+    # Lines lie at y = 0, 4, ... 36 and z = 0, 4, ... 20, from x = 0 on: voxels of the image's grid.
+    history.held = True
+    for y in (8.0, 12.0, 16.0):
+        painted.paint("brush", "region 1", [[4.0, y, 8.0]], 1.0, None, "first")
+    history.held = False
+    ids = [10 * 2 + k for k in (2, 3, 4)]
+    assert shown(painted).tolist() == ids
+    assert painted.voxels_of("region 1") == 3
+    painted.paint("erase", "region 1", [[4.0, 8.0, 8.0]], 1.0, 2, "second")
+    assert shown(painted).tolist() == ids[1:]
+    painted.set_painted("region 1", use="misses")
+    assert len(shown(painted)) == 58
+    for wanted in (ids[1:], ids, range(60)):
+        history.undo()
+        assert shown(painted).tolist() == list(wanted)
+    history.redo()
+    assert shown(painted).tolist() == ids
+    painted.set_painted("region 1", use="ends_in")
+    assert not len(shown(painted))  # all begin at x = 0 and end at 10 or more
+
+
+def test_slices_show_what_is_painted_in_its_colour(painted):
+    painted.set_painted("region 1", color="#ff0000", name="left <i>arm</i>")
+    image = next(layer for layer in painted.layers if layer.kind == "image")
+    painted.show(image.id, False)
+    painted.show(painted.layers[0].id, False)
+    painted.paint("brush", "left <i>arm</i>", [[30.0, 30.0, 30.0]], 6.0)
+    painted.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False, layout="axial")
+
+    def red():
+        picture = painted.screenshot().astype(int)
+        return int(((picture[..., 0] > 100) & (picture[..., 1] < 40)).sum())
+
+    workspace = painted.slicing.workspace
+    pixels = np.count_nonzero(painted.canvas.painter.labels[:, :, 8]) * (4.0 / workspace.panes["axial"].scale) ** 2
+    assert workspace.values().images["painted"] == (1, "left <i>arm</i>")
+    # Slices go through the middle of voxel 7.5 here: either of both.
+    assert red() == pytest.approx(pixels, rel=0.3)
+    painted.set_painted("left <i>arm</i>", visible=False)
+    assert red() == 0
+    painted.remove_painted("left <i>arm</i>")
+    assert painted.state.painting is None
+    assert [one.name for one in workspace.slices.layers] == ["head.nii.gz"]
+
+
+def test_fills_stay_in_their_slice_and_tools_are_checked(painted):
+    corners = [[8.0, 8.0, 20.0], [40.0, 8.0, 20.0], [40.0, 40.0, 20.0], [8.0, 40.0, 20.0], [8.0, 8.0, 20.0]]
+    painted.paint("brush", "region 1", corners, 1.0, 2)
+    painted.paint("fill", "region 1", [[20.0, 20.0, 20.0]], 1.0, 2)
+    assert painted.voxels_of("region 1") == 81
+    second = painted.add_painted().name
+    painted.paint("fill", second, [[20.0, 20.0, 20.0]], 1.0, 2)
+    assert (painted.voxels_of("region 1"), painted.voxels_of(second)) == (0, 81)
+    with pytest.raises(ValueError, match="no tool"):
+        painted.paint("spray", second, corners, 1.0)
+    with pytest.raises(KeyError, match="no painted region"):
+        painted.paint("brush", "other", corners, 1.0)
+    with pytest.raises(ValueError, match="radius"):
+        painted.paint("brush", second, corners, -1.0)
+    with pytest.raises(ValueError, match="already"):
+        painted.set_painted(second, name="region 1")
+    with pytest.raises(ValueError, match="use"):
+        painted.set_painted(second, use="likes")
+
+
+def test_regions_are_saved_as_labels_with_names(painted, folder):
+    painted.paint("brush", "region 1", [[20.0, 20.0, 20.0]], 5.0)
+    painted.save_painting("mine.nii.gz")
+    image = nibabel.load(folder / "mine.nii.gz")
+    np.testing.assert_array_equal(image.affine, np.diag([4.0, 4.0, 4.0, 1.0]))
+    np.testing.assert_array_equal(np.asarray(image.dataobj), painted.canvas.painter.labels)
+    assert "region 1" in (folder / "mine.tsv").read_text()
+    with pytest.raises(PermissionError, match="outside"):
+        painted.save_painting("../mine.nii.gz")
+    with pytest.raises(ValueError, match=r"\.nii"):
+        painted.save_painting("mine.txt")
+    assert sorted(path.name for path in folder.iterdir() if path.name.startswith(".")) == []
+
+
+def test_sessions_and_scripts_have_the_regions(painted, folder):
+    painted.set_painted("region 1", use="passes", color="#00ff00")
+    painted.paint("brush", "region 1", [[4.0, 8.0, 8.0], [4.0, 16.0, 8.0]], 1.0)
+    painted.set_slices(position=[6.0, 14.0, 8.0])
+    wanted, labels = shown(painted), painted.canvas.painter.labels.copy()
+    told, picture = session.to_dict(painted), painted.screenshot()
+    text = as_script(painted, str(folder / "found.png"))
+    text = text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    exec(compile(text, "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    painted.remove_painted("region 1")
+    assert len(shown(painted)) == 60
+    session.from_dict(painted, told)
+    np.testing.assert_array_equal(painted.canvas.painter.labels, labels)
+    assert shown(painted).tolist() == wanted.tolist()
+    one = told["painting"]["regions"][0]
+    for wrong, said in (
+        ({"shape": [4, 4]}, "shape"), ({"affine": [0.0] * 16}, "inverted"), ({"regions": []}, "regions"),
+        ({"regions": [one, one]}, "same name"), ({"regions": [one, {**one, "name": "b"}]}, "one at most"),
+        ({"regions": [{**one, "runs": [5, 3]}]}, "rising"), ({"regions": [{**one, "runs": [0, 10**9]}]}, "runs"),
+        ({"regions": [{**one, "use": "x"}]}, "use"),
+    ):  # fmt: skip
+        with pytest.raises(session.SessionError, match=said):
+            session.from_dict(painted, {**told, "painting": {**told["painting"], **wrong}})
+    assert shown(painted).tolist() == wanted.tolist()
