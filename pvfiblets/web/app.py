@@ -28,6 +28,7 @@ from pvfiblets.web.first_document import first_document
 from pvfiblets.web.history import History
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
+from pvfiblets.web.painting_tab import PaintActions
 from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
@@ -42,7 +43,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "regions.js", "slices.js", "connection.js")
+SCRIPTS = ("pvfiblets.js", "regions.js", "slices.js", "painting.js", "connection.js")
 
 
 class Explorer(TrameApp):
@@ -94,6 +95,7 @@ class Explorer(TrameApp):
         self.selecting = SelectionActions(self)
         self.files = FileActions(self)
         self.slices = SliceActions(self)
+        self.painting = PaintActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
@@ -136,6 +138,8 @@ class Explorer(TrameApp):
             "slide": self.sliders.slide,
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
+            "paint": self.painting.paint,
+            "paint_end": self.painting.end,
             "release": self.sliders.release,
         }
         for name, function in named.items():
@@ -199,6 +203,7 @@ class Explorer(TrameApp):
             self.filtering.refresh()
             self.selecting.refresh()
             self.slices.refresh()
+            self.painting.refresh()
         self.stream.request()
 
     def _show_info(self) -> None:

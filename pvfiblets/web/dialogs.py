@@ -16,6 +16,7 @@ KEYS = (
     ("M", "measure between two points"),
     ("X", "slices, or the 3-D view alone"),
     ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
+    ("N E F", "on slices: brush, erase, fill"),
     ("V", "show or hide the chosen layer"),
     ("Del", "remove the chosen layer"),
     ("Ctrl+Z  Ctrl+Y", "undo, redo"),

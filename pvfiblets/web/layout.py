@@ -7,8 +7,9 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
-from pvfiblets.web import dialogs, panels, slices_tab, tabs
+from pvfiblets.web import dialogs, painting_tab, panels, slices_tab, tabs
 from pvfiblets.web.elements import html, v3
+from pvfiblets.web.painting_tab import PAINTING
 
 VIEW = "view"
 VIEWS = (
@@ -34,6 +35,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
 .pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;
   text-shadow: 0 0 3px #fff, 0 0 3px #fff }
+.pv-brush { position: absolute; border: 1.5px solid; border-radius: 50%; pointer-events: none;
+  box-shadow: 0 0 0 1px #0008, inset 0 0 0 1px #0008 }
 .pv-seams { position: absolute; inset: 0; z-index: 1; pointer-events: none }
 .pv-seams div { position: absolute; box-shadow: 0 0 0 .5px #8888; }
 .pv-told { position: absolute; left: 8px; bottom: 6px; z-index: 2; max-width: 45%; font: 12px Roboto, sans-serif;
@@ -226,7 +229,10 @@ def _view(app: Any) -> None:
                         title=("h.name === 'center' ? 'Move ' + m.name : 'Size of ' + m.name",),
                     )  # fmt: skip
         # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
-        html.Div(v_if="tool !== 'rotate'", classes="pv-over", id="pv-over", data_tool=("tool",))
+        html.Div(
+            v_if=f"tool !== 'rotate' && !{PAINTING}", classes="pv-over", id="pv-over", data_tool=("tool",)
+        )
+        painting_tab.over(app)
         slices_tab.over()
         with html.Div(
             v_if="['3d', 'beside'].includes(slicing.layout)", style=(

@@ -299,6 +299,7 @@ class Scene(
             found = self._add(layer, f"open {layer.name}")
         if first and len(self.layers) > 1:
             self.reset()  # an image is larger than what it has tracts of, and its view has become smaller
+            self.plotter.camera.zoom(1.4)  # VTK has room about it for the box's corners
         return found
 
     def open(

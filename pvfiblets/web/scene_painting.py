@@ -102,7 +102,8 @@ class ScenePainting:
             else:
                 raise ValueError(f"{shown(key)} of a painted region cannot be {shown(value)}")
         new = replace(old, **wanted)
-        self.become(replace(self.state, painting=painting.with_region(old, new)), f"painted region {new.name}")
+        what = f"{', '.join(wanted) or 'nothing'} of {new.name}"
+        self.become(replace(self.state, painting=painting.with_region(old, new)), what)
         return new
 
     def remove_painted(self, name: str) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.web import painting_tab
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
@@ -47,7 +48,7 @@ class SliceActions(Actions):
             "cross_hair": view.cross_hair, "thickness": short(view.thickness),
             "position": [f"{part:.1f}" for part in view.position or ()],
             "voxel": [str(part) for part in workspace.voxel or ()],
-            "values": [[name, _told(value)] for name, value in values.items()],
+            "values": [[name, _told(value)] for name, value in values.items() if value != (0, "0")],
             "boxes": app.scene.slicing.boxes(), "volume": "",
         }  # fmt: skip
 
@@ -254,6 +255,7 @@ def build(app: Any) -> None:
         with html.Div(v_for="(row, i) in slicing.values", key="i", classes="pv-row", data_under=("row[0]",)):
             html.Label("{{ row[0] }}", classes="text-truncate", title=("row[0]",))
             html.Div("{{ row[1] }}", classes="pv-value")
+        painting_tab.build(app)
         html.Div("Panes", classes="pv-head")
         with html.Div(classes="pv-row"):
             html.Label("Left is", title="Whether the patient's right or left is on the left of a pane")

@@ -34,6 +34,9 @@ class Page:
     export_to: str = "folder"
     export_name: str = ""  # of the file; empty: after the layer
     show_regions: bool = True
+    brush: float = 3.0  # radius, mm
+    brush_deep: bool = False  # beyond the slice
+    painting_name: str = ""
 
     toast_number: int = 0  # of the sentence: pages remember which they have shown
     layers: list[Record] = field(default_factory=list)
@@ -59,6 +62,7 @@ class Page:
     placing: int = 0  # the row of the region that the next click places
     placing_name: str = ""
     selection: Record = field(default_factory=dict)
+    painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
     slicing: Record = field(default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": ""})
     info: list[Record] = field(default_factory=list)
     frame: str = ""
@@ -92,6 +96,9 @@ WRITABLE: dict[str, type] = {
     "export_to": str,
     "export_name": str,
     "show_regions": bool,
+    "brush": float,
+    "brush_deep": bool,
+    "painting_name": str,
 }
 """Fields that browsers may write, and their types."""
 

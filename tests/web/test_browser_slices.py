@@ -81,3 +81,51 @@ def test_a_t1_is_opened_gone_through_and_found_again(visit):
     here.page.evaluate("(text) => window.trame.trigger('load_session', [text])", text)
     here.wait(lambda: here.state("slicing")["shown"], "slices again")
     assert told(here) == [20.0, 24.0, 28.0]
+
+
+def test_a_painted_region_filters_and_is_kept(visit, tmp_path):
+    here = visit("lines.fiblets")
+    sliced(here)
+    here.page.click("[data-layout-button=axial]")
+    here.wait(lambda: [one["name"] for one in here.state("slicing")["boxes"]] == ["axial"], "one view")
+    # Lines run along x at y = 0, 4, ... 36 and z = 0, 4, ... 20; the slice is at z = 20.
+    for axis, text in enumerate(("20", "16", "20")):
+        here.page.fill(f"[data-place=position] input >> nth={axis}", text)
+        here.press("Tab")
+    here.wait(lambda: told(here) == [20.0, 16.0, 20.0], "the point")
+    here.page.click("[data-action=add-painted]")
+    here.page.wait_for_selector("#pv-paint[data-tool=brush]")
+    here.page.fill("[data-painted] [data-field=name]", "left <b>arm</b>")
+    here.press("Tab")
+    here.wait(lambda: here.state("painting")["active"] == "left <b>arm</b>", "the name")
+    here.page.fill("input[aria-label='Radius, mm']", "1")
+    here.press("Tab")
+    here.wait(lambda: here.state("brush") == 1, "the radius")
+    here.page.click("[data-painted] [data-select=use] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
+    before = here.rests()
+    # At the cross-hair and a voxel towards the front, which is up.
+    view = here.page.locator("#pv-view").bounding_box()
+    mm = here.state("slicing")["boxes"][0]["mm"]
+    middle, voxel = 26.0, 4.0 / mm  # y of the image's middle, and shares of the picture's height
+    at = 0.5 - (16.0 - middle) / mm
+    across = 0.5 + (30.0 - 20.0) / mm * view["height"] / view["width"]  # the patient's right is on the left
+    here.trace([(across, at), (across, at - voxel)], steps=3)
+    here.wait(lambda: here.state("painting")["counted"] == "2 of 60 streamlines are shown", "what passes")
+    assert here.state("painting")["regions"][0]["voxels"] == "2"
+    here.wait(lambda: here.state("undo_label").startswith("paint"), "a step to undo")
+    here.press("Escape")
+    here.changed(before)
+    here.press("Control+z")
+    here.wait(lambda: here.state("painting")["counted"] == "60 of 60 streamlines are shown", "all")
+    here.press("Control+y")
+    here.wait(lambda: here.state("painting")["counted"] == "2 of 60 streamlines are shown", "what passes")
+    here.page.fill("#painting-name", "arms")
+    here.page.click("[data-action=save-painted]")
+    here.wait(lambda: (here.served.root / "arms.nii.gz").is_file(), "the file")
+    assert "left <b>arm</b>" in (here.served.root / "arms.tsv").read_text()
+    here.page.reload()
+    here.ready()
+    here.tab("slices")
+    assert here.page.locator("[data-value=painted-counted]").inner_text() == "2 of 60 streamlines are shown"
+    assert here.page.locator("[data-painted] [data-field=name]").input_value() == "left <b>arm</b>"
