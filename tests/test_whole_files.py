@@ -128,3 +128,88 @@ sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))
     assert done.stderr.count("\n") == 1
     assert f"{target}: it is larger than files may be here" in done.stderr
     assert list(target.parent.iterdir()) == []
+
+
+EVERY_WRITER = """
+import os, resource, signal, sys
+from pathlib import Path
+import pvfiblets
+from pvfiblets import formats
+folder, limit = Path(sys.argv[2]), int(sys.argv[3])
+lines = formats.read(sys.argv[1])
+fiblets = pvfiblets.compress(lines, exact=True)
+if limit:
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+for suffix in sys.argv[4:]:
+    path = folder / f"lines{suffix}"
+    path.write_bytes(b"old")
+    try:
+        fiblets.save(path) if suffix == ".fiblets" else formats.write(path, lines)
+    except OSError as error:
+        print(error.errno, error.filename, error.strerror)
+    assert path.read_bytes() == b"old", suffix
+    assert [found.name for found in folder.iterdir()] == [path.name], suffix
+    path.unlink()
+"""
+
+
+@pytest.fixture(params=["limit", "disk"])
+def too_small(request, tmp_path):
+    """A folder for files of at most 64 kB, and that limit where the system keeps it: 0 where the disk is as small."""
+    if request.param == "limit":
+        if sys.platform == "win32":
+            pytest.skip("no limit on the size of files")
+        yield tmp_path, 1 << 16
+        return
+    if not sys.platform.startswith("linux") or os.geteuid() != 0:
+        pytest.skip("only root can make a small disk")
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", tmp_path], check=False).returncode:
+        pytest.skip("no disk can be mounted here")
+    yield tmp_path, 0
+    subprocess.run(["umount", tmp_path], check=True)
+
+
+def test_every_writer_says_what_was_needed_and_leaves_the_old_file(too_small, tmp_path_factory):
+    """VTK's own included, which do not tell, print pages, and delete what they could not finish."""
+    from pvfiblets import formats
+    from pvfiblets.synthetic import brain_streamlines
+
+    folder, limit = too_small
+    source = tmp_path_factory.mktemp("source") / "source.trx"
+    formats.write(source, brain_streamlines(400, 1.0))
+    command = [sys.executable, "-c", EVERY_WRITER, str(source), str(folder), str(limit), *SUFFIXES]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=200)
+    assert (done.returncode, done.stderr) == (0, "")
+    said = done.stdout.splitlines()
+    assert len(said) == len(SUFFIXES)
+    for suffix, sentence in zip(SUFFIXES, said, strict=True):
+        assert sentence.startswith(f"{errno.EFBIG if limit else errno.ENOSPC} {folder}/lines{suffix} ")
+        assert ("larger than files may be here" if limit else "no space is left for it") in sentence
+        if suffix != ".vtp":  # nobody knows what zlib will make of it
+            assert "it takes 0." in sentence, sentence
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no SIGKILL")
+@pytest.mark.parametrize("suffix", [".fiblets", ".trk"])
+def test_a_killed_conversion_leaves_source_and_old_file_whole(lines, tmp_path, suffix):
+    """In the middle of writing, by a signal that nothing can catch; afterwards the same conversion goes through."""
+    code = """
+import os, signal, sys
+from pathlib import Path
+from pvfiblets import whole_files
+from pvfiblets.cli import main
+before = Path.replace
+Path.replace = lambda self, to: os.kill(os.getpid(), signal.SIGKILL)  # all is written, and has not its name yet
+sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))
+"""
+    source, target = tmp_path / "source.tck", tmp_path / f"lines{suffix}"
+    tck.write(source, lines)
+    whole = source.read_bytes()
+    target.write_bytes(b"old")
+    done = subprocess.run([sys.executable, "-c", code, str(source), str(target)], timeout=200, check=False)
+    assert done.returncode == -9
+    assert source.read_bytes() == whole
+    assert target.read_bytes() == b"old"
+    assert main(["convert", str(source), str(target), "--quiet"]) == 0
+    np.testing.assert_allclose(pvfiblets.read(target).points, lines.points, atol=1e-3)

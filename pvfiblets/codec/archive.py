@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import io
 import json
+import math
 import os
 import struct
 import tokenize
@@ -78,7 +79,8 @@ def write_archive(
     OSError
         If it cannot be written; it names the path, and says what to do.
     """
-    with replacing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+    size = sum(math.prod(member.shape) * member.dtype.itemsize for member in members.values())
+    with replacing(path, size) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         layout: dict[str, Any] = {"separators": (",", ":")} if small else {"indent": 1}
         _write(archive, HEADER, [json.dumps(header, allow_nan=False, **layout).encode()], aligned=not small)
         for name, member in members.items():

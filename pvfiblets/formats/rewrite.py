@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.whole_files import naming_target
 
 __all__ = ["rewrite"]
@@ -19,7 +21,15 @@ def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]
     """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
     folder = Path(target).resolve().parent
-    with naming_target(target), gathered(formats.iter_chunks(source, max_points), folder) as streamlines:
+    gone = [0]
+
+    def counted() -> Iterator[Streamlines]:
+        for chunk in formats.iter_chunks(source, max_points):
+            gone[0] += chunk.points.nbytes + sum(values.nbytes for values in chunk.per_point.values())
+            yield chunk
+
+    # Once in parts, once put together.
+    with naming_target(target, lambda: 2 * gone[0]), gathered(counted(), folder) as streamlines:
         lost = formats.write(target, streamlines)
         n_streamlines, n_points = len(streamlines), streamlines.n_points
         dropped = dict(streamlines.dropped)

@@ -45,7 +45,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
             f"{len(streamlines)} streamlines, or {n} points in one, exceed the format's 32 bits; write .trx"
         )
     header["nb_streamlines"] = len(streamlines)
-    with replacing(path) as file:
+    size = len(header.tobytes()) + 4 * (len(streamlines) * (1 + n_properties) + streamlines.n_points * (3 + n_scalars))
+    with replacing(path, size) as file:
         file.write(header.tobytes())
         for start, stop in streamlines.blocks(_BLOCK_POINTS):
             file.write(_records(streamlines, from_ras, points, values, start, stop).data)

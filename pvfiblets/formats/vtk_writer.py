@@ -2,27 +2,54 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.whole_files import replacing
 
 
-def write_with(writer: Any, path: str | PathLike[str], streamlines: Streamlines) -> None:
+def write_with(writer: Any, path: str | PathLike[str], streamlines: Streamlines, *, compressed: bool = False) -> None:
     """Let a VTK writer write the streamlines as poly data.
+
+    Parameters
+    ----------
+    writer : vtkAlgorithm
+    path : str or PathLike
+    streamlines : Streamlines
+    compressed : bool
+        Whether the file takes fewer bytes than the arrays.
 
     Raises
     ------
+    OSError
+        If the file cannot be written; it says why, and how many bytes it takes.
     FibletsError
-        If VTK reports a failure.
+        If VTK reports another failure.
     """
-    writer.SetInputData(streamlines.to_polydata())
-    with replacing(path) as file:
+    data = streamlines.to_polydata()
+    size = data.GetActualMemorySize() * 1024
+    writer.SetInputData(data)
+    said: list[str] = []
+    for source in (writer, writer.GetExecutive()):  # else VTK prints pages of its own
+        source.AddObserver("ErrorEvent", lambda *_: said.append("VTK could not write the file"))
+    with replacing(path, None if compressed else size) as file:
         writer.SetFileName(file.name)
         done = writer.Write()
-        size = Path(file.name).stat().st_size
-        if done != 1 or size == 0:
-            raise FibletsError(f"{path}: VTK could not write the file; is the disk full?")
+        with suppress(FileNotFoundError):  # VTK deletes what it cannot finish
+            if done == 1 and not said and Path(file.name).stat().st_size > 0:
+                return
+        _find_cause(file, size)
+        raise FibletsError(f"{path}: VTK could not write the file; write .trx or .trk, which other code writes")
+
+
+def _find_cause(file: BinaryIO, size: int) -> None:
+    """Raise the system's error, which VTK does not tell, if there is no room for `size` bytes."""
+    file.seek(0, os.SEEK_END)
+    for first in range(0, size, 1 << 20):
+        file.write(bytes(min(1 << 20, size - first)))
+    file.flush()

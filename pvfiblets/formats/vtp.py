@@ -141,4 +141,4 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToZLib()
     writer.SetHeaderTypeToUInt64()
-    write_with(writer, path, streamlines)
+    write_with(writer, path, streamlines, compressed=True)
