@@ -59,6 +59,8 @@ def as_raycast_volume(
           files that say so, and of MetaImage files always, coordinates are LPS+ and are turned to RAS+. Any other, such
           as ``.raw``: bare numbers, the first axis running fastest; they need ``shape`` and ``dtype``.
         - A :class:`.RaycastVolume`, or anything else with ``values`` and ``affine``.
+
+        What has one voxel along an axis, as a slice has, becomes as thick as this voxel: two of the same value.
     scalars : str or array_like, optional
         Of images of VTK: the name of an array, or numbers, one for each point or cell. Default: the active ones.
     spacing : float or array_like, optional
@@ -117,7 +119,8 @@ def as_raycast_volume(
             found = _of_object(source, scalars)
         values, own, name = found
         values, colours = _apart(values)
-        volume = RaycastVolume(values, _placed(own, *given), name=name, colours=colours)
+        values, colours, place = _thick(values, colours, _placed(own, *given))
+        volume = RaycastVolume(values, place, name=name, colours=colours)
     return volume if smooth is None else smoothed(volume, smooth, smooth_unit)
 
 
@@ -134,6 +137,19 @@ def _of_object(source: Any, scalars: Any) -> Found:
     if isinstance(source, np.ndarray) or hasattr(source, "__array__") or isinstance(source, (list, tuple)):
         return _of_array(source), np.eye(4), "values"
     raise TypeError(f"rays cannot be cast through a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _thick(values: Any, colours: Any, affine: Any) -> tuple[Any, Any, Array]:
+    """Give what has one voxel along an axis the thickness of this voxel: rays are cast between the middles of two."""
+    place = np.array(affine, np.float64)
+    if np.ndim(values) != 3 or np.size(values) == 0:
+        return values, colours, place
+    for axis in range(3):
+        if values.shape[axis] == 1:
+            values = np.repeat(values, 2, axis)
+            colours = None if colours is None else np.repeat(colours, 2, axis)
+            place[:3, 3] -= 0.5 * place[:3, axis]
+    return values, colours, place
 
 
 def _apart(values: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.uint8] | None]:

@@ -99,7 +99,6 @@ def test_volumes_of_one_value(value):
         (BALL.astype(float) + 1e12, "which float32 cannot tell apart"),
         (BALL.astype("M8[s]"), "of type datetime64"),
         (BALL.astype(object), "of type object"),
-        (np.ones((1, 1, 1)), "a 2-D image"),
         (np.ones(4), "three axes"),
         ([[[1, 2], [3]], [[1, 2], [3, 4]]], "rows are of unlike lengths"),
         ((BALL, "here"), "affine='here'; expected a \\(4, 4\\) matrix"),

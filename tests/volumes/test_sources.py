@@ -100,10 +100,6 @@ def test_arrays_that_are_not_there():
         as_raycast_volume(VALUES, scalars="fa")
     with pytest.raises(ValueError, match="'rgb' has 3 numbers per voxel, RGB colours perhaps; one is needed"):
         as_raycast_volume(image(rgb=np.zeros((60, 3), np.uint8)), scalars="rgb")
-    flat = pv.ImageData(dimensions=(4, 4, 1))
-    flat["a"] = np.zeros(16)
-    with pytest.raises(ValueError, match=r"shape \(4, 4, 1\), a 2-D image"):
-        as_raycast_volume(flat)
 
 
 # Arrays, and places that are given
