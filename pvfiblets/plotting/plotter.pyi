@@ -137,6 +137,7 @@ class _AddSlices(Protocol):
         percentiles: tuple[float, float] = (1.0, 99.0), log_scale: bool = False, below: float | None = None,
         above: float | None = None, opacity: float = 1.0, blend: str = "over", interpolation: str = "linear",
         index: int = 0, outline: bool = False, visible: bool = True, name: str | None = None, pickable: bool = True,
+        show_scalar_bar: bool = False, scalar_bar_args: dict[str, Any] | None = None, user_matrix: Any = None,
         reset_camera: bool | None = None, render: bool = True,
     ) -> SliceStack: ...
 

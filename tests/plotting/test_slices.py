@@ -312,3 +312,49 @@ def test_a_closed_plotter_leaves_nothing_alive():
     del slices, plotter
     gc.collect()
     assert gone() is None
+
+
+def test_slices_go_when_the_plotter_is_cleared(plotter):
+    stack = plotter.add_slices(np.random.default_rng(0).random((6, 7, 8)), show_scalar_bar=True)
+    other = plotter.add_slices(np.zeros((4, 4, 4)))
+    plotter.remove_actor(stack["axial"].actor)
+    assert list(plotter.slices) == [stack, other]
+    plotter.show(auto_close=False)
+    plotter.clear()
+    assert list(plotter.slices) == []
+    stack.position = 1.0, 1.0, 1.0
+    plotter.render()
+    again = plotter.add_slices(np.ones((4, 4, 4)))
+    assert list(plotter.slices) == [again]
+
+
+def test_slices_have_a_scalar_bar(plotter):
+    image = np.random.default_rng(0).random((6, 7, 8))
+    bar = {"show_scalar_bar": True, "scalar_bar_args": {"title": "T1"}}
+    stack = plotter.add_slices(image, cmap="hot", clim=(0.2, 0.7), **bar)
+    table = plotter.scalar_bars["T1"].GetLookupTable()
+    assert table.GetTableRange() == (0.2, 0.7)
+    stack.layers[0].clim = 0.0, 3.0
+    stack.layers[0].cmap = "viridis"
+    assert table.GetTableRange() == (0.0, 3.0)
+    np.testing.assert_array_equal(table.values, stack.layers[0].table())
+    stack.remove()
+    assert not plotter.scalar_bars.keys()
+    plotter.add_slices(np.zeros((4, 4, 4), np.uint8), labels={1: ("one", "red")}, show_scalar_bar=True)
+    assert not plotter.scalar_bars.keys()
+
+
+def test_slices_are_moved_and_hidden_as_a_whole(plotter):
+    image = np.random.default_rng(0).random((6, 7, 8))
+    stack = plotter.add_slices(image, user_matrix=np.diag([2.0, 2.0, 2.0, 1.0]))
+    bounds = np.array(plotter.bounds)
+    np.testing.assert_allclose(bounds[1::2] - bounds[::2], [12.0, 14.0, 16.0], atol=1e-6)
+    stack.user_matrix = None
+    bounds = np.array(plotter.bounds)
+    np.testing.assert_allclose(bounds[1::2] - bounds[::2], [6.0, 7.0, 8.0], atol=1e-6)
+    stack.visibility = False
+    assert not any(plane.actor.visibility for plane in stack)
+    stack.visible = True
+    assert all(plane.actor.visibility for plane in stack)
+    with pytest.raises(AttributeError, match="slices have no 'opacity' to set: .*layers"):
+        stack.opacity = 0.5

@@ -57,6 +57,8 @@ class SlicesComponent:
         self._plotter: Any = weakref.proxy(plotter)
         self._stacks: list[SliceStack] = []
         self._workspaces: list[Workspace] = []
+        self._followed: dict[str, tuple[Any, int]] = {}
+        self._bars: dict[int, str] = {}
 
     def __iter__(self) -> Iterator[SliceStack]:
         return iter(tuple(self._stacks))
@@ -85,7 +87,11 @@ class SlicesComponent:
             while stack.name in taken:
                 number += 1
                 stack.name = f"slices {number}"
+        if common["user_matrix"] is not None:
+            stack.user_matrix = common["user_matrix"]
         self._enter(stack, bool(common["pickable"]), common["reset_camera"])
+        if common["show_scalar_bar"] and stack.layers[0].kind == "scalars":
+            self._show_bar(stack, common["scalar_bar_args"] or {})
         if common["render"]:
             self._plotter.render()
         return stack
@@ -313,16 +319,52 @@ class SlicesComponent:
             self._plotter.reset_camera(render=False)
         self._stacks.append(stack)
         stack.removed_by(self._remove)
+        address = renderer.GetAddressAsString("")
+        if address not in self._followed:
+            # `Renderer.remove_actor` and `clear` end in Modified(): no other sign is given.
+            self._followed[address] = renderer, renderer.AddObserver("ModifiedEvent", self._forget_removed)
+
+    def _forget_removed(self, *_: Any) -> None:
+        """Forget slices of which none is in its renderer any more."""
+        for stack in self:
+            shown = [plane for plane in stack if plane.renderer is not None]
+            if shown and not any(plane.renderer.HasViewProp(plane.actor) for plane in shown):
+                stack.remove()
+
+    def _show_bar(self, stack: SliceStack, arguments: dict[str, Any]) -> None:
+        """Add a scalar bar of the first layer, which follows it."""
+        table = pv.LookupTable()
+        known, title = weakref.ref(stack), arguments.get("title", stack.layers[0].name)
+
+        def follow() -> None:
+            alive = known()
+            if alive is not None and alive.layers:
+                layer = alive.layers[0]
+                table.log_scale = False
+                table.values = layer.table()
+                table.scalar_range = layer.window
+                table.log_scale = bool(layer.log_scale)
+
+        follow()
+        self._plotter.add_scalar_bar(render=False, lookup_table=table, **{**arguments, "title": title})
+        self._bars[id(stack)] = title
+        stack.watch(follow)
 
     def _remove(self, stack: SliceStack) -> None:
         if stack in self._stacks:
             self._stacks.remove(stack)
+        title = self._bars.pop(id(stack), None)
+        if title is not None and title in self._plotter.scalar_bars:
+            self._plotter.remove_scalar_bar(title, render=False)
         for plane in stack:
             plane.leave()
             self._plotter.remove_actor(plane.actor, reset_camera=False, render=False)
 
     def __plotter_close__(self) -> None:
         """Forget all; PyVista calls this before the render window goes."""
+        for renderer, tag in self._followed.values():
+            renderer.RemoveObserver(tag)
+        self._followed.clear()
         while self._workspaces:
             self._workspaces.pop().stop()
         for stack in self:

@@ -164,5 +164,10 @@ class SliceCommon(Settings):
 
     name = Argument(None, "Replaces the slices of the same name.", kind="str | None")
     pickable = Argument(True, "Whether pickers find the slices.", kind="bool")
+    show_scalar_bar = Argument(
+        False, "Show the colours of the first image's window; those without a colour map have none.", kind="bool"
+    )
+    scalar_bar_args = Common.DECLARED["scalar_bar_args"]
+    user_matrix = Common.DECLARED["user_matrix"]
     reset_camera = Common.DECLARED["reset_camera"]
     render = Common.DECLARED["render"]

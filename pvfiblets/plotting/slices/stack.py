@@ -59,6 +59,15 @@ class SliceStack:
         self._views: list[tuple[Any, Callable[[], tuple[Array, Array] | None]]] = []
         self._watchers: list[Callable[[], None]] = []
         self._removal: Callable[[SliceStack], None] | None = None
+        self._matrix: Array | None = None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_") and name != "name" and not isinstance(getattr(type(self), name, None), property):
+            raise AttributeError(
+                f"slices have no {name!r} to set: there are position, voxel, frame, visible and user_matrix; colours "
+                "and opacity are those of slices.layers[0]"
+            )
+        object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
         where = ", ".join(f"{part:g}" for part in self._position)
@@ -270,6 +279,34 @@ class SliceStack:
         self.changed()
 
     @property
+    def visible(self) -> bool:
+        """Whether any plane is shown; set for all of them. ``visibility`` is the same."""
+        return any(plane.visible for plane in self)
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
+        for plane in self:
+            plane.visible = visible
+
+    visibility = visible
+
+    @property
+    def user_matrix(self) -> Array | None:
+        """``(4, 4)`` from the images' mm, of which ``position`` is, to those of the 3-D view."""
+        return None if self._matrix is None else self._matrix.copy()
+
+    @user_matrix.setter
+    def user_matrix(self, matrix: Any) -> None:
+        import pyvista as pv
+
+        self._matrix = None if matrix is None else pv.Transform(matrix).matrix
+        for plane in self:
+            self._move(plane)
+
+    def _move(self, plane: SlicePlane) -> None:
+        plane.actor.user_matrix = np.eye(4) if self._matrix is None else self._matrix
+
+    @property
     def planes(self) -> Mapping[str, SlicePlane]:
         """All planes by name."""
         return MappingProxyType(self._planes)
@@ -278,6 +315,7 @@ class SliceStack:
         """Return another plane, at any angle, through the position; it is in no renderer yet."""
         plane = SlicePlane(self, name, turned((self._frame[:, 0], self._frame[:, 1]), normal))
         self._planes[name] = plane
+        self._move(plane)
         plane.update()
         return plane
 
