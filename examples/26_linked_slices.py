@@ -26,9 +26,11 @@ def main(folder: Path) -> None:
 
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 1000), shape=(2, 2))
     plotter.set_background("black", all_renderers=True)
-    workspace = plotter.slices.workspace(counts, thickness=4.0, below=1.0)
+    workspace = plotter.slices.workspace(counts, thickness=4.0)
     top = workspace.slices.layers[0].clim[1]
-    workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, top), below=1.0, opacity=0.6)
+    few = 0.15 * top  # nearly black, where it would hide lines of the 3-D view
+    workspace.slices.layers[0].below = few
+    workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, top), below=few, opacity=0.6)
     plotter.add_fiblets(fiblets, lighting=False)
     workspace.position = counts.affine[:3] @ (*(0.5 * np.array(counts.values.shape)), 1.0) + (8.0, -10.0, 4.0)
     workspace.add_contours(pv.Sphere(radius=25.0, center=workspace.position), "white")

@@ -29,6 +29,8 @@ FILLED = 1.05
 MOST_PIXELS = 4096
 GAP = 6.0
 """Pixels of the cross-hair's middle that stay free."""
+BACKING = 0.65
+"""Opacity of what lies behind words."""
 BEFORE = 1.0
 """mm from the slab to the cross-hair and to the slice."""
 FARTHEST = 1000.0
@@ -67,7 +69,11 @@ class Pane:
         self._words = vtkCornerAnnotation()
         self._words.SetMaximumFontSize(15)
         self._words.SetNonlinearFontScaleFactor(0.6)
-        self._words.GetTextProperty().SetColor(*pv.Color(color).float_rgb)
+        rgb = pv.Color(color).float_rgb
+        words = self._words.GetTextProperty()
+        words.SetColor(*rgb)
+        words.SetBackgroundColor(*((0.0,) * 3 if sum(rgb) > 1.5 else (1.0,) * 3))  # lines run behind
+        words.SetBackgroundOpacity(BACKING)
         for actor in (self.slice, self._cross):
             renderer.add_actor(actor, reset_camera=False, render=False, pickable=False)
         renderer.AddViewProp(self._words)
