@@ -107,15 +107,7 @@ class SliceImage:
         """Return two percentiles of a volume's finite numbers other than 0, which is what lies around a head."""
         key = low, high, index
         if key not in self._percentiles:
-            flat = self.values[..., index].ravel(order="K")
-            flat = flat[:: max(1, flat.size // SAMPLED)].astype(np.float64)
-            flat = flat[np.isfinite(flat)]
-            found = flat[flat != 0.0] if (flat != 0.0).any() else flat
-            a, b = (float(v) for v in np.percentile(found, (low, high))) if len(found) else (0.0, 1.0)
-            if not a < b:  # one number throughout, as masks have: nothing is below it
-                a, b = min(a, 0.0), max(b, 0.0)
-                b = b if a < b else a + 1.0
-            self._percentiles[key] = a, b
+            self._percentiles[key] = window_of(self.values[..., index], low, high)
         return self._percentiles[key]
 
     def voxel_at(self, position: npt.ArrayLike) -> tuple[int, int, int] | None:
@@ -202,3 +194,16 @@ def _of_vtk(image: Any) -> tuple[npt.NDArray[Any], Array, str]:
         first += [0.5 if n > 1 else 0.0 for n in image.dimensions]
     place[:3, 3] += place[:3, :3] @ first
     return data.reshape(*sides, *data.shape[1:], order="F"), place, str(name)
+
+
+def window_of(values: Array, low: float, high: float) -> tuple[float, float]:
+    """Return two percentiles of an image's finite numbers other than 0, which is what lies around a head."""
+    flat = values.ravel(order="K")
+    flat = flat[:: max(1, flat.size // SAMPLED)].astype(np.float64)
+    flat = flat[np.isfinite(flat)]
+    found = flat[flat != 0.0] if (flat != 0.0).any() else flat
+    a, b = (float(v) for v in np.percentile(found, (low, high))) if len(found) else (0.0, 1.0)
+    if not a < b:  # one number throughout, as masks have: nothing is below it
+        a, b = min(a, 0.0), max(b, 0.0)
+        b = b if a < b else a + 1.0
+    return a, b

@@ -26,6 +26,7 @@ from pvfiblets.web.filter_regions import RegionActions
 from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.first_document import first_document
 from pvfiblets.web.history import History
+from pvfiblets.web.info_tables import tables
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.painting_tab import PaintActions
@@ -210,7 +211,7 @@ class Explorer(TrameApp):
         """Show the facts of the chosen layer, some of which are counted on the GPU: only while somebody looks."""
         page = self.page
         if page.tab == "info":
-            page.info = describe.info(self.scene.info(page.chosen)) if page.chosen else []
+            page.info = tables(self.scene.info(page.chosen)) if page.chosen else []
 
     def choose(self, layer_id: str) -> None:
         """Make a layer the one that the panels are about."""

@@ -6,18 +6,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from pvfiblets.web.charts import histogram_chart, short, steps
 from pvfiblets.web.document import volume_in
 
 MOST_CHARTS = 64
-TITLES = {
-    "facts": "File", "promise_mm": "error promise, mm", "error_mm": "measured error, mm", "step_mm": "step, mm",
-    "error_steps": "measured error, steps", "error_degrees": "error of directions, degrees",
-    "bounds": "bounds, mm", "bounds_mm": "bounds, mm", "explain": "Drawing",
-    "gpu_bytes": "GPU memory, bytes", "milliseconds": "last redraw, ms",
-}  # fmt: skip
 WIDE = 1e3  # limits whose ends are farther apart than this, as a ratio, are for typing and not for a slider
 
 
@@ -126,39 +118,3 @@ def typed(text: str, name: str, *, optional: bool) -> float | None:
     if not math.isfinite(value):
         raise ValueError(f"{name}: {text[:40]!r} is not a number")
     return value
-
-
-def info(facts: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the sections of the tab Info."""
-    sections, plain = [], []
-    for name, value in facts.items():
-        if isinstance(value, Mapping):
-            rows = [[_title(key), _text(item)] for key, item in value.items() if item not in (None, [], {}, "")]
-            rows = [row for row in rows if row[0] != "path"]  # of the server; the layer's own is above
-            if rows:
-                sections.append({"title": _title(name), "rows": rows})
-        elif value is not None:
-            plain.append([_title(name), _text(value)])
-    return [{"title": "Layer", "rows": plain}, *sections] if plain else sections
-
-
-def _title(name: object) -> str:
-    text = str(name)
-    return TITLES.get(text, text.replace("_", " "))
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, (int, np.integer)):
-        return f"{int(value):,}"
-    if isinstance(value, (float, np.floating)):
-        return short(float(value))
-    if isinstance(value, Mapping):
-        return "; ".join(f"{_title(key)}: {_text(item)}" for key, item in list(value.items())[:40])
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        more = ", …" if len(value) > 40 else ""
-        return ", ".join(_text(item) for item in list(value)[:40]) + more
-    return str(value)[:400]

@@ -39,7 +39,7 @@ LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choos
 def build(app: Any) -> None:
     """Build all of them."""
     # Beside the dialogs: what is in one that is closed meanwhile, by another who looks at the page, hears of no file.
-    html.Input(type="file", hidden=True, id="pv-upload", data_upload=True, data_limit=("upload_limit",))
+    html.Input(type="file", hidden=True, id="pv-upload", multiple=True, data_upload=True, data_limit=("upload_limit",))
     html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True)
     _files(app)
     _sessions(app)
@@ -118,13 +118,23 @@ def _files(app: Any) -> None:
                     prepend_icon=("e.icon",),
                     data_entry=("e.name",),
                 ):
-                    pass
+                    with v3.Template(v_slot_append=True):
+                        html.Input(
+                            type="checkbox", v_if="several && !e.folder", classes="pv-mark", data_mark=("e.name",),
+                            checked=("marked.includes(e.path)",), aria_label=("'Choose ' + e.name",),
+                            v_on_click_stop=(app.files.mark, "[e.path]"),
+                        )  # fmt: skip
             html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
             html.Div(
                 "No file here has that in its name.",
                 v_if=f"entries.length && !{LISTED}.length",
                 classes="pv-small pa-4",
             )
+        with v3.VCardActions(v_if="marked.length"):
+            html.Span("{{ marked.length }} chosen", classes="pv-small px-2")
+            v3.VSpacer()
+            v3.VBtn("Open them", color="primary", variant="tonal", classes="text-none", click=app.files.take_marked,
+                    data_action="open-marked")  # fmt: skip
 
 
 def _sessions(app: Any) -> None:
@@ -150,10 +160,10 @@ def _sessions(app: Any) -> None:
 
 
 def _picture(app: Any) -> None:
-    with _dialog("picture", "Save the picture", 420), v3.VCardText():
+    with _dialog("picture", "Save the picture", 420), v3.VCardText(classes="px-1 pt-0"):
         with html.Div(classes="pv-row"):
             html.Label("Times the view")
-            with html.Div(classes="pv-pair"):
+            with html.Div(classes="pv-pair", style="flex-wrap: wrap"):
                 for times in (1, 2, 3, 4):
                     v3.VBtn(f"{times}", size="x-small", variant="tonal", click=(app.camera.ask_picture, f"[{times}]"),
                             aria_label=f"{times} times as large as the view", data_times=times)  # fmt: skip
@@ -169,7 +179,7 @@ def _picture(app: Any) -> None:
             with html.Div(classes="pv-pair"):
                 html.Input(classes="pv-num", inputmode="decimal", value="300", aria_label="Pixels per inch",
                            id="picture-dpi")  # fmt: skip
-                html.Span("pixels per inch (dpi)", classes="pv-small")
+                html.Span("dpi", classes="pv-small")
         with html.Label(classes="pv-row", style="cursor: pointer"):
             html.Span("Background", classes="pv-label")
             with html.Span(classes="pv-pair pv-value"):
@@ -177,7 +187,7 @@ def _picture(app: Any) -> None:
                 html.Span("transparent")
         html.Div("Lines and letters are as large beside the picture as on the page. Large pictures take a while.",
                  classes="pv-small px-3 pt-2")  # fmt: skip
-        with html.Div(classes="d-flex justify-end pt-2"):
+        with html.Div(classes="d-flex justify-end pt-2 px-3"):
             v3.VBtn("Save", color="primary", classes="text-none", data_action="save-picture")
 
 

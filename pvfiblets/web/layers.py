@@ -87,6 +87,10 @@ SELECTION = {
 LOOK = "look"
 """A property of lines that stands for others: their actor is told of these, of effects as the look has them."""
 
+PERCENTILES = (1.0, 99.0)
+"""Of voxels other than 0: the window with which volumes begin, as slices do."""
+FEW = 64  # numbers; a volume of no more is one of labels
+
 RADIUS_SCALE = "radius_scale"
 """A look of tubes that is no attribute of their actor: its tubes are others."""
 
@@ -103,7 +107,25 @@ def beginning(kind: str, data: Any) -> dict[str, Any]:
     found = defaults(kind)
     if kind == "image":
         found[MEANING] = "labels" if data.is_labels else "rgb" if data.is_colours else "scalars"
+    if kind == "volume" and (window := _window(data)) is not None:
+        found["clim"] = check(kind, "clim", list(window), data)
     return found
+
+
+def _window(volume: Any) -> tuple[float, float] | None:
+    """Return between which values a volume's colours begin, a few very bright voxels left out; ``None`` for all.
+
+    Volumes of few numbers are tables of labels or masks, of which all are seen.
+    """
+    import numpy as np
+
+    from pvfiblets.slices.image import SAMPLED, window_of
+
+    flat = volume.values.ravel(order="K")
+    if len(np.unique(flat[:: max(1, flat.size // SAMPLED)])) <= FEW:
+        return None
+    low, high = window_of(volume.values, *PERCENTILES)
+    return (low, high) if volume.value_range[0] < high else None
 
 
 def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) -> Any:

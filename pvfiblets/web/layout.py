@@ -68,10 +68,11 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-measured { display: flex; flex-direction: column; align-items: end; gap: 4px; max-height: 40vh; overflow-y: auto;
   pointer-events: auto }
 .pv-measured .v-btn { flex: none }
-.pv-bar { flex: 1 1 auto; min-width: 0; display: flex; align-items: center; overflow-x: auto; scrollbar-width: none }
-.pv-bar > * { flex: none } .pv-bar > .v-spacer { flex: 1 0 0 }
-@media (max-width: 760px) { .pv-bar { padding-right: 24px;
-  mask-image: linear-gradient(to right, #000 calc(100% - 24px), transparent) } } /* there is more to the right */
+.pv-bar { flex: 1 1 auto; min-width: 0; display: flex; align-items: center }
+.pv-bar > *, .pv-wide > * { flex: none } .pv-bar > .v-spacer, .pv-wide > .v-spacer { flex: 1 0 0 }
+.pv-wide { flex: 1 1 auto !important; display: flex; align-items: center; min-width: 0 }
+@media (max-width: 759.9px) { .pv-wide { display: none } }
+@media (min-width: 760px) { .pv-narrow { display: none !important } }
 .pv-progress { position: fixed !important; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400;
   max-width: calc(100vw - 16px) }
 .pv-bar .v-btn { margin-inline: 0 !important }
@@ -102,6 +103,10 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-table th { text-align: right; font-weight: 500; opacity: .7; padding: 3px 6px; position: sticky; top: 0 }
 .pv-table td { text-align: right; padding: 3px 6px; border-top: 1px solid rgba(128,128,128,.2) }
 .pv-table td:first-child, .pv-table th:first-child { text-align: left }
+[data-info] .pv-table td { vertical-align: top; overflow-wrap: anywhere }
+[data-info] .pv-table td:first-child { overflow-wrap: normal; opacity: .8; padding-left: 0 }
+[data-info] .pv-table th { position: static }
+[data-info] .pv-table th:first-child { padding-left: 0 }
 .pv-layer { min-height: 34px !important; padding-inline: 6px !important }
 .pv-layer .v-list-item__spacer { width: 4px !important }
 .v-switch .v-selection-control { min-height: 28px !important }
@@ -152,6 +157,9 @@ def build(app: Any) -> Any:
     return layout
 
 
+SAVE = "utils.download('picture.png', trigger('picture'), 'image/png')"
+
+
 def _bar(app: Any) -> None:
     with v3.VAppBar(density="compact", height=44, flat=True, border="b"):
         _icon("mdi-dock-left", "Layers and properties ([)", click="left_open = !left_open")
@@ -160,36 +168,69 @@ def _bar(app: Any) -> None:
             _icon("mdi-content-save-outline", "Save or load a session (S)", click="dialog = 'session'", name="session")
             _icon("mdi-undo", "Undo {{ undo_label }} (Ctrl+Z)", click=app.undo, disabled=("!undo_label",), name="undo")
             _icon("mdi-redo", "Redo {{ redo_label }} (Ctrl+Y)", click=app.redo, disabled=("!redo_label",), name="redo")
-            v3.VDivider(vertical=True, classes="mx-1")
-            for name, title, hint in VIEWS:
-                with v3.VBtn(
-                    title, size="small", variant="text", classes="px-2 text-none", data_view=name,
-                    click=(app.camera.view, f"['{name}']"),
-                ):  # fmt: skip
-                    v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
             slices_tab.layout_menu(app)
-            _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
-            _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
-            _icon(
-                "mdi-perspective-less", "Parallel or perspective (5)", name="parallel",
-                click=app.camera.toggle_parallel, color=("parallel ? 'primary' : ''",),
-            )  # fmt: skip
-            with html.Label(classes="px-1", title="Background"):
-                html.Input(
-                    type="color", classes="pv-colour", value=("background",), aria_label="Background",
-                    change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
-                )  # fmt: skip
-            _icon("mdi-camera-outline", "Save the picture (C: as it is)", name="picture", click=app.camera.ask_picture)
-            html.Button(  # of the key
-                hidden=True, data_action="screenshot",
-                click="utils.download('picture.png', trigger('picture'), 'image/png')",
-            )  # fmt: skip
-            v3.VSpacer()
-            _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
-            _icon("mdi-keyboard-outline", "Keys (?)", click="dialog = 'help'", name="help")
-            _icon("mdi-theme-light-dark", "Light or dark (T)", click="dark = !dark", name="theme")
-            _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
+            html.Button(hidden=True, data_action="screenshot", click=SAVE)  # of the key
+            with html.Div(classes="pv-wide"):
+                _wide(app)
+            v3.VSpacer(classes="pv-narrow")
+            _folded(app)
         _icon("mdi-dock-right", "Clip, filter, selection, information (])", click="right_open = !right_open")
+
+
+def _wide(app: Any) -> None:
+    """Build what a narrow page folds into a menu."""
+    v3.VDivider(vertical=True, classes="mx-1")
+    for name, title, hint in VIEWS:
+        with v3.VBtn(
+            title, size="small", variant="text", classes="px-2 text-none", data_view=name,
+            click=(app.camera.view, f"['{name}']"),
+        ):  # fmt: skip
+            v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+    _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
+    _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
+    _icon(
+        "mdi-perspective-less", "Parallel or perspective (5)", name="parallel",
+        click=app.camera.toggle_parallel, color=("parallel ? 'primary' : ''",),
+    )  # fmt: skip
+    with html.Label(classes="px-1", title="Background"):
+        html.Input(
+            type="color", classes="pv-colour", value=("background",), aria_label="Background",
+            change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
+        )  # fmt: skip
+    _icon("mdi-camera-outline", "Save the picture (C: as it is)", name="picture", click=app.camera.ask_picture)
+    v3.VSpacer()
+    _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
+    _icon("mdi-keyboard-outline", "Keys (?)", click="dialog = 'help'", name="help")
+    _icon("mdi-theme-light-dark", "Light or dark (T)", click="dark = !dark", name="theme")
+    _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
+
+
+def _folded(app: Any) -> None:
+    """Build the same as a menu, which a narrow page shows."""
+    items: list[tuple[str, str, Any]] = [
+        *((f"{title} view", f"view-{name}", (app.camera.view, f"['{name}']")) for name, title, _ in VIEWS),
+        ("The other side", "flip", app.camera.flip),
+        ("Show everything", "reset", app.camera.reset),
+        ("Parallel or perspective", "parallel", app.camera.toggle_parallel),
+        ("Save the picture…", "picture", app.camera.ask_picture),
+        ("The same as a Python script", "script", app.files.show_script),
+        ("Keys and pointer", "help", "dialog = 'help'"),
+        ("Light or dark", "theme", "dark = !dark"),
+    ]
+    with v3.VBtn(
+        icon=True, size="small", density="comfortable", variant="text", classes="pv-narrow", aria_label="More",
+        data_action="more-of-bar",
+    ):  # fmt: skip
+        v3.VIcon("mdi-dots-vertical", size=20)
+        with v3.VMenu(activator="parent", max_height="calc(100dvh - 60px)"), v3.VList(density="compact"):
+            for title, name, click in items:
+                v3.VListItem(title=title, click=click, data_menu=name)
+            with v3.VListItem(title="Background"), v3.Template(v_slot_append=True):
+                html.Input(
+                    type="color", classes="pv-colour", value=("background",), aria_label="Background of the picture",
+                    change=(app.camera.set_background, "[$event.target.value]"), v_on_click_stop="", data_menu="colour",
+                )  # fmt: skip
+            v3.VListItem(title="Close this session", click="dialog = 'end'", v_if="!shared", data_menu="end")
 
 
 def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None:

@@ -40,6 +40,7 @@ PURPOSES = {
 }
 """What a file may be chosen for, and the suffixes that are shown then."""
 MOST_WAITING = 16
+MOST_MARKED = 64  # files that are chosen at once
 LATEST = 0.2  # seconds between two reports of progress
 
 
@@ -242,6 +243,9 @@ class FileActions(Actions):
         entries = app.confined.listing(folder)
         app.page.folder = app.confined.relative(app.confined.resolve(folder)).removeprefix(".")
         app.page.file_search = ""
+        app.page.several = not self._for
+        if app.page.dialog != "open" or self._for:
+            app.page.marked = []
         app.page.entries = [
             {"name": entry.name, "path": entry.path, "folder": entry.folder, "icon": _icon(entry),
              "bytes": entry.size, "time": entry.time, "detail": "" if entry.folder else _size(entry.size)}
@@ -271,6 +275,35 @@ class FileActions(Actions):
             self.load_session(self._text(path), app.confined.resolve(path).parent)
         else:
             app.later(self.open(path))
+
+    def mark(self, path: str) -> None:
+        """Choose a file in the file browser beside others, or no longer."""
+        app = self._app
+        app.confined.existing(path)
+        marked = [other for other in app.page.marked if other != path]
+        if len(marked) == len(app.page.marked):
+            if len(marked) >= MOST_MARKED:
+                raise ValueError(f"{MOST_MARKED} files are chosen, which is the most; open them first")
+            marked.append(path)
+        app.page.marked = marked
+
+    def take_marked(self) -> None:
+        """Open what was chosen, one after the other: values after the tractograms that they are of."""
+        app = self._app
+        marked, app.page.marked, app.page.dialog = app.page.marked, [], ""
+        if len(marked) == 1:
+            self.take(marked[0], False)
+            return
+        if sessions := [path for path in marked if path.lower().endswith(SESSION)]:
+            raise ValueError(f"{Path(sessions[0]).name} is a session, which takes the place of all; open it alone")
+        app.later(self._open_marked(sorted(marked, key=lambda path: path.lower().endswith(VALUES))))
+
+    async def _open_marked(self, paths: list[str]) -> None:
+        for path in paths:
+            try:
+                await self.open(path)
+            except EXPECTED as error:  # the others are opened all the same
+                self._app.complain(sentence(error))
 
     async def receive(self, request: Any) -> Any:
         """Take an upload into the root, and open it; a file of its name is never replaced."""

@@ -71,6 +71,8 @@ class Page:
     job: Record = field(default_factory=dict)
     folder: str = ""
     entries: list[Record] = field(default_factory=list)
+    several: bool = True  # files may be chosen at once
+    marked: list[str] = field(default_factory=list)  # those that are
     script: str = ""
     shared: bool = False
     upload_limit: int = 0

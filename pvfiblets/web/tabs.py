@@ -330,9 +330,23 @@ def _export(app: Any) -> None:
 
 
 def _info() -> None:
-    with html.Div(v_for="section in info", key="section.title"):
-        html.Div("{{ section.title }}", classes="pv-head")
-        with html.Div(v_for="row in section.rows", key="row[0]", classes="pv-row", data_info=("row[0]",)):
-            html.Div("{{ row[0] }}", classes="pv-label")
-            html.Div("{{ row[1] }}", classes="pv-value")
+    for folded in (False, True):
+        shown = f"info.filter((t) => t.folded === {'true' if folded else 'false'})"
+        with html.Div(v_if="expert_open" if folded else "true"):
+            with html.Div(v_for=f"t in {shown}", key="t.title", data_info=("t.title",)):
+                html.Div("{{ t.title }}", classes="pv-head")
+                with html.Div(classes="px-3"):
+                    with html.Table(classes="pv-table", aria_label=("t.title",)):
+                        with html.Thead(v_if="t.columns.length"):
+                            with html.Tr():
+                                html.Th("{{ c }}", v_for="(c, k) in t.columns", key="k", scope="col")
+                        with html.Tbody():
+                            with html.Tr(v_for="(row, at) in t.rows", key="at"):
+                                html.Td("{{ cell }}", v_for="(cell, k) in row", key="k")
+        if not folded:
+            v3.VBtn(
+                "Drawing", v_if="info.some((t) => t.folded)", variant="text", size="small", block=True,
+                classes="text-none pv-fold", click="expert_open = !expert_open", data_action="info-expert",
+                append_icon=("expert_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
+            )  # fmt: skip
     html.Div("Choose a layer.", v_if="!info.length", classes="pv-small pa-3")

@@ -45,7 +45,7 @@
     for (const part of [root, ...root.querySelectorAll("*")]) {
       const style = getComputedStyle(part);
       if (!shown(part) || part.scrollWidth <= part.clientWidth + 1 || !["auto", "scroll"].includes(style.overflowX)) continue;
-      if (part.closest(".pv-bar, .pv-code")) continue;
+      if (part.closest(".pv-code")) continue;
       const end = part.getBoundingClientRect().left + part.clientLeft + part.clientWidth;
       const wide = [...part.querySelectorAll("*")].filter((one) => one.getBoundingClientRect().right > end + 1).pop();
       found.add(`${part.className || part.tagName} scrolls sideways in ${where}, for ${wide?.outerHTML.slice(0, 120)}`);

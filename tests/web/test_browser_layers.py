@@ -111,3 +111,24 @@ def test_a_mesh_is_a_layer(here):
     here.press("Control+z")
     assert same(here.changed(green), shown)
     hide_and_remove(here, before, shown)
+
+
+def test_several_files_are_chosen_and_opened_at_once(visit):
+    here = visit("lines.fiblets")
+    here.press("o")
+    here.page.wait_for_selector("#dialog-open")
+    here.page.check("[data-mark='ball.ply']")
+    here.page.check("[data-mark='head.nii.gz']")
+    here.page.check("[data-mark='atlas.nii.gz']")
+    here.wait(lambda: len(here.state("marked")) == 3, "three chosen")
+    here.page.uncheck("[data-mark='atlas.nii.gz']")
+    here.wait(lambda: len(here.state("marked")) == 2, "two chosen")
+    here.page.click("[data-action=open-marked]")
+    here.wait(lambda: here.layers() == 3, "both files")
+    assert [layer["name"] for layer in here.state("layers")] == ["lines.fiblets", "ball.ply", "head.nii.gz"]
+    assert here.state("chosen_name") == "lines.fiblets"
+    here.tab("clip")
+    here.page.click("[data-cut=mesh]")
+    here.page.wait_for_selector("#dialog-open")
+    here.wait(lambda: here.state("several") is False, "one file for a cut")
+    assert here.page.locator("[data-mark]").count() == 0

@@ -160,3 +160,65 @@ def test_a_narrow_page_begins_with_the_picture(visit):
     here = visit("lines.fiblets", width=820, height=720)
     here.wait(lambda: not here.state("right_open"), "the panels to close")
     assert "\n".join(faults(here, "header")) == ""
+
+
+def test_all_of_the_bar_is_within_reach_of_a_thumb(visit):
+    here = visit("lines.fiblets", width=360, height=640, has_touch=True, is_mobile=True)
+    here.wait(lambda: not here.state("left_open"), "the panels to close")
+    assert "\n".join(faults(here, "header")) == ""
+    bar = here.page.locator("header .pv-bar")
+    assert bar.evaluate("bar => bar.scrollWidth <= bar.clientWidth")
+    wanted = {button.get_attribute("data-action") for button in here.page.locator("header [data-action]").all()}
+    wanted |= {f"view-{button.get_attribute('data-view')}" for button in here.page.locator("header [data-view]").all()}
+    seen = {
+        button.get_attribute("data-action")
+        for button in here.page.locator("header [data-action]").all()
+        if button.is_visible()
+    }
+    here.page.tap("[data-action=more-of-bar]")
+    menu = here.page.locator(".v-overlay--active .v-list")
+    menu.wait_for()
+    here.page.wait_for_timeout(300)
+    listed = here.page.locator("[data-menu]")
+    names = {item.get_attribute("data-menu") for item in listed.all()}
+    assert wanted - seen - names == {"screenshot"}  # of a key
+    for item in listed.all():
+        item.scroll_into_view_if_needed()
+        box = item.bounding_box()
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= 360
+        assert box["y"] + box["height"] <= 640
+    here.page.tap("[data-menu=view-axial]")
+    here.wait(lambda: here.state("edges").get("top") == "A", "the view from above")
+    here.page.tap("[data-action=more-of-bar]")
+    here.page.tap("[data-menu=picture]")
+    here.page.wait_for_selector("#dialog-picture")
+    here.page.wait_for_timeout(350)
+    assert "\n".join(faults(here, "#dialog-picture")) == ""
+
+
+def test_pictures_are_not_stretched_by_a_new_size(visit):
+    """Of the ball, which is round: at each moment after a resize it is as wide as high on the page."""
+    import numpy as np
+
+    here = visit("--mesh", "ball.ply", width=1000, height=700)
+    here.press("1")
+    here.rests()
+    for size in ((1280, 560), (640, 700), (700, 900)):
+        here.page.set_viewport_size({"width": size[0], "height": size[1]})
+        for wait in (0, 60, 500):
+            here.page.wait_for_timeout(wait)
+            shape = here.page.evaluate(
+                """() => {
+                    const image = document.querySelector('#pv-view img'), box = image.getBoundingClientRect();
+                    return [image.naturalWidth, image.naturalHeight, box.width, box.height,
+                            getComputedStyle(image).objectFit];
+                }"""
+            )
+            assert shape[4] == "contain"
+        here.rests()
+        image = here.picture().max(axis=2) > 30
+        rows, columns = np.flatnonzero(image.any(axis=1)), np.flatnonzero(image.any(axis=0))
+        assert abs(np.ptp(rows) - np.ptp(columns)) <= 2
+        view = here.page.locator("#pv-view").bounding_box()
+        assert image.shape == (round(view["height"]), round(view["width"]))

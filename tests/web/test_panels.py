@@ -85,3 +85,47 @@ def test_numbers_are_typed_with_points_commas_and_units():
     for text in ("", "nan", "inf", "two"):
         with pytest.raises(ValueError, match="is not a number"):
             typed(text, "x", optional=False)
+
+
+def test_facts_are_tables_with_units(scene):
+    from pvfiblets.web.info_tables import tables
+
+    lines = scene.open("lines.trk")
+    scene.screenshot()
+    found = {table["title"]: table for table in tables(scene.info(lines.id))}
+    layer = dict(found["Layer"]["rows"])
+    assert layer["Streamlines"] == "60 of 60 shown"
+    assert layer["File"] == "lines.trk"
+    assert layer["GPU memory"].split()[1] in ("bytes", "kB", "MB")
+    assert found["Extent"]["columns"] == ["mm", "from", "to", "size"]
+    assert found["Extent"]["rows"] == [
+        ["left – right", "0", "69", "69"], ["back – front", "0", "36", "36"], ["down – up", "0", "20", "20"],
+    ]  # fmt: skip
+    assert found["Measured error"]["columns"] == ["", "mm", "steps"]
+    assert [row[0] for row in found["Measured error"]["rows"]] == ["mean", "99.9 % below", "largest"]
+    assert {title for title, table in found.items() if table["folded"]} == {
+        "Passes of the last redraw",
+        "Buffers",
+        "Drawing",
+    }
+    assert all(isinstance(cell, str) for table in found.values() for row in table["rows"] for cell in row)
+    head = {table["title"]: table for table in tables(scene.info(scene.open("head.nii.gz").id))}
+    assert head["Voxels to mm"]["rows"][0] == ["4", "0", "0", "0"]
+    assert tables({}) == []
+
+
+def test_volumes_begin_with_the_window_of_their_percentiles(scene, folder):
+    import nibabel
+
+    rng = np.random.default_rng(2)
+    values = rng.normal(500.0, 100.0, (20, 20, 20)).astype(np.float32)
+    values[:, :8] = 0.0
+    values[3, 12, 4] = 1e6  # one voxel of a vessel, as T1 images have them
+    nibabel.save(nibabel.Nifti1Image(values, np.eye(4)), folder / "t1.nii.gz")
+    layer = scene.open("t1.nii.gz")
+    head = values[values != 0]
+    assert scene.actor(layer.id).clim == pytest.approx(tuple(np.percentile(head, (1, 99))), rel=1e-6)
+    labels = scene.open("atlas.nii.gz")
+    assert scene.layer(labels.id).settings["clim"] is None
+    scene.set(layer.id, "clim", None)
+    assert scene.actor(layer.id).clim == pytest.approx((0.0, 1e6))

@@ -216,9 +216,12 @@
     if (event.target.closest?.("[data-action=cancel-upload]")) uploading?.abort();
   }, true);
 
-  const upload = (file, limit) => {
-    if (file.size > limit) return say(`${file.name} has ${(file.size / 2 ** 20).toFixed(0)} MB; ` +
-      `${(limit / 2 ** 20).toFixed(0)} MB is the most that this server takes.`);
+  const upload = (file, limit) => new Promise((done) => {
+    if (file.size > limit) {
+      say(`${file.name} has ${(file.size / 2 ** 20).toFixed(0)} MB; ` +
+        `${(limit / 2 ** 20).toFixed(0)} MB is the most that this server takes.`);
+      return done();
+    }
     const request = new XMLHttpRequest();
     uploading = request;
     const show = (share) => { set("uploading", file.name); set("uploaded", share); };
@@ -228,19 +231,23 @@
       uploading = null;
       set("uploading", "");
       if (request.readyState !== 0 && request.status !== 200) say(`${file.name} was not uploaded (${request.status || "connection lost"}).`);
+      done();
     };
     request.open("POST", `/upload?name=${encodeURIComponent(file.name)}`);
     request.setRequestHeader("Content-Type", "application/octet-stream");
     show(0);
     set("dialog", "");
     request.send(file);
-  };
+  });
 
   document.addEventListener("change", async (event) => {
     const input = event.target;
     if (!(input instanceof HTMLInputElement) || input.type !== "file" || !input.files.length) return;
-    const file = input.files[0];
-    if (input.dataset.upload !== undefined) upload(file, Number(input.dataset.limit));
+    const files = [...input.files], file = files[0];
+    if (input.dataset.upload !== undefined) {
+      input.value = "";
+      for (const one of files) await upload(one, Number(input.dataset.limit));
+    }
     else if (input.dataset.session !== undefined) {
       if (file.size > 512 * 1024) say(`${file.name} is too large for a session file.`);
       else {
