@@ -27,6 +27,8 @@ class Cable:
         self._target = ("127.0.0.1", port)
         self.whole, self.refused = True, 0
         self._open: list[socket.socket] = []
+        self._passes = threading.Event()
+        self._passes.set()
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port = self._listener.getsockname()[1]
         threading.Thread(target=self._accept, daemon=True).start()
@@ -47,7 +49,9 @@ class Cable:
     def _pass_on(self, source: socket.socket, target: socket.socket) -> None:
         with contextlib.suppress(OSError):
             while data := source.recv(65536):
+                self._passes.wait()
                 target.sendall(data)
+            self._passes.wait()
             target.shutdown(socket.SHUT_WR)
 
     def cut(self) -> None:
@@ -58,9 +62,15 @@ class Cable:
             one.close()
         self._open.clear()
 
+    def drop(self) -> None:
+        """Lose all that is sent, without a word to either end; what was sent comes late, once it is mended."""
+        self._passes.clear()
+
     def mend(self) -> None:
         self.whole = True
+        self._passes.set()
 
     def close(self) -> None:
+        self._passes.set()
         self.cut()
         self._listener.close()

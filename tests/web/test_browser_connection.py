@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
+import sys
+import time
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import numpy as np
@@ -44,6 +48,100 @@ def test_a_cut_cable_leaves_the_dimmed_picture_and_a_countdown_until_it_is_mende
     here.changed(before)
     assert all("ERR_" in error or "Bad Gateway" in error for error in here.errors), here.errors
     here.errors.clear()  # Chromium logs what could not be reached
+
+
+def through(visit, cable):
+    """Return a page that reaches its server by the cable, at rest with a change that can be undone, and its picture."""
+    here = visit("lines.fiblets", opened=False)
+    here.sockets = []
+    here.page.on("websocket", lambda socket: here.sockets.append(socket.url) if socket.url.endswith("/ws") else None)
+    here.page.goto(here.served.url.replace(str(urlsplit(here.served.base).port), str(cable.port), 1))
+    here.ready()
+    here.choose("scalars", "length")
+    return here, here.rests()
+
+
+def comes_back(here, before):
+    """Wait until a page is as it was, with nobody's help, and see that it can be used."""
+    here.wait(lambda: len(here.sockets) > 1, "another connection")
+    here.wait(lambda: here.page.locator("#pv-lost").count() == 0, "the page again")
+    here.ready()
+    assert np.abs(here.rests() - before).mean() < 0.5
+    assert "scalars" in here.state("undo_label")
+    here.press("2")
+    here.changed(before)
+    assert all("ERR_" in error or "Bad Gateway" in error for error in here.errors), here.errors
+    here.errors.clear()  # Chromium logs what could not be reached
+
+
+@pytest.mark.exhaustive
+def test_a_session_goes_on_by_itself_after_a_drop_of_14_seconds(visit, cable):
+    here, before = through(visit, cable)
+    cable.cut()
+    here.page.locator("#pv-lost").wait_for()
+    here.page.wait_for_timeout(14_000)
+    cable.mend()
+    comes_back(here, before)
+
+
+def test_a_network_that_drops_all_without_a_word_is_noticed_and_comes_back(visit, cable):
+    here, before = through(visit, cable)
+    cable.drop()
+    lost = here.page.locator("#pv-lost")
+    lost.wait_for()
+    assert "kept for" in lost.inner_text() or "Trying to connect" in lost.inner_text()
+    cable.mend()
+    comes_back(here, before)
+
+
+@pytest.mark.exhaustive
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="signals, /proc")
+def test_a_session_goes_on_after_sleep(visit, browser, cable):
+    """The browser's processes stop, and with them all its clocks, as when a laptop is closed."""
+    here, before = through(visit, cable)
+    here.page.evaluate("window.stopped = Date.now()")
+    processes = chromium_processes()
+    assert processes
+    connected = here.served.log.read_text()
+    try:
+        for process in processes:
+            os.kill(process, signal.SIGSTOP)
+        time.sleep(36)  # longer than the server waits for an answer to its ping
+    finally:
+        for process in reversed(processes):
+            os.kill(process, signal.SIGCONT)
+    assert here.served.log.read_text().count("ended") == connected.count("ended")
+    comes_back(here, before)
+
+
+def test_a_frozen_page_goes_on(visit, cable):
+    """Browsers freeze pages that nobody looks at: their scripts stop, while the connection is answered for them."""
+    here, before = through(visit, cable)
+    devtools = here.context.new_cdp_session(here.page)
+    devtools.send("Page.setWebLifecycleState", {"state": "frozen"})
+    time.sleep(8)
+    cable.cut()
+    cable.mend()
+    devtools.send("Page.setWebLifecycleState", {"state": "active"})
+    comes_back(here, before)
+
+
+def chromium_processes():
+    """Return the numbers of the processes of Chromium that this one has started, the first before its own."""
+    parents = {}
+    for place in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            number, rest = place.read_text().split(" (", 1)
+            name, rest = rest.rsplit(") ", 1)
+            parents[int(number)] = int(rest.split()[1]), name
+    mine = []
+    for number, (_, name) in parents.items():
+        above = number
+        while above in parents and above != os.getpid():
+            above = parents[above][0]
+        if above == os.getpid() and "chrom" in name:
+            mine.append(number)
+    return sorted(mine)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
