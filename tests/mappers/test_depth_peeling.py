@@ -38,14 +38,15 @@ def scene(make_plotter, tools):
         if colours is not None:
             options["colouring"] = Colouring("streamline_rgba", values=np.resize(colours, (len(streamlines), 3)))
         mapper, actor = fibres.actor(lighting=lighting, **options)
-        mapper.detail = 0.5  # rows lie between two rows of pixels, where a thousandth of a pixel would decide
         actor.GetProperty().SetOpacity(opacity)
         if layers:
             mapper.set_effect("layers", Layers(layers))
         plotter = make_plotter()
         plotter.add_actor(actor, reset_camera=False)
         plotter.enable_parallel_projection()
-        plotter.camera_position = [(0, -200, 0), (0, 20, 0), (0, 0, 1)]
+        # A tenth of a pixel off: rows would lie between two rows of pixels, where a thousandth of a pixel decides.
+        off = 0.1 * 100.0 / plotter.window_size[1]
+        plotter.camera_position = [(0, -200, off), (0, 20, off), (0, 0, 1)]
         plotter.camera.parallel_scale = 50.0
         plotter.renderer.ResetCameraClippingRange(-100, 100, -150, 150, -100, 100)
         return plotter, mapper, actor

@@ -151,17 +151,16 @@ def test_planes_of_vtk_and_cuts_add_up_beyond_what_there_is_room_for(scene, brai
     assert (boxed != both).any(axis=2).mean() < 0.02
 
 
-DETAILS = [0.5, pytest.param(0.0, marks=pytest.mark.xfail(strict=True, reason="joints of short segments close cuts"))]
-
-
-@pytest.mark.parametrize("detail", DETAILS)
-def test_tubes_end_in_closed_faces_where_planes_cut(scene, brain, detail):
+@pytest.mark.parametrize(
+    ("pipeline", "detail"), [("compute", 0.0), ("compute", 0.5), ("geometry", 0.0), ("tessellation", 0.0)]
+)
+def test_tubes_end_in_closed_faces_where_planes_cut(scene, pipeline, detail):
     """A tube cut towards the eye shows a disc; its axis alone would leave it open."""
     line = np.column_stack([np.linspace(-60.0, 60.0, 121), np.zeros(121), np.zeros(121)])
     from pvfiblets import Streamlines
 
     fiblets = compress(Streamlines(line.astype(np.float32), np.array([0, 121])))
-    plotter, actor = scene(lines(fiblets, tube_radius=20.0, detail=detail))
+    plotter, actor = scene(lines(fiblets, pipeline=pipeline, tube_radius=20.0, detail=detail))
     plotter.camera_position = [(300.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     actor.clip(((-1.0, 0.0, 0.0), (10.0, 0.0, 0.0)))
     by_plane = (picture(plotter) != 255).any(axis=2)
@@ -171,3 +170,21 @@ def test_tubes_end_in_closed_faces_where_planes_cut(scene, brain, detail):
     radius = 20.0 / np.tan(np.radians(15.0)) / 290.0 * SIZE[1] / 2.0
     assert by_plane.sum() == pytest.approx(np.pi * radius**2, rel=0.05)
     assert by_region.sum() < 0.6 * by_plane.sum(), "a region keeps what of the surface is inside, and closes nothing"
+
+
+@pytest.mark.parametrize("pipeline", ["compute", "geometry", "tessellation"])
+def test_a_region_that_holds_all_of_bent_tubes_leaves_no_crack(scene, pipeline):
+    """Half spheres at joints show on the outer side of bends alone; what a region keeps is as it is without one."""
+    turn = np.linspace(0.0, 12.0, 70)
+    line = np.column_stack([30.0 * np.cos(turn), 30.0 * np.sin(turn), 5.0 * turn - 30.0])
+    from pvfiblets import Streamlines
+
+    fiblets = compress(Streamlines(line.astype(np.float32), np.array([0, 70])))
+    plotter, actor = scene(lines(fiblets, pipeline=pipeline, tube_radius=6.0))
+    plotter.camera_position = [(120.0, -150.0, 90.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+    whole = picture(plotter)
+    actor.clip(regions.Sphere((0.0, 0.0, 0.0), 80.0) | regions.Sphere((0.0, 9.0, 0.0), 80.0))
+    kept = picture(plotter)
+    assert "CLIP_REGION" in actor.explain()["features"]
+    assert ((whole != 255).any(axis=2)).mean() > 0.05
+    np.testing.assert_array_equal(kept, whole)

@@ -51,13 +51,8 @@ def add_lines(plotter, points, width, pipeline):
     plotter.add_fiblets([points], line_width=width, pipeline=pipeline, **WHITE)
 
 
-def add_line_tubes(plotter, points, width, pipeline, detail=0.5):
-    actor = plotter.add_fiblets([points], pipeline=pipeline, **WHITE)
-    actor.tube_radius, actor.detail = width / 2.0, detail
-
-
-def add_line_tubes_of_every_point(plotter, points, width, pipeline):
-    add_line_tubes(plotter, points, width, pipeline, detail=0.0)
+def add_line_tubes(plotter, points, width, pipeline):
+    plotter.add_fiblets([points], pipeline=pipeline, **WHITE).tube_radius = width / 2.0
 
 
 def add_halos(plotter, points, width, _):
@@ -98,11 +93,6 @@ def test_tubes_that_are_slanted_to_the_view_are_as_wide(plotter, add, pipeline, 
     touched = shown[64] > 0.0
     assert np.sqrt(((shown["coverage"] - shown[64])[touched] ** 2).mean()) < 0.15
     assert shown["coverage"].sum() == pytest.approx(shown[64].sum(), rel=0.12)
-
-
-@pytest.mark.xfail(strict=True, reason="tubes thinner than a pixel of short segments show 16 % too much in motion")
-def test_thin_tubes_of_short_segments_are_as_strong(plotter):
-    test_tubes_that_are_slanted_to_the_view_are_as_wide(plotter, add_line_tubes_of_every_point, "compute", 0.6)
 
 
 @pytest.fixture

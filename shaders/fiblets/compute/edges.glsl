@@ -10,7 +10,7 @@ void store_edges(ivec2 pixel, Segment segment) {
     uint word;
 #if FEATURE_TUBES
     vec4 c0 = segment.from.clip, c1 = segment.to.clip;
-    Tube body = tube_of(segment.from.local, segment.to.local, c0, piece.start, piece.cap);
+    Tube body = tube_of(segment.from.local, segment.to.local, c0, piece.start, piece.cap, next_run(segment));
     Hit hit;
     if (!tube_found(body, c0, c1, centre, hit)) return;
     word = tube_edges(body, c0, c1, centre, hit);

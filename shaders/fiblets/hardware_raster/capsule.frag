@@ -25,7 +25,12 @@
 
 void main() {
     precise vec4 c0 = to_homogeneous(varying_from), c1 = to_homogeneous(varying_to);
-    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u);
+#if FEATURE_CLIP_REGION
+    vec3 ahead = varying_ahead;
+#else
+    vec3 ahead = vec3(0.0);
+#endif
+    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u, ahead);
     Hit hit;
 #if FEATURE_PEEL || FEATURE_GATHER_SLICES
     Outline outline;

@@ -17,6 +17,7 @@
 //   varying_onward           0            1         0
 //   varying_part             1            1         0     where segments may be cut
 //   varying_from, _to        0            6         6     of wide lines, at planes of the caller's
+//   varying_ahead            0            0         3     at a region of the caller's
 //   varying_values           2            2         2     with some per-point values
 //   varying_parts            1            0         0     where edges are asked for
 
@@ -31,6 +32,9 @@ VARYING float varying_first EACH;    // index of the fiblet's first point within
 #if FEATURE_TUBES
 VARYING vec3 varying_from EACH;      // ends of the segment, local mm
 VARYING vec3 varying_to EACH;
+#if FEATURE_CLIP_REGION
+VARYING vec3 varying_ahead EACH;     // the next segment's run: fiblets/segments/line_tube.glsl
+#endif
 #else
 #if FEATURE_WIDE_LINES
 VARYING vec4 varying_start EACH;     // ends of the part that is drawn: window x, y; depth; clip w

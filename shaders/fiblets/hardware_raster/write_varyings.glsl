@@ -26,7 +26,7 @@ struct Varyings {
     uint segment;
     float steps;    // from point to point that the segment stands for
     vec2 values;    // per-point value at its ends, where that is not looked up by the fragments
-    vec3 ahead;     // of wide lines: fiblets/segments/joint.glsl
+    vec3 ahead;     // of wide lines and tubes: fiblets/segments/joint.glsl
 };
 
 void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
@@ -40,6 +40,9 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
 #if FEATURE_TUBES
     TO(varying_from) = from;
     TO(varying_to) = to;
+#if FEATURE_CLIP_REGION
+    TO(varying_ahead) = piece.cap ? vec3(0.0) : varyings.ahead;
+#endif
 #else
 #if FEATURE_WIDE_LINES
     TO(varying_start) = piece.a;

@@ -14,6 +14,17 @@ uint capsule_edges(vec2 centre, vec2 run, float r) {
 #endif
 
 #if FEATURE_TUBES
+// The same of a tube thinner than a pixel. Where the line goes on, its segments do not end: of short ones a pixel shows the nearest to
+// the eye, not that beside which it lies.
+uint thin_tube_edges(Tube t, vec2 centre, vec2 run, float r) {
+    float square = dot(run, run), foot = dot(centre, run) / max(square, 1e-12);
+    foot = square > 1e-6 ? clamp(foot, t.start ? 0.0 : -1e6, t.cap ? 1.0 : 1e6) : clamp(foot, 0.0, 1.0);
+    vec2 away = centre - foot * run;
+    float size = length(away);
+    vec2 n = size > 1e-4 ? away / size : vec2(-run.y, run.x) / max(length(run), 1e-6);
+    return packed_edges(n, r - size, 2.0 * r, 0u);
+}
+
 // hit: what the pixel shows; c0, c1: homogeneous window coordinates of the segment's ends.
 //
 // The ray passes the axis nearer than r by what `beside`, the part of the normal across the ray, is shorter than 1; where the
@@ -31,7 +42,7 @@ uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
     vec2 way = vec2(dot(window_gradient(0), out_of), dot(window_gradient(1), out_of)) - pixel * dot(window_gradient(3), out_of);
     float pixels = length(way), r = tube_radius * pixels / max(c0.w + dot(window_gradient(3), at), 1e-30);
     Outline outline;
-    if (r < half_line_width && outline_of(c0, c1, outline)) return capsule_edges(pixel - outline.a.xy, outline.b.xy - outline.a.xy, r);
+    if (r < half_line_width && outline_of(c0, c1, outline)) return thin_tube_edges(t, pixel - outline.a.xy, outline.b.xy - outline.a.xy, r);
     return packed_edges(pixels > 0.0 ? way / pixels : vec2(1.0, 0.0), (1.0 - share) * r, 2.0 * r, 0u);
 }
 #endif

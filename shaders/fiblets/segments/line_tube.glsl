@@ -21,6 +21,9 @@
 //   3. Planes of the caller's narrow the range from t_in to t_out. What they cut is closed: the cut shows as a flat disc.
 //      What the near plane cuts is left open: one looks through it.
 //
+// What a region cuts (FEATURE_CLIP_REGION) is left open, too: a ray may begin within the tube. So a half sphere shows only where no
+// other segment is: of its points those are within the next one that lie on the side to which that runs.
+//
 // A tube thinner than a pixel would be hit by few rays. Pixels at most half_line_width away from the axis belong to it too, as to
 // a line of twice that width (a pixel of the finished picture); where no ray hits, they show the axis.
 //
@@ -49,6 +52,9 @@ struct Tube {
     bool start;    // the half sphere at a is this segment's
     bool cap;      // the line ends at b
     bool beside;   // a is not in front of the eye
+#if FEATURE_CLIP_REGION
+    vec3 ahead;    // unit vector of the next segment; none where nothing follows
+#endif
 };
 
 // What a pixel shows.
@@ -114,10 +120,26 @@ bool outline_of(vec4 c0, vec4 c1, out Outline outline) {
     return true;
 }
 
-Tube tube_of(vec3 a, vec3 b, vec4 c0, bool start, bool cap) {
+// Of the radius: so near to the joint a half sphere lies within a thousandth of it of the next segment's side, and rounding must not
+// part them.
+const float WITHIN = 0.05;
+
+// ahead: the next segment's run, mm; none where nothing follows.
+Tube tube_of(vec3 a, vec3 b, vec4 c0, bool start, bool cap, vec3 ahead) {
     precise vec3 run = b - a;
     precise float size = length(run);
-    return Tube(a, size > 0.0 ? run / size : vec3(0.0), size, to_window(c0), start, cap, c0.w < max(0.25 * tube_w_reach, 1e-30));
+    Tube t;
+    t.a = a;
+    t.axis = size > 0.0 ? run / size : vec3(0.0);
+    t.size = size;
+    t.from = to_window(c0);
+    t.start = start;
+    t.cap = cap;
+    t.beside = c0.w < max(0.25 * tube_w_reach, 1e-30);
+#if FEATURE_CLIP_REGION
+    t.ahead = ahead / max(length(ahead), 1e-30);
+#endif
+    return t;
 }
 
 vec2 sphere_range(vec3 o, vec3 d) {
@@ -185,6 +207,9 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
     precise float y = dot(v, t.axis);
 #if FEATURE_CLIP_PLANES
     if (y < 0.0 && !t.start) return false;  // only now: a plane may have cut the ball off, and the tube behind it shows
+#endif
+#if FEATURE_CLIP_REGION
+    if (face == vec3(0.0) && y > t.size && dot(v - t.size * t.axis, t.ahead) > WITHIN * tube_radius) return false;
 #endif
     hit.side = face == vec3(0.0) && t.size > 0.0 && (y >= 0.0 || !t.start) && (y <= t.size || !t.cap);
     y = clamp(y, 0.0, t.size);

@@ -4,7 +4,7 @@
 void cover(Segment segment) {
     ClippedSegment piece = segment.piece;
     Outline outline = Outline(piece.a, piece.b, piece.t0, piece.t1, piece.reach, piece.thin);
-    Tube body = tube_of(segment.from.local, segment.to.local, segment.from.clip, piece.start, piece.cap);
+    Tube body = tube_of(segment.from.local, segment.to.local, segment.from.clip, piece.start, piece.cap, next_run(segment));
     float r = outline.reach;
     vec2 run = outline.b.xy - outline.a.xy;
     peel_segment(outline.a.xy, outline.b.xy, r, segment.steps);

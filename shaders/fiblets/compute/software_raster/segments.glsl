@@ -57,6 +57,15 @@ float along(Fragment fragment, Segment segment) {
 }
 
 #if FEATURE_TUBES
+// The run of what follows a segment, where that is drawn.
+vec3 next_run(Segment segment) {
+#if FEATURE_CLIP_REGION
+    return segment.piece.cap || !goes_on(segment.index + 1u) ? vec3(0.0) : segment.ahead;
+#else
+    return vec3(0.0);
+#endif
+}
+
 #include "fiblets/compute/software_raster/cover_tube.glsl"
 #elif FEATURE_WIDE_LINES
 #include "fiblets/compute/software_raster/cover_wide.glsl"
