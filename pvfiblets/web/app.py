@@ -16,6 +16,7 @@ from typing import Any
 from trame.app import TrameApp
 
 from pvfiblets.web import describe, layout
+from pvfiblets.web.bundles_tab import BundleActions
 from pvfiblets.web.camera import CameraActions
 from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
@@ -97,6 +98,7 @@ class Explorer(TrameApp):
         self.files = FileActions(self)
         self.slices = SliceActions(self)
         self.painting = PaintActions(self)
+        self.bundles = BundleActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
@@ -205,6 +207,7 @@ class Explorer(TrameApp):
             self.selecting.refresh()
             self.slices.refresh()
             self.painting.refresh()
+            self.bundles.refresh()
         self.stream.request()
 
     def _show_info(self) -> None:

@@ -210,6 +210,16 @@ class Layer:
 
 
 @dataclass(frozen=True)
+class Bundle:
+    """A named set of streamlines: its colour (``#rrggbb``), and whether it is shown."""
+
+    name: str
+    ids: Ids
+    color: str
+    visible: bool = True
+
+
+@dataclass(frozen=True)
 class Clip:
     """A cut through layers.
 
@@ -276,6 +286,8 @@ class State:
     measurements : tuple of Measurement
     painting : Painting or None
         Regions that are painted on slices.
+    bundles : tuple of (Source, tuple of Bundle)
+        Those of sources whose bundles were edited.
     """
 
     layers: tuple[Layer, ...] = ()
@@ -283,6 +295,11 @@ class State:
     background: str = "#000000"
     measurements: tuple[Measurement, ...] = ()
     painting: Painting | None = None
+    bundles: tuple[tuple[Source, tuple[Bundle, ...]], ...] = ()
+
+    def bundles_of(self, source: Source) -> tuple[Bundle, ...] | None:
+        """Return the bundles of a source, if they were edited; None for the groups of its file."""
+        return next((listed for one, listed in self.bundles if one == source), None)
 
     def layer(self, layer_id: str) -> Layer:
         """Return a layer.

@@ -80,10 +80,22 @@ class ExportActions(Actions):
             raise ValueError(f"{to[:40]!r} is none of {', '.join(PLACES)}")
         layer = self._owner(what)
         fiblets, ids = app.scene.chosen(layer.id, what)
+        self._begin(layer, fiblets, ids, self._stem(layer, what, suffix), suffix)
+
+    def export_ids(self, layer_id: str, ids: Any, suffix: str, name: str) -> None:
+        """Write some streamlines of a layer, called after something, to where the page says, and offer the file."""
+        app = self._app
+        if suffix not in EXPORTS or app.page.export_to not in PLACES:
+            raise ValueError(f"{str(suffix)[:40]!r} is none of {', '.join(EXPORTS)}")
+        layer = app.scene.layer(layer_id)
+        stem = re.sub(r"[^\w-]+", "_", name).strip("_")[:80] or "bundle"
+        self._begin(layer, app.scene.actor(layer_id).fiblets, ids, stem, suffix)
+
+    def _begin(self, layer: Any, fiblets: Any, ids: Any, stem: str, suffix: str) -> None:
+        app, to = self._app, self._app.page.export_to
         points = fiblets.n_points * len(ids) // max(fiblets.n_streamlines, 1)
         if to == "computer" and suffix != ".fiblets" and points * BYTES_PER_POINT > LARGEST:
             raise ValueError(f"about {points:,} points are too many to fetch; save the file in the served folder")
-        stem = self._stem(layer, what, suffix)
         original, why = original_of(app.scene, layer, ids)
         held = _Held(fiblets, ids, original, why)
         app.later(self._write(held, stem, suffix, temporary=to == "computer"))

@@ -32,6 +32,7 @@ from pvfiblets.web.document import (
 from pvfiblets.web.layer_queries import LayerQueries
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scalar_bars import Bars
+from pvfiblets.web.scene_bundles import BundleSync, SceneBundles
 from pvfiblets.web.scene_filters import SceneFilters
 from pvfiblets.web.scene_measurements import SceneMeasurements
 from pvfiblets.web.scene_painting import ScenePainting
@@ -74,7 +75,8 @@ class _Drawn:
 
 
 class Scene(
-    SceneFilters, SceneRegions, SceneSelection, SceneSlices, ScenePainting, SceneMeasurements, LayerQueries, Cameras
+    SceneFilters, SceneRegions, SceneSelection, SceneSlices, ScenePainting, SceneBundles, SceneMeasurements,
+    LayerQueries, Cameras,
 ):  # fmt: skip
     """What a session shows.
 
@@ -102,6 +104,7 @@ class Scene(
         self.bars = Bars(plotter)
         self.slicing = Slicing(plotter)
         self.canvas = Canvas(self.slicing)
+        self._bundled = BundleSync()
         self._listeners: list[Callable[[Change], None]] = []
         self._histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
         self._used = 0
@@ -181,12 +184,16 @@ class Scene(
                     self.slicing.remove(drawn.actor)
                 else:
                     remove_actor(self.plotter, drawn.actor)
+        sets = {layer.source: self.data(layer).data for layer in state.layers if layer.kind in LINES}
+        regrouped = self._bundled.groups(state, sets)
         for layer in state.layers:
             self._draw(layer, state.clips)
         actors = [(layer, self._drawn[layer.id].actor) for layer in state.layers]
         put_in_order(self.plotter.renderer, [actor for layer, actor in actors if layer.kind != "image"])
         self.slicing.put_in_order([actor for layer, actor in actors if layer.kind == "image"])
-        self.canvas.become(state.painting, [(layer, actor) for layer, actor in actors if layer.kind in LINES])
+        lines = [(layer, actor) for layer, actor in actors if layer.kind in LINES]
+        self.canvas.become(state.painting, lines)
+        self._bundled.show(state, lines, regrouped)
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         if state.measurements != self._measured:

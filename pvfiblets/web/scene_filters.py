@@ -269,8 +269,8 @@ def check_subset(value: Any) -> dict[str, Any]:
     return {"amount": amount, "seed": whole(value.get("seed", 0), "seed", 0, 2**31)}
 
 
-def check_filters(value: Any, data: Any) -> Filters:
-    """Return filters of a session file that fit some fiblets.
+def check_filters(value: Any, data: Any, groups: Any = None) -> Filters:
+    """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list.
 
     Raises
     ------
@@ -289,7 +289,7 @@ def check_filters(value: Any, data: Any) -> Filters:
     subset, regions = value.get("subset"), value.get("regions")
     return Filters(
         criteria,
-        check_groups(value.get("groups"), data.groups),
+        check_groups(value.get("groups"), data.groups if groups is None else groups),
         None if subset is None else check_subset(subset),
         None if regions is None else check_condition(regions),
     )

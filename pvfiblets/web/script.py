@@ -19,7 +19,7 @@ from pvfiblets.web.distance_label import LINES as LINE_LOOKS
 from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import Python, code
-from pvfiblets.web.script_slices import has_images, image_arguments, painting_lines, slicing_lines
+from pvfiblets.web.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
 from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
 
 if TYPE_CHECKING:
@@ -138,6 +138,10 @@ class _Writer:
             key: value for key, value in said.items() if layer.kind == "mesh" or key in layers.ARGUMENTS[layer.kind]
         }
         arguments["show_scalar_bar"] = False
+        bundled = layer.kind in LINES and self._scene.state.bundles_of(layer.source) is not None
+        late = arguments.pop("scalars", None) if bundled and arguments.get("scalars") == "group" else None
+        if late is not None:
+            del said["scalars"]  # of bundles that are not there yet
         method = {"tubes": "add_spline_tubes", "volume": "add_raycast_volume", "mesh": "add_mesh"}.get(
             layer.kind, "add_fiblets"
         )
@@ -151,6 +155,10 @@ class _Writer:
         if not layer.visible:
             self._lines += [f"{name}.visibility = False"]
         if layer.kind in LINES:
+            if bundled:
+                self._imports.add("import numpy as np")
+                self._lines += bundle_lines(self._scene, layer, name, self._ids)
+                self._lines += [f"{name}.scalars = {late!r}"] if late is not None else []
             self._filters(name, layer)
             self._selection(name, layer)
         self._lines += [""]
@@ -395,6 +403,7 @@ class _Writer:
             "line",
             "workspace",
             "painter",
+            "bundle",
             "live",
         }
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pvfiblets.web.document import Layer
     from pvfiblets.web.scene import Scene
 
-__all__ = ["has_images", "image_arguments", "painting_lines", "slicing_lines"]
+__all__ = ["bundle_lines", "has_images", "image_arguments", "painting_lines", "slicing_lines"]
 
 
 def has_images(scene: Scene) -> bool:
@@ -78,6 +78,19 @@ def painting_lines(scene: Scene, names: Mapping[str, str], ids: Callable[[Any], 
         found += ["workspace.slices.add((painter.labels, painter.grid.affine), name='painted', opacity=0.55,"]
         found += [f"                     labels={shown})"]
     return [*found, ""]
+
+
+def bundle_lines(scene: Scene, layer: Layer, name: str, ids: Callable[[Any], str]) -> list[str]:
+    """Return lines that give an actor the bundles of its layer, if they were edited."""
+    bundles = scene.state.bundles_of(layer.source)
+    if bundles is None:
+        return []
+    found = [f"for bundle in {name}.bundles.names:", f"    {name}.bundles.remove(bundle)"]
+    for one in bundles:
+        which = "np.array([], int)" if not len(one.ids) else ids(one.ids.runs)
+        hidden = "" if one.visible else ", visible=False"
+        found += [f"{name}.bundles.add({one.name!r}, {which}, color={one.color!r}{hidden})"]
+    return found
 
 
 _WORDS = {"passes": "include", "misses": "exclude", "ends_in": "ends_in", "stays_in": "stays_in"}

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,6 +24,7 @@ from pvfiblets.web.cameras import check_camera
 from pvfiblets.web.document import (
     KINDS,
     LINES,
+    Bundle,
     Clip,
     Filters,
     Ids,
@@ -34,6 +35,7 @@ from pvfiblets.web.document import (
     volume_in,
 )
 from pvfiblets.web.painting import as_json, check_painting
+from pvfiblets.web.scene_bundles import check_bundles
 from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
 from pvfiblets.web.scene_measurements import check_measurements
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
@@ -110,6 +112,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
         ],
         **measured,
         **_painting_to_dict(scene),
+        **_bundles_to_dict(state, path_of),
     }
 
 
@@ -206,6 +209,23 @@ def load(scene: Scene, path: str) -> None:
 # To JSON --------------------------------------------------------------------------------------------
 
 
+def _bundles_to_dict(state: State, path_of: Any) -> dict[str, Any]:
+    used = {layer.source for layer in state.layers}
+    found = []
+    for source, bundles in state.bundles:
+        if source not in used:
+            continue
+        place = _place_of(source, path_of)
+        if source.ids is not None:
+            place["ids"] = source.ids.runs.ravel().tolist()
+        rows = [
+            {"name": one.name, "color": one.color, "visible": one.visible, "ids": one.ids.runs.ravel().tolist()}
+            for one in bundles
+        ]
+        found.append({"source": place, "bundles": rows})
+    return {"bundles": found} if found else {}
+
+
 def _painting_to_dict(scene: Scene) -> dict[str, Any]:
     painting, painter = scene.state.painting, scene.canvas.painter
     return {} if painting is None or painter is None else {"painting": as_json(painting, painter.labels)}
@@ -268,12 +288,14 @@ def _checked(
     version = data.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
-    optional = ("clips", "background", "camera", "measurements", "slices", "painting")
+    optional = ("clips", "background", "camera", "measurements", "slices", "painting", "bundles")
     mapping(data, "session", ("program", "version", "layers"), optional)
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
-    reading = _Reading(scene.store.fork(), _Paths(scene, folder), progress, cancel)
+    paths = _Paths(scene, folder)
+    reading = _Reading(scene.store.fork(), paths, progress, cancel, _listed(data.get("bundles", []), paths),
+                       scene.own_groups)  # fmt: skip
     found = [_layer_from_dict(item, reading) for item in data["layers"]]
     clips = [_clip_from_dict(item, reading.paths) for item in data.get("clips", [])]
     ids = [layer.id for layer in found] + [clip.id for clip in clips]
@@ -283,6 +305,7 @@ def _checked(
     measurements = check_measurements(data.get("measurements", []))
     painting = None if data.get("painting") is None else check_painting(data["painting"])
     state = State(tuple(found), tuple(clips), background, measurements, painting)
+    state = replace(state, bundles=_bundles_from(reading, state))
     _check_cuts(reading.store, state)
     camera = data.get("camera")
     slices = None if data.get("slices") is None else check_view(data["slices"])
@@ -323,6 +346,8 @@ class _Reading:
     paths: _Paths
     progress: Progress | None
     cancel: Cancel | None
+    bundles: Mapping[Source, list[Any]]  # as they were sent
+    own: Callable[[Source, Any], Any]  # names of a file's groups, however they were edited since
 
     def volume(self, setting: Any) -> list[tuple[Any, str]]:
         """Return the one volume that a setting names, as a choice; none if it names none."""
@@ -352,6 +377,9 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     data = store.data(layer, reading.progress, reading.cancel).data
     settings = layers.defaults(kind)
     for name, setting in mapping(value.get("settings", {}), "settings", (), tuple(settings)).items():
+        if name == "scalars" and setting == "group" and reading.bundles.get(source):
+            settings[name] = setting  # of bundles that come with the session
+            continue
         volumes = reading.volume(setting) if name == "scalars" else []
         settings[name] = layers.check(kind, name, volumes[0][0] if volumes else setting, data, volumes)
     layer = replace(layer, settings=settings)
@@ -360,7 +388,9 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
             raise ValueError(f"{layer.name!r} is of kind {kind} and has filters or a selection; tractograms alone have")
         return layer
     if value.get("filters") is not None:
-        filters = check_filters(value["filters"], data)
+        bundles = reading.bundles.get(source)
+        groups = reading.own(source, data) if bundles is None else [str(one["name"]) for one in bundles]
+        filters = check_filters(value["filters"], data, groups)
         if filters.regions is not None:
             regions = paths.condition(filters.regions)
             make_predicate(regions, store.shape)
@@ -372,6 +402,30 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
             raise ValueError(f"streamline {selected.highest} is selected, of {data.n_streamlines} in {layer.name!r}")
         layer = replace(layer, selected=selected if len(selected) else None)
     return layer
+
+
+def _listed(value: Any, paths: _Paths) -> dict[Source, list[Any]]:
+    """Return bundles by their source, of which no more is known yet than that they have names."""
+    if not isinstance(value, list) or len(value) > _MOST_LAYERS:
+        raise ValueError(f"bundles are {shown(value)}; give a list of {_MOST_LAYERS} at most")
+    found: dict[Source, list[Any]] = {}
+    for one in value:
+        mapping(one, "bundles", ("source", "bundles"))
+        rows = one["bundles"]
+        if not isinstance(rows, list) or not all(isinstance(row, Mapping) and "name" in row for row in rows):
+            raise ValueError(f"bundles of a source are {shown(rows)}; give a list of bundles")
+        found[_source_from_dict(one["source"], paths)] = rows
+    return found
+
+
+def _bundles_from(reading: _Reading, state: State) -> tuple[tuple[Source, tuple[Bundle, ...]], ...]:
+    found = []
+    for source, rows in reading.bundles.items():
+        layer = next((one for one in state.layers if one.kind in LINES and one.source == source), None)
+        if layer is None:
+            raise ValueError("there are bundles of what no layer shows")
+        found.append((source, check_bundles(rows, _ids, reading.store.data(layer).data.n_streamlines)))
+    return tuple(found)
 
 
 def _source_from_dict(value: Any, paths: _Paths) -> Source:

@@ -62,6 +62,7 @@ class Page:
     placing: int = 0  # the row of the region that the next click places
     placing_name: str = ""
     selection: Record = field(default_factory=dict)
+    bundles: Record = field(default_factory=lambda: {"layer": "", "rows": []})
     painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
     slicing: Record = field(default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": ""})
     info: list[Record] = field(default_factory=list)

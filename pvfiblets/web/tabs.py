@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.web import slices_tab
+from pvfiblets.web import bundles_tab, slices_tab
 from pvfiblets.web.controls import NAMES
 from pvfiblets.web.elements import html, v3
 from pvfiblets.web.writing import EXPORTS
 
 TABS = (
-    ("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("slices", "Slices"), ("info", "Info"),
+    ("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("bundles", "Bundles"), ("slices", "Slices"),
+    ("info", "Info"),
 )  # fmt: skip
+TAB = "min-width: 0; font-size: 13px; letter-spacing: 0"
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
 WHAT = (("selected", "selected ones"), ("shown", "all that filters leave"), ("all", "all of the layer"))
 WHERE = (("folder", "the served folder"), ("computer", "this computer"))
@@ -22,7 +24,7 @@ def build(app: Any) -> None:
     with html.Div(style="display: flex; flex-direction: column; height: 100%"):
         with v3.VTabs(v_model=("tab", "clip"), density="compact", grow=True, style="flex: none", show_arrows=False):
             for name, title in TABS:
-                v3.VTab(title, value=name, classes="text-none px-1", style="min-width: 0", data_tab=name)
+                v3.VTab(title, value=name, classes="text-none px-0", style=TAB, data_tab=name)
         with html.Div(classes="pv-scroll", style="flex: 1 1 auto"):
             with html.Div(v_if="tab === 'clip'", id="tab-clip"):
                 _clip(app)
@@ -30,6 +32,8 @@ def build(app: Any) -> None:
                 _filter(app)
             with html.Div(v_if="tab === 'selection'", id="tab-selection"):
                 _selection(app)
+            with html.Div(v_if="tab === 'bundles'", id="tab-bundles"):
+                bundles_tab.build(app)
             with html.Div(v_if="tab === 'slices'", id="tab-slices"):
                 slices_tab.build(app)
             with html.Div(v_if="tab === 'info'", id="tab-info"):

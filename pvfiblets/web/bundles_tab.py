@@ -1,0 +1,198 @@
+"""The tab Bundles: groups, saved selections and results of filters, as one list to edit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pvfiblets.web.actions import LineActions
+from pvfiblets.web.document import LINES
+from pvfiblets.web.elements import html, v3
+from pvfiblets.web.rpc_allowlist import number
+from pvfiblets.web.writing import EXPORTS
+
+__all__ = ["BundleActions", "build"]
+
+LISTED = 300
+"""Rows of the list; more are counted."""
+
+
+class BundleActions(LineActions):
+    """What the page does with bundles of the chosen tractogram."""
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self._checked: list[str] = []
+        self._shown: Any = None
+
+    def refresh(self) -> None:
+        """Show the bundles of the chosen tractogram."""
+        page, scene = self._app.page, self._app.scene
+        if not page.chosen or page.chosen_kind not in LINES:
+            page.bundles, self._shown = {"layer": "", "rows": []}, None
+            return
+        bundles = scene.bundles(page.chosen)
+        self._checked = [name for name in self._checked if any(one.name == name for one in bundles)]
+        layer = self._layer
+        selected = 0 if layer.selected is None else len(layer.selected)
+        page.bundles = {
+            "layer": layer.id,
+            "rows": [
+                {"name": one.name, "color": one.color, "visible": one.visible, "count": f"{len(one.ids):,}",
+                 "order": self._checked.index(one.name) + 1 if one.name in self._checked else 0}
+                for one in bundles[:LISTED]
+            ],
+            "more": f"and {len(bundles) - LISTED:,} more" if len(bundles) > LISTED else "",
+            "checked": len(self._checked), "selected": selected, "all": all(one.visible for one in bundles),
+            "coloured": layer.settings["scalars"] == "group",
+        }  # fmt: skip
+
+    def check(self, name: str, on: bool) -> None:
+        """Choose a bundle for what is done with several, or choose it no more."""
+        known = [one.name for one in self._app.scene.bundles(self._layer.id)]
+        self._checked = [one for one in self._checked if one != name]
+        if on is True and name in known:
+            self._checked.append(name)
+        with self._app.state:
+            self.refresh()
+
+    def add(self, what: str) -> None:
+        """Make what is selected, or what is shown, a bundle."""
+        if what not in ("selected", "shown"):
+            raise ValueError(f"a bundle is made of what is selected or shown, not of {str(what)[:40]!r}")
+        self._app.scene.add_bundle(self._layer.id, what)
+
+    def cluster(self, text: Any) -> None:
+        """Add a bundle for each cluster of streamlines that run alike."""
+        self._app.later(self._cluster(number(float(str(text).replace(",", ".") or "nan"), 0.1, 1000.0)))
+
+    async def _cluster(self, threshold: float) -> None:
+        app, layer = self._app, self._layer
+        fiblets = app.scene.actor(layer.id).fiblets
+        found = await app.files.beside(
+            layer.name, lambda *_: fiblets.clusters(threshold=threshold), "clustering", cancellable=False
+        )
+        largest = sorted((np.asarray(one.ids) for one in found), key=len, reverse=True)[:CLUSTERS]
+        app.scene.add_clusters(layer.id, largest)
+        app.say(f"{len(found):,} clusters; the {len(largest)} largest are bundles now", "success")
+
+    def set(self, name: str, what: str, value: Any) -> None:
+        """Set name, colour or visibility of a bundle."""
+        if what not in ("name", "color", "visible"):
+            raise ValueError(f"a bundle has no {str(what)[:40]!r}")
+        value = str(value).strip() if what == "name" else value
+        self._app.scene.set_bundle(self._layer.id, name, **{what: value})
+
+    def show_all(self, on: bool) -> None:
+        """Show all bundles, or none."""
+        self._app.scene.show_bundles(self._layer.id, None if on is True else [])
+
+    def colour(self, on: bool) -> None:
+        """Colour streamlines by their bundles, or by orientation."""
+        self._app.scene.set(self._layer.id, "scalars", "group" if on is True else "orientation")
+
+    def act(self, what: str) -> None:
+        """Merge, subtract, remove, select or show alone the bundles that are chosen."""
+        scene, layer, names = self._app.scene, self._layer.id, list(self._checked)
+        if not names:
+            raise ValueError("choose bundles by their boxes first")
+        act = {
+            "merge": scene.merge_bundles, "subtract": scene.subtract_bundles, "remove": scene.remove_bundles,
+            "select": scene.select_bundles, "only": scene.show_bundles,
+        }.get(what if isinstance(what, str) else "")  # fmt: skip
+        if act is None:
+            raise ValueError(f"bundles cannot be {str(what)[:40]!r}")
+        act(layer, names)
+        self._app.refresh()
+
+    def export(self, suffix: str) -> None:
+        """Write the streamlines of the chosen bundles to a file, where the tab Selection says."""
+        scene, layer = self._app.scene, self._layer
+        names = list(self._checked)
+        if not names:
+            raise ValueError("choose bundles by their boxes first")
+        parts = [one.ids.array() for one in scene.bundles(layer.id) if one.name in names]
+        self._app.exports.export_ids(layer.id, np.unique(np.concatenate(parts)), suffix, names[0])
+
+
+CLUSTERS = 50
+
+
+def build(app: Any) -> None:
+    """Build the tab."""
+    bundles = app.bundles
+    html.Div("Choose a tractogram on the left to see its bundles.", v_if="!bundles.layer", classes="pv-small pa-3")
+    with html.Div(v_if="bundles.layer"):
+        with html.Div(classes="px-3 pt-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
+            for what, title, hint in (
+                ("selected", "Selected", "A bundle of what is selected"),
+                ("shown", "Shown", "A bundle of what filters and regions leave"),
+            ):
+                v3.VBtn(
+                    title, size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus", title=hint,
+                    click=(bundles.add, f"['{what}']"), data_bundle=what,
+                    disabled=("!bundles.selected",) if what == "selected" else False,
+                )  # fmt: skip
+            v3.VBtn("Clusters", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
+                    title="Bundles of streamlines that run alike, 10 mm apart at most",
+                    click=(bundles.cluster, "['10']"), data_bundle="clusters")  # fmt: skip
+        html.Div(
+            "No bundles yet. Make one of what is selected, or of what filters and regions leave.",
+            v_if="!bundles.rows.length", classes="pv-small px-3 pt-2",
+        )  # fmt: skip
+        with html.Div(v_if="bundles.rows.length"):
+            with html.Div(classes="pv-pair px-2 pt-1"):
+                with v3.VBtn(
+                    icon=True, size="x-small", variant="text", click=(bundles.show_all, "[!bundles.all]"),
+                    aria_label=("bundles.all ? 'Hide all' : 'Show all'",), data_action="all-bundles",
+                ):  # fmt: skip
+                    v3.VIcon(icon=("bundles.all ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                html.Span("{{ bundles.rows.length }} bundles", classes="pv-small", style="flex: 1")
+                v3.VBtn(
+                    "Colour by bundle", size="x-small", classes="text-none", data_action="colour-by-bundle",
+                    variant=("bundles.coloured ? 'flat' : 'tonal'",),
+                    color=("bundles.coloured ? 'primary' : undefined",),
+                    click=(bundles.colour, "[!bundles.coloured]"),
+                )  # fmt: skip
+            with html.Div(v_for="b in bundles.rows", key="b.name", classes="pv-pair px-2", data_bundle_row=("b.name",)):
+                with v3.VBtn(
+                    icon=True, size="x-small", variant="text", click=(bundles.set, "[b.name, 'visible', !b.visible]"),
+                    aria_label=("b.visible ? 'Hide' : 'Show'",), data_action="eye",
+                ):  # fmt: skip
+                    v3.VIcon(icon=("b.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                html.Input(
+                    type="color", classes="pv-colour", style="width: 22px; height: 22px", value=("b.color",),
+                    aria_label="Colour", change=(bundles.set, "[b.name, 'color', $event.target.value]"),
+                )  # fmt: skip
+                html.Input(
+                    classes="pv-num", style="flex: 1; width: auto; border-color: transparent", value=("b.name",),
+                    maxlength=120, change=(bundles.set, "[b.name, 'name', $event.target.value]"),
+                    aria_label="Name of the bundle", data_field="name", title=("b.name",),
+                )  # fmt: skip
+                html.Span("{{ b.count }}", classes="pv-small", data_value="count")
+                v3.VCheckbox(
+                    model_value=("b.order > 0",), density="compact", hide_details=True, style="flex: none",
+                    update_modelValue=(bundles.check, "[b.name, !!$event]"), aria_label=("'Choose ' + b.name",),
+                )  # fmt: skip
+            html.Div("{{ bundles.more }}", v_if="bundles.more", classes="pv-small px-3")
+            with html.Div(
+                v_if="bundles.checked", classes="px-3 pt-2", style="display: flex; flex-wrap: wrap; gap: 4px",
+            ):  # fmt: skip
+                for what, title, hint, least in (
+                    ("only", "Show only", "Hide all others", 1),
+                    ("select", "Select", "Select their streamlines", 1),
+                    ("merge", "Merge", "Join them into the one that was chosen first", 2),
+                    ("subtract", "Subtract", "Take the others out of the one that was chosen first", 2),
+                    ("remove", "Remove", "Take them off the list; streamlines stay", 1),
+                ):
+                    v3.VBtn(
+                        title, size="x-small", variant="tonal", classes="text-none", title=hint, data_bundle_act=what,
+                        click=(bundles.act, f"['{what}']"), disabled=(f"bundles.checked < {least}",),
+                    )  # fmt: skip
+                v3.VBtn("Export…", size="x-small", variant="tonal", classes="text-none", id="export-bundles",
+                        data_bundle_act="export")  # fmt: skip
+                with v3.VMenu(activator="#export-bundles"), v3.VList(density="compact"):
+                    for suffix in EXPORTS:
+                        v3.VListItem(title=suffix, click=(bundles.export, f"['{suffix}']"),
+                                     data_bundle_export=suffix)  # fmt: skip

@@ -1,0 +1,132 @@
+"""Bundles on the page: what is edited, undone, saved, and shown."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.web import session
+from pvfiblets.web.history import History
+from pvfiblets.web.script import as_script
+
+
+@pytest.fixture
+def lines_layer(scene):
+    return scene.open("lines.fiblets").id
+
+
+def told(scene, layer):
+    return {one.name: (len(one.ids), one.visible) for one in scene.bundles(layer)}
+
+
+def shown(scene, layer):
+    return np.flatnonzero(scene.actor(layer).shown).tolist()
+
+
+def test_groups_selections_and_what_is_shown_are_one_list(scene, lines_layer):
+    history = History(scene, together=0.0)
+    assert told(scene, lines_layer) == {"near": (30, True), "far": (30, True)}
+    scene.select(lines_layer, [1, 2, 40])
+    scene.add_bundle(lines_layer, "selected", "picked <b>ones</b>")
+    scene.set_filter(lines_layer, "weight", 10, 14)
+    scene.add_bundle(lines_layer, "shown")
+    scene.remove_filter(lines_layer)
+    assert told(scene, lines_layer) == {
+        "near": (30, True), "far": (30, True), "picked <b>ones</b>": (3, True), "bundle 4": (5, True),
+    }  # fmt: skip
+    groups = scene.actor(lines_layer).fiblets.groups
+    assert list(groups) == ["near", "far", "picked <b>ones</b>", "bundle 4"]
+    assert groups["bundle 4"].tolist() == [10, 11, 12, 13, 14]
+    scene.merge_bundles(lines_layer, ["bundle 4", "picked <b>ones</b>"])
+    scene.subtract_bundles(lines_layer, ["near", "bundle 4"])
+    assert told(scene, lines_layer) == {"near": (23, True), "far": (30, True), "bundle 4": (8, True)}
+    scene.set_groups(lines_layer, ["far", "near"])
+    scene.set_bundle(lines_layer, "far", name="away")
+    assert scene.layer(lines_layer).filters.groups == ("away", "near")
+    scene.remove_bundles(lines_layer, ["away"])
+    assert scene.layer(lines_layer).filters.groups == ("near",)
+    while history.undo() is not None:
+        pass
+    assert told(scene, lines_layer) == {"near": (30, True), "far": (30, True)}
+    assert list(groups) == ["near", "far"]
+    assert scene.state.bundles_of(scene.layer(lines_layer).source) is None
+
+
+def test_hidden_bundles_are_not_drawn_but_what_is_in_none_stays(scene, lines_layer):
+    scene.remove_bundles(lines_layer, ["far"])
+    scene.add_bundle(lines_layer, [25, 35], "mixed")
+    scene.set_bundle(lines_layer, "near", visible=False)
+    assert shown(scene, lines_layer) == [25, *range(30, 60)]
+    scene.show_bundles(lines_layer, ["near"])
+    assert shown(scene, lines_layer) == [n for n in range(60) if n != 35]
+    twin = scene.duplicate(lines_layer).id  # of the same source
+    assert told(scene, twin) == told(scene, lines_layer)
+    assert shown(scene, twin) == shown(scene, lines_layer)
+    scene.show_bundles(lines_layer, None)
+    assert shown(scene, lines_layer) == shown(scene, twin) == list(range(60))
+
+
+def test_colours_are_those_of_the_list(scene, lines_layer):
+    scene.set(lines_layer, "scalars", "group")
+    scene.set(lines_layer, "lighting", False)
+    scene.set(lines_layer, "line_width", 3)
+    scene.set_bundle(lines_layer, "near", color="#ff0000")
+    scene.set_bundle(lines_layer, "far", color="#0000ff")
+    scene.view("coronal")
+    found = scene.screenshot().reshape(-1, 3)
+    lit = found[found.max(axis=1) > 0]
+    assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == {(255, 0, 0), (0, 0, 255)}
+    scene.remove_bundles(lines_layer, ["near", "far"])
+    assert scene.layer(lines_layer).settings["scalars"] == "orientation"
+
+
+def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
+    scene.remove_bundles(lines_layer, ["far"])
+    scene.add_bundle(lines_layer, [3, 4, 5], "a")
+    scene.set_bundle(lines_layer, "near", visible=False)
+    scene.set_groups(lines_layer, ["a", "near"])
+    scene.set(lines_layer, "scalars", "group")
+    scene.set(lines_layer, "line_width", 2)
+    scene.set_groups(lines_layer, None)
+    scene.view("coronal")
+    state, wanted = session.to_dict(scene), told(scene, lines_layer)
+    picture = scene.screenshot()
+    text = as_script(scene, str(folder / "found.png"))
+    text = text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    exec(compile(text, "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 200, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    scene.remove(lines_layer)
+    scene.forget_unused()
+    session.from_dict(scene, state)
+    layer = scene.layers[0].id
+    assert told(scene, layer) == wanted
+    assert scene.layer(layer).settings["scalars"] == "group"
+    assert shown(scene, layer) == [3, 4, 5, *range(30, 60)]
+    rows = state["bundles"][0]["bundles"]
+    for wrong, said in (
+        ([{**rows[0], "ids": [0, 99]}], "streamline 98"), ([rows[0], rows[0]], "two bundles"),
+        ([{**rows[0], "color": "nope"}], "colour"), ([{"name": 3}], "bundle"), ("x", "bundles"),
+    ):  # fmt: skip
+        with pytest.raises(session.SessionError, match=said):
+            session.from_dict(scene, {**state, "bundles": [{**state["bundles"][0], "bundles": wrong}]})
+    assert told(scene, layer) == wanted
+
+
+def test_what_makes_no_sense_is_refused(scene, lines_layer):
+    for act, said in (
+        (lambda: scene.add_bundle(lines_layer, "selected"), "nothing of"),
+        (lambda: scene.add_bundle(lines_layer, [], "x"), "no streamlines"),
+        (lambda: scene.add_bundle(lines_layer, [60], "x"), "streamline 60"),
+        (lambda: scene.add_bundle(lines_layer, [1], "near"), "already"),
+        (lambda: scene.merge_bundles(lines_layer, ["near"]), "two bundles"),
+        (lambda: scene.subtract_bundles(lines_layer, ["near"]), "taken out"),
+        (lambda: scene.set_bundle(lines_layer, "near", size=3), "size"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            act()
+    with pytest.raises(KeyError, match="no bundle 'other'"):
+        scene.select_bundles(lines_layer, ["other"])
+    scene.select_bundles(lines_layer, ["far"])
+    assert scene.count() == 30
