@@ -82,7 +82,15 @@ class BundleActions(LineActions):
         if what not in ("name", "color", "visible"):
             raise ValueError(f"a bundle has no {str(what)[:40]!r}")
         value = str(value).strip() if what == "name" else value
-        self._app.scene.set_bundle(self._layer.id, name, **{what: value})
+        before = list(self._checked)
+        if what == "name":  # it stays chosen
+            self._checked = [value if one == name else one for one in self._checked]
+        try:
+            self._app.scene.set_bundle(self._layer.id, name, **{what: value})
+        except Exception:
+            self._checked = before
+            self._app.refresh()
+            raise
 
     def show_all(self, on: bool) -> None:
         """Show all bundles, or none."""
