@@ -2,8 +2,8 @@
 Slices
 ======
 
-Axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair: a map of fibre density in grey, directions
-in colour over it, and in each pane the streamlines of a slab about its slice.
+Axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair: an image of a head, fibre directions in
+colour over it, and in each pane the streamlines of the corpus callosum that lie in a slab about its slice.
 
 Run it as ``python examples/26_linked_slices.py [FOLDER]``.
 """
@@ -11,29 +11,38 @@ Run it as ``python examples/26_linked_slices.py [FOLDER]``.
 import sys
 from pathlib import Path
 
+import nibabel
 import numpy as np
 import pyvista as pv
 
 import pvfiblets
 from pvfiblets.synthetic import brain_streamlines
+from pvfiblets.synthetic.vessels import brain_like
+
+
+def made_up_head() -> nibabel.Nifti1Image:
+    """Return an image that looks like a T1-weighted one; a file's path would do as well."""
+    head = brain_like(144, noise=0.02)
+    affine = np.diag([1.3, 1.3, 1.25, 1.0]) @ head.affine
+    affine[:3, 3] += (0.0, -18.0, 4.0)
+    return nibabel.Nifti1Image(head.values.astype(np.float32), affine)
 
 
 def main(folder: Path) -> None:
     """Write a picture of the workspace."""
     fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2))
-    counts = fiblets.density(2.0)
-    directions = fiblets.density(like=counts, contrast="direction")
+    directions = fiblets.density(2.0, contrast="direction")
+    counts = fiblets.density(like=directions)
 
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 1000), shape=(2, 2))
     plotter.set_background("black", all_renderers=True)
-    workspace = plotter.slices.workspace(counts, thickness=4.0)
-    top = workspace.slices.layers[0].clim[1]
-    few = 0.15 * top  # nearly black, where it would hide lines of the 3-D view
-    workspace.slices.layers[0].below = few
-    workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, top), below=few, opacity=0.6)
-    plotter.add_fiblets(fiblets, lighting=False)
-    workspace.position = counts.affine[:3] @ (*(0.5 * np.array(counts.values.shape)), 1.0) + (8.0, -10.0, 4.0)
-    workspace.add_contours(pv.Sphere(radius=25.0, center=workspace.position), "white")
+    workspace = plotter.slices.workspace(made_up_head(), thickness=1.5)
+    workspace.slices.layers[0].below = 15.0  # air would hide what lies behind it
+    most = float(np.percentile(counts.values, 99.0))
+    workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, most), below=0.3 * most, opacity=0.5)
+    plotter.add_fiblets(fiblets[fiblets.groups["callosum"]], lighting=False)
+    workspace.position = (8.0, -24.0, 30.0)
+    workspace.add_contours(pv.Sphere(radius=15.0, center=workspace.position), "white")
     plotter.view_isometric()
     plotter.camera.zoom(1.4)
 
