@@ -149,6 +149,9 @@ class ActorRegistry(Generic[A]):
         if name in ("pbr", "smooth_shading"):
             why = "set actor.prop.interpolation = 'pbr'" if name == "pbr" else "lines and tubes are smooth as they are"
             raise TypeError(f"{self.ADD}() takes no {name}: {why}")
+        if name == "use_transparency":
+            instead = "give 1 - values as opacity, or 'linear_r' for 'linear'"
+            raise TypeError(f"{self.ADD}() takes no use_transparency: {instead}")
         if isinstance(getattr(pv.Property, name, None), property):
             raise TypeError(f"{self.ADD}() takes no {name}: set it on the actor it returns (actor.prop.{name} = ...)")
         raise TypeError(f"{self.ADD}() got an unexpected keyword argument {name!r}")

@@ -155,6 +155,7 @@ def update_table(
         count = int(settings.n_colors)
         if (settings.categories or labels) and fiblets is not None:
             count = scalars.distinct(fiblets)
+        table._opacity_parm = (None, False, "quadratic")  # noqa: SLF001 - PyVista would apply the opacity of before
         table.apply_cmap(cmap, count, flip=settings.flip_scalars)
     # The order matters: VTK refuses a logarithmic scale while the range touches zero.
     table.log_scale = False

@@ -296,12 +296,17 @@ class Settings:
         """Set those values that an actor is not made with, in the order of their declarations."""
         for name, one in self.DECLARED.items():
             late = isinstance(one, Setting) and not one.where.made_with and name in values
-            if late and values[name] != getattr(self, name):
+            if late and not _same(values[name], getattr(self, name)):
                 setattr(self, name, values[name])
 
     def _take_from(self, other: Settings) -> None:
         """Set all that an actor is not made with as another one has it."""
         self._take({name: getattr(other, name) for name, one in self.DECLARED.items() if isinstance(one, Setting)})
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Say whether two values are alike; arrays only if they are the same."""
+    return one is other or (not hasattr(one, "shape") and not hasattr(other, "shape") and bool(one == other))
 
 
 def arguments(settings: type[Settings]) -> dict[str, Argument]:

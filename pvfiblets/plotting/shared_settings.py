@@ -6,8 +6,8 @@ from difflib import get_close_matches
 from numbers import Real
 from typing import Any
 
-from pvfiblets.plotting.setting_places import COLOURS, OWN, PROPERTY, Effect
-from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
+from pvfiblets.plotting.setting_places import COLOURS, LATER, OWN, PROPERTY, Effect
+from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, number, truth
 
 CMAPS = (
     "viridis", "plasma", "inferno", "magma", "cividis", "turbo", "gray", "bone", "hot", "afmhot", "copper", "pink",
@@ -154,14 +154,36 @@ def opacity(of: str) -> Setting[float]:
     """Return the opacity of some drawable; ``of`` says what of it."""
     return Setting(
         None,
-        "From 0, not to be seen, to 1.",
-        argument=f"{of} The theme's by default.",
-        kind="float | None",
-        where=PROPERTY,
-        low=0.0,
-        high=1.0,
-        row=Row("Opacity", "From 0, not to be seen, to 1.", default=1.0),
+        "From 0, not to be seen, to 1. Anything else that is set is taken by ``opacity_by``.",
+        argument=f"{of} The theme's by default. Or what ``actor.opacity_by`` takes: "
+        '``"linear"``, ``"sigmoid"`` and the like, opacities along the colour map; numbers from 0 to 1 for that, or '
+        "one per line.",
+        kind="Any",
+        header="float, str or array_like, optional",
+        where=OWN,
+        check=number_or_more,
+        row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
     )
+
+
+def opacity_by() -> Setting[Any]:
+    """Return the opacities of tubes or halos beside one for all."""
+    return Setting(
+        None,
+        "Opacities beside ``opacity``, which they are times.\n\n"
+        "``None`` for none; the name of a transfer function (``'linear'``, ``'geom'``, ``'sigmoid'``, with\n"
+        "``_r`` reversed) along the colour map, or numbers from 0 to 1 for that, the lowest first; or\n"
+        "numbers from 0 to 1, one per line, or the name of an array of such.",
+        argument=False,
+        where=LATER,
+    )
+
+
+def number_or_more(name: str, value: Any) -> Any:
+    """Return a number from 0 to 1 as a float; what else there is is looked at when it is set."""
+    if value is None or isinstance(value, (str, list, tuple)) or getattr(value, "ndim", 0) > 0:
+        return value
+    return number(name, value, 0.0, 1.0)
 
 
 def lighting(what: str, default: bool | None) -> Setting[bool]:

@@ -116,3 +116,55 @@ def test_nonsense_is_refused_in_words(plotter, opacity, error, message):
     with pytest.raises(error, match=message):
         plotter.add_fiblets(rows(), opacity=opacity, **FLAT)
     assert not plotter.actors
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines"])
+def test_tubes_and_halos_fade_along_the_colour_map(plotter, three_lines, add, colours_in):
+    looks = {"radius": 1.5} if add == "add_spline_tubes" else {"line_width": 3.0, "strip_width": 3.0, "smooth": False}
+    looks |= {"cmap": ["red", "red"], "lighting": False, "show_scalar_bar": False, "scalars": "weight"}
+    looks["log_scale"] = True
+    for opacity in ([0.0, 0.5, 1.0], np.array([127, 255], np.uint8)):
+        given = {"opacity": opacity} if np.ndim(opacity) else {}
+        actor = getattr(plotter, add)(three_lines, n_colors=2, **looks, **given)
+        plotter.view_isometric()
+        plotter.show(auto_close=False)
+        plotter.render()
+        reds = {colour[0] for colour in colours_in(plotter.screenshot(None)) if colour[1] == colour[2] == 0}
+        assert 255 in reds
+        assert reds & {127, 128}
+        twin = actor.copy()
+        assert np.array_equal(twin.opacity_by, opacity)
+        plotter.remove_actor(actor)
+    actor = getattr(plotter, add)(three_lines, opacity="linear", **looks)
+    assert actor.lookup_table.values[0, 3] == 0
+    actor.opacity_by = None
+    assert (actor.lookup_table.values[:, 3] == 255).all()
+    actor.opacity = 0.25
+    assert actor.prop.opacity == actor.opacity == 0.25
+    with pytest.raises(ValueError, match="one per point; here there is one per line"):
+        actor.opacity_by = np.linspace(0.0, 1.0, 123)
+    actor.scalars = None
+    with pytest.raises(ValueError, match="follows the numbers of a colour map"):
+        getattr(plotter, add)(three_lines, opacity="sigmoid", color="red")
+
+
+def test_names_of_the_sources_points_and_transparency(plotter, three_lines):
+    actor = plotter.add_fiblets(three_lines, opacity="height")
+    assert "height" in actor.fiblets.per_point
+    assert actor.copy().opacity_by == "height"
+    by_value = plotter.add_fiblets(three_lines, scalars="weight", opacity="linear")
+    by_value.opacity_by = None
+    assert (by_value.lookup_table.values[:, 3] == 255).all()
+    one_each = np.array([0.1, 0.5, 1.0])
+    actor.opacity_by = one_each
+    assert actor.copy().opacity_by is one_each
+    with pytest.raises(TypeError, match="add_fiblets.. takes no use_transparency: give 1 - values"):
+        plotter.add_fiblets(three_lines, opacity="linear", use_transparency=True)
+
+
+@pytest.mark.parametrize("count", [4, 7, 256])
+def test_as_many_opacities_as_colours_or_more(plotter, three_lines, count):
+    """PyVista takes as many for bytes, so that numbers from 0 to 1 would all be next to nothing."""
+    wanted = np.linspace(1.0, 0.0, count)
+    actor = plotter.add_fiblets(three_lines, scalars="weight", n_colors=4, opacity=wanted)
+    np.testing.assert_allclose(actor.lookup_table.values[:, 3] / 255.0, np.linspace(1.0, 0.0, 4), atol=1.0 / 255.0)

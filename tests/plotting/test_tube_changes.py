@@ -75,7 +75,7 @@ def test_unknown_names_list_what_there_is():
         ({"scalars": "length", "n_colors": 1e30}, ValueError, "n_colors is 1e"),
         ({"scalars": "length", "scalar_bar_args": {"size": 3}}, TypeError, "size"),
         ({"scalar_bar_args": "title"}, TypeError, "scalar_bar_args is 'title'"),
-        ({"opacity": "linear"}, ValueError, "opacity is 'linear'"),
+        ({"opacity": "linear"}, ValueError, "opacity 'linear' follows the numbers"),
         ({"silhouettes": ["boxes"]}, ValueError, r"silhouettes is \['boxes'\]"),
         ({"solver": {}}, ValueError, "solver is {}"),
         ({"iterations": "many"}, ValueError, "iterations is 'many'"),

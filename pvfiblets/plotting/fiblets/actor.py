@@ -17,7 +17,7 @@ from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
-from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
+from pvfiblets.plotting.fiblets.opacities import Opacities, apply_transfer, find_opacities
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
@@ -336,7 +336,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
 
     def _fade_table(self, table: pv.LookupTable) -> None:
         if self._opacities.transfer is not None:
-            table.apply_opacity(self._opacities.transfer)
+            apply_transfer(table, self._opacities.transfer)
 
     def _faded(self, colouring: Colouring) -> Colouring:
         streamlines, points = self._opacities.streamlines, self._opacities.points

@@ -134,7 +134,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         EngineOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         fiblets, scalars = as_fiblets(
             source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress,
-            rgb=settings["rgb"], **options,
+            rgb=settings["rgb"], opacity=settings["opacity"], **options,
         )  # fmt: skip
         return FibletActor(
             fiblets, scalars=scalars, settings=settings, theme=self._plotter.theme, progress=progress

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -72,13 +73,13 @@ def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacitie
             f"opacity has shape {values.shape} and type {values.dtype}; give a number, {fiblets.n_streamlines} numbers "
             f"(one per streamline), {fiblets.n_points} (one per point), or some for the colour map, the lowest first"
         )
-    values = values.astype(np.float64)
-    check_range("opacity", values)
     if len(values) == fiblets.n_streamlines:
-        return fiblets, Opacities(streamlines=values)
+        check_range("opacity", values)
+        return fiblets, Opacities(streamlines=values.astype(np.float64))
     if len(values) == fiblets.n_points:
-        return with_point_values(fiblets, POINTS, values), Opacities(points=POINTS)
-    return fiblets, Opacities(transfer=values)
+        check_range("opacity", values)
+        return with_point_values(fiblets, POINTS, values.astype(np.float64)), Opacities(points=POINTS)
+    return fiblets, Opacities(transfer=as_transfer(values))
 
 
 def _named(fiblets: FibletSet, name: str) -> Opacities:
@@ -92,15 +93,47 @@ def _named(fiblets: FibletSet, name: str) -> Opacities:
             raise ValueError(f"opacity {name!r} has {values.ndim} dimensions; give one number per streamline")
         check_range(f"opacity {name!r}", values)
         return Opacities(streamlines=values.astype(np.float64))
-    from pyvista.plotting.tools import opacity_transfer_function
+    return Opacities(transfer=as_transfer(name, (*fiblets.per_point, *fiblets.per_streamline)))
 
-    try:
-        opacity_transfer_function(name, 4)
-    except (KeyError, ValueError) as error:
-        arrays = ", ".join(repr(key) for key in (*fiblets.per_point, *fiblets.per_streamline)) or "none"
-        known = ", ".join(repr(key) for key in TRANSFERS)
-        raise KeyError(f"there is no opacity {name!r}. Arrays: {arrays}; transfer functions: {known}") from error
-    return Opacities(transfer=name)
+
+def as_transfer(choice: Any, arrays: Iterable[str] = ()) -> Any:
+    """Return opacities along a colour map, by name or from 0 to 1; bytes go to 255, as in PyVista.
+
+    Parameters
+    ----------
+    choice : str or numpy.ndarray
+    arrays : iterable of str
+        Names that would have been something else, for the message.
+
+    Raises
+    ------
+    KeyError
+        If no transfer function has that name.
+    ValueError
+        If opacities do not lie between 0 and 1.
+    """
+    if isinstance(choice, str):
+        from pyvista.plotting.tools import opacity_transfer_function
+
+        try:
+            opacity_transfer_function(choice, 4)
+        except (KeyError, ValueError) as error:
+            listed = ", ".join(map(repr, arrays)) or "none"
+            known = ", ".join(repr(key) for key in TRANSFERS)
+            raise KeyError(f"there is no opacity {choice!r}. Arrays: {listed}; transfer functions: {known}") from error
+        return choice
+    values = choice.astype(np.float64) / (255.0 if choice.dtype == np.uint8 and choice.max() > 1 else 1.0)
+    check_range("opacity", values)
+    return values
+
+
+def apply_transfer(table: Any, transfer: Any) -> None:
+    """Give a look-up table opacities along it, by name or as :func:`as_transfer` returns them."""
+    count = table.n_values
+    if not isinstance(transfer, str) and len(transfer) >= count:  # PyVista takes as many for bytes, and refuses more
+        places = np.linspace(0.0, 1.0, len(transfer))
+        transfer = np.round(255.0 * np.interp(np.linspace(0.0, 1.0, count), places, transfer)).astype(np.uint8)
+    table.apply_opacity(transfer)
 
 
 def check_range(what: str, values: np.ndarray) -> None:

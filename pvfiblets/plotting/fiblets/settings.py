@@ -30,13 +30,6 @@ def _clim_span(actor: Any) -> tuple[float, float]:
     return scalars.range if scalars is not None and scalars.mapped else actor.clim
 
 
-def _opacity(name: str, value: Any) -> Any:
-    """Return a number as a float; what else there is is looked at when it is set."""
-    if isinstance(value, (str, list, tuple)) or getattr(value, "ndim", 0) > 0:
-        return value
-    return number(name, value, 0.0, 1.0)
-
-
 THINNEST, WIDEST = 1e-3, 64.0
 """Pixels of lines; a property of VTK's may ask for less and for more."""
 
@@ -103,7 +96,7 @@ class FibletSettings(Settings):
         kind="Any",
         header="float, str or array_like, optional",
         where=OWN,
-        check=_opacity,
+        check=shared.number_or_more,
         row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
     )
     opacity_by: Setting[Any] = Setting(

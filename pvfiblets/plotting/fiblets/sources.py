@@ -39,6 +39,7 @@ def as_fiblets(
     max_error: float | None = None,
     progress: bool = False,
     rgb: bool | None = None,
+    opacity: Any = None,
     **options: Any,
 ) -> tuple[FibletSet, Colours]:
     """Compress ``source`` unless it is compressed already.
@@ -61,6 +62,8 @@ def as_fiblets(
     rgb : bool, optional
         Whether ``scalars`` of 3 or 4 columns are colours, as for
         :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
+    opacity : Any
+        If this names per-point data of ``source``, that is kept.
     **options
         Further arguments of :func:`pvfiblets.codec.compress`.
 
@@ -101,6 +104,8 @@ def as_fiblets(
         scalars = name_of(scalars)
     names = per_point if isinstance(per_point, str) else tuple(per_point)
     keep = list(choose_per_point(streamlines, names, options.get("per_point_bits", 8)))
+    if isinstance(opacity, str) and opacity in streamlines.per_point:
+        keep.append(opacity)
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
             keep.append(scalars)

@@ -16,6 +16,7 @@ from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
+from pvfiblets.plotting.line_opacities import LineOpacities
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.streamlines import Streamlines
@@ -38,7 +39,7 @@ class PlottedHalos(PlottedLines, HaloMapper):
     """
 
 
-class HaloActor(HaloSettings, Coloured, pv.Actor):
+class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
     """What actors of lines and of points with halos have in common.
 
     Parameters
@@ -81,6 +82,7 @@ class HaloActor(HaloSettings, Coloured, pv.Actor):
         self._finish(mapper, given)
         self._colour_halos()
         self._recolour()
+        self.opacity = given["opacity"]
         self._take(given)
 
     def __repr__(self) -> str:
@@ -218,6 +220,13 @@ class HaloActor(HaloSettings, Coloured, pv.Actor):
     @property
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
+
+    @property
+    def _lines_drawn(self) -> Any:
+        return self._held.drawn
+
+    def _line_values(self) -> Mapping[str, Any]:
+        return self._held.line_values
 
     @property
     def _drawn(self) -> Held:

@@ -115,6 +115,7 @@ class HaloSettings(Settings):
     annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity = shared.opacity("Of all and its halos; what lies behind the nearest does not show through.")
+    opacity_by = shared.opacity_by()
     lighting = shared.lighting("Shade by the scene's lights.", False)
     smooth: Setting[bool] = Setting(
         True,

@@ -12,6 +12,7 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
 from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
+from pvfiblets.plotting.line_opacities import LineOpacities
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import SurfaceShading
@@ -36,7 +37,7 @@ class PlottedSplines(PlottedLines, TubeMapper):
     """
 
 
-class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
+class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor):
     """Tubes of varying radius around Hermite splines, ray cast to their exact surface.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -82,6 +83,7 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
         super().__init__(prop=pv.Property(theme=theme), name=name)
         self._finish(mapper, given)
         self._recolour()
+        self.opacity = given["opacity"]
         self._take(given)
 
     def __repr__(self) -> str:
@@ -240,6 +242,13 @@ class TubeActor(TubeSettings, Coloured, SurfaceShading, pv.Actor):
         outline = self.silhouette
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
+
+    @property
+    def _lines_drawn(self) -> Any:
+        return self._tubes
+
+    def _line_values(self) -> Mapping[str, Any]:
+        return self._tubes.tube_values
 
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
         return None if choice is None else find_tube_scalars(tubes, choice)

@@ -31,6 +31,7 @@ class TubeSettings(Settings):
     annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
     opacity = shared.opacity("Of all tubes; what lies behind the nearest surface of the tubes does not show through.")
+    opacity_by = shared.opacity_by()
     lighting = shared.lighting("Shade the tubes by the scene's lights; the theme's by default.", None)
     ambient_occlusion = shared.AMBIENT_OCCLUSION
     depth_cue = shared.DEPTH_CUE
