@@ -210,6 +210,43 @@ def selection(studio: Studio) -> Visit:
 
 
 @state
+def slices(studio: Studio) -> Visit:
+    """A painted region on slices, and what passes it."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.tab("slices")
+    here.page.click("[data-action=open-slices]")
+    here.page.click("[data-entry='t1.nii.gz']")
+    here.wait(lambda: here.state("slicing")["shown"], "slices")
+    for axis, text in enumerate(("-24", "-20", "20")):
+        here.page.fill(f"[data-place=position] input >> nth={axis}", text)
+        here.press("Tab")
+    here.page.click("[data-action=add-painted]")
+    here.page.fill("input[aria-label='Radius, mm']", "5")
+    here.press("Tab")
+    here.wait(lambda: here.state("brush") == 5, "the brush")
+    here.page.click("[data-painted] [data-select=use] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
+    here.rests()
+    here.trace([(0.89, 0.18), (0.90, 0.24)])
+    here.wait(lambda: here.state("painting")["regions"][0]["voxels"] != "0", "what is painted")
+    here.rests()
+    here.press("Escape")
+    return here
+
+
+@state
+def bundles(studio: Studio) -> Visit:
+    """Bundles of a tractogram, and their colours."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.tab("bundles")
+    here.page.click("[data-action=colour-by-bundle]")
+    here.wait(lambda: here.state("bundles")["coloured"], "colours of bundles")
+    return here
+
+
+@state
 def info(studio: Studio) -> Visit:
     """What is known of a layer."""
     here = studio.visit("brain.fiblets")

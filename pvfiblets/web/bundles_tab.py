@@ -98,7 +98,11 @@ class BundleActions(LineActions):
 
     def colour(self, on: bool) -> None:
         """Colour streamlines by their bundles, or by orientation."""
-        self._app.scene.set(self._layer.id, "scalars", "group" if on is True else "orientation")
+        scene, layer = self._app.scene, self._layer
+        if on is True and scene.state.bundles_of(layer.source) is None:
+            there = scene.bundles(layer.id)
+            scene.show_bundles(layer.id, [one.name for one in there if one.visible])  # in the colours of the list
+        scene.set(layer.id, "scalars", "group" if on is True else "orientation")
 
     def act(self, what: str) -> None:
         """Merge, subtract, remove, select or show alone the bundles that are chosen."""

@@ -109,6 +109,13 @@ nibabel.save(nibabel.MGHImage(labels, np.diag([12.0, 12.0, 12.0, 1.0])), "aparc+
 with open("FreeSurferColorLUT.txt", "w") as table:
     table.write("17  Left-Hippocampus  220 216 20 0\\n")
 """,
+    "docs/bundles.md": BRAIN + """
+import nibabel, numpy as np
+pvfiblets.compress_file("brain.trx", "brain.fiblets")
+numbers = np.random.default_rng(0).random((24, 28, 20)).astype("f4")
+nibabel.save(nibabel.Nifti1Image(numbers, np.array([[8.0, 0, 0, -90], [0, 8, 0, -110], [0, 0, 8, -60], [0, 0, 0, 1]])),
+             "fa.nii.gz")
+""",
     "docs/from-vtk.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",

@@ -129,3 +129,35 @@ def test_a_painted_region_filters_and_is_kept(visit, tmp_path):
     here.tab("slices")
     assert here.page.locator("[data-value=painted-counted]").inner_text() == "2 of 60 streamlines are shown"
     assert here.page.locator("[data-painted] [data-field=name]").input_value() == "left <b>arm</b>"
+
+
+def test_a_bundle_is_made_named_exported_and_kept(visit):
+    here = visit("lines.fiblets")
+    here.tab("bundles")
+    names = lambda: [row["name"] for row in here.state("bundles")["rows"]]  # noqa: E731
+    assert names() == ["near", "far"]
+    here.page.click("[data-bundle-row=far] [data-action=eye]")
+    here.page.click("[data-bundle=shown]")  # what is left: the near ones
+    here.wait(lambda: len(names()) == 3, "a bundle")
+    here.page.fill("[data-bundle-row='bundle 3'] [data-field=name]", "<b>shown</b>")
+    here.press("Tab")
+    here.wait(lambda: names()[2] == "<b>shown</b>", "its name")
+    for name in ("<b>shown</b>", "near"):
+        here.page.click(f"[data-bundle-row='{name}'] input[type=checkbox]")
+        here.wait(lambda name=name: any(row["name"] == name and row["order"] for row in here.state("bundles")["rows"]),
+                  "its box")  # fmt: skip
+    here.page.click("[data-bundle-act=subtract]")
+    here.wait(lambda: here.state("bundles")["rows"][2]["count"] == "0", "what is left")
+    here.press("Control+z")
+    here.wait(lambda: here.state("bundles")["rows"][2]["count"] == "30", "what was there")
+    here.page.click("[data-bundle-act=export]")
+    here.page.click("[data-bundle-export='.tck']")
+    here.wait(lambda: here.state("download"), "the file")
+    import pvfiblets
+
+    file = next(here.served.root.glob("*shown*.tck"))
+    assert len(pvfiblets.read(file)) == 30
+    here.page.reload()
+    here.ready()
+    assert names() == ["near", "far", "<b>shown</b>"]
+    assert here.page.locator("[data-bundle-row] [data-field=name]").nth(2).input_value() == "<b>shown</b>"
