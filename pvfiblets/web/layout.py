@@ -270,9 +270,7 @@ def _view(app: Any) -> None:
                         title=("h.name === 'center' ? 'Move ' + m.name : 'Size of ' + m.name",),
                     )  # fmt: skip
         # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
-        html.Div(
-            v_if=f"tool !== 'rotate' && !{PAINTING}", classes="pv-over", id="pv-over", data_tool=("tool",)
-        )
+        html.Div(v_if=f"tool !== 'rotate' && !{PAINTING}", classes="pv-over", id="pv-over", data_tool=("tool",))
         painting_tab.over(app)
         slices_tab.over()
         with html.Div(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import AsyncIterator, Callable
 
@@ -15,7 +16,10 @@ from pvfiblets.web.launcher import Session
 from pvfiblets.web.pages import HEADERS
 from pvfiblets.web.worker import KEY_HEADER
 
+logger = logging.getLogger("pvfiblets.web")
+
 HEARTBEAT = 20.0  # seconds between pings: a browser that is gone without a word is found by them
+UNREAD = 60.0  # seconds that a piece of an answer waits for its reader
 SLOWEST = 1024  # bytes a second of an upload, over all of it
 
 
@@ -92,8 +96,10 @@ class Relay:
                     response.headers["Cache-Control"] = "private, max-age=3600"
                 await response.prepare(request)
                 async for piece in answer.content.iter_any():
-                    await response.write(piece)
-                await response.write_eof()
+                    async with asyncio.timeout(UNREAD):
+                        await response.write(piece)
+                async with asyncio.timeout(UNREAD):
+                    await response.write_eof()
                 return response
         except (aiohttp.ClientError, ConnectionError) as error:
             if isinstance(error.__cause__, RefusedError):  # of the body
@@ -103,6 +109,12 @@ class Relay:
                     request.transport.abort()
                 return response
             raise RefusedError(502, "the session does not answer") from error
+        except TimeoutError:  # of the reader; of the session's process it is a ClientError
+            place = request.path.split("/")[1]  # and no more: names of downloads are secrets
+            logger.warning("gave up /%.40s for %s, who did not read it for %g s", place, request.remote, UNREAD)
+            if request.transport is not None:
+                request.transport.abort()
+            return response if response is not None else web.Response(status=408)
 
     async def connect(
         self, request: web.Request, session: Session, refused: Callable[[str], None]

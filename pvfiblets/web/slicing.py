@@ -257,4 +257,3 @@ class Slicing:
             plotter.subplot(*divmod(at, 2))
             plotter.picture.antialias = value
         plotter.subplot(1, 1)
-

@@ -20,6 +20,12 @@ async def page(request):
         await answer.write(bytes(1000))
         await asyncio.sleep(0.1)
         os._exit(3)
+    if request.path in ("/endless", "/tenth"):
+        answer = web.StreamResponse()
+        await answer.prepare(request)
+        for _ in range(10 if request.path == "/tenth" else 10_000):
+            await answer.write(bytes(2**20))
+        return answer
     if request.path == "/noise":
         noise = (request.app["root"] / "noise").read_text()
         for _ in range(500):
