@@ -20,9 +20,13 @@ WIDEST = 115
 
 KNOWN = {
     "Any": "from typing import Any",
+    "ColorLike": "from pyvista.plotting._typing import ColorLike",
+    "ColormapOptions": "from pyvista.plotting._typing import ColormapOptions",
     "Displacement": "from pvfiblets.halos.displacement import Displacement",
     "Iterable": "from collections.abc import Iterable",
+    "Sequence": "from collections.abc import Sequence",
     "Threshold": "from pvfiblets.plotting.halos.style import Threshold",
+    "TransformLike": "from pyvista.core._typing_core import TransformLike",
     "np": "import numpy as np",
 }
 """What annotations of arguments name; another name wants a line here."""
@@ -54,8 +58,13 @@ def stub() -> str:
     text = "\n\n".join([*classes, "\n".join(["class Plotter(pv.Plotter):", *members])])
     imports |= {line for name, line in KNOWN.items() if re.search(rf"\b{name}\b", text)} - {KNOWN["Any"]}
     ours = _joined(line for line in imports if "pvfiblets" in line)
-    theirs = sorted(line for line in imports if line.split()[1].split(".")[0] in ("numpy", "pyvista"))
-    standard = sorted(line for line in imports if "pvfiblets" not in line and line not in theirs)
+    theirs = [line for line in imports if line.split()[1].split(".")[0] in ("numpy", "pyvista")]
+    standard = [line for line in imports if "pvfiblets" not in line and line not in theirs]
+    theirs, standard = (
+        sorted(line for line in lines if line.startswith("import"))
+        + _joined(line for line in lines if line.startswith("from"))
+        for lines in (theirs, standard)
+    )
     blocks = ["\n".join(block) for block in (standard, theirs, ours) if block]
     head = "# Written by scripts/plotter_stub.py from the settings that are declared; do not change it by hand."
     return "\n\n".join([head, *blocks, '__all__ = ["Plotter"]', text]) + "\n"

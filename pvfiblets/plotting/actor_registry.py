@@ -76,6 +76,13 @@ class Registered(Protocol):
 
 A = TypeVar("A", bound=Registered)
 
+LETTER = 0.5
+"""Width of a letter per size of its font, about."""
+NAMES_FONT = 18
+"""Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
+NAMES_SHARE = 0.42
+"""Of the window's width, for names beside a scalar bar."""
+
 
 @dataclass
 class _Bar:
@@ -332,10 +339,21 @@ class ActorRegistry(Generic[A]):
                 bars.remove_scalar_bar(state.title, render=False)
         if wanted is not None:
             self._plotter.mapper = actor.mapper  # what `plotter.update_scalar_bar_range` changes
-            usual = {"n_labels": 0, "vertical": True} if actor.shows_labels else {}
+            usual = {"n_labels": 0, "vertical": True, **self._small_names(actor)} if actor.shows_labels else {}
             arguments = {**usual, **state.arguments, "title": wanted}
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
         state.title, state.labels = wanted, actor.shows_labels
+
+    def _small_names(self, actor: A) -> dict[str, Any]:
+        """Return sizes of fonts by which names beside a bar take less than half of the window."""
+        table = actor.mapper.lookup_table
+        names = [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())]
+        width, height = self._plotter.window_size
+        longest = max(map(len, names), default=0)
+        if longest * LETTER * NAMES_FONT <= NAMES_SHARE * width:
+            return {}
+        size = min(NAMES_SHARE * width / (longest * LETTER), 0.4 * height / len(names))
+        return {"label_font_size": max(int(size), 7), "title_font_size": max(int(size) + 2, 9)}
 
     def _has_bar(self, actor: A) -> bool:
         """Whether any scalar bar is the actor's."""

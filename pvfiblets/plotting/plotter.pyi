@@ -1,10 +1,12 @@
 # Written by scripts/plotter_stub.py from the settings that are declared; do not change it by hand.
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 import pyvista as pv
+from pyvista.core._typing_core import TransformLike
+from pyvista.plotting._typing import ColorLike, ColormapOptions
 
 from pvfiblets.halos.displacement import Displacement
 from pvfiblets.plotting.fiblets.actor import FibletActor
@@ -31,15 +33,17 @@ class _AddFiblets(Protocol):
     def __call__(
         self, source: FibletsSource, *, scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
         per_point: Iterable[str] = (), max_error: float | None = None, progress: bool = False,
-        look: str | None = None, color: Any = None, rgb: bool | None = None, cmap: Any = None, clim: Any = None,
-        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
-        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
-        categories: bool = False, opacity: Any = None, transparency: str | int | None = "all",
+        look: str | None = None, color: ColorLike | None = None, rgb: bool | None = None,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
+        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False, categories: bool = False,
+        opacity: float | str | Sequence[float] | np.ndarray | None = None, transparency: str | int | None = "all",
         line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
         pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, name: str | None = None,
         label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
-        **options: Any,
+        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
+        render: bool = True, **options: Any,
     ) -> FibletActor: ...
 
 class _FibletsComponent(FibletsComponent):
@@ -51,14 +55,16 @@ class _AddSplineTubes(Protocol):
         self, source: SplineTubesSource, *, radius: float | str | np.ndarray | None = None,
         scalars: str | np.ndarray | None = None, tangents: str | np.ndarray | None = None, method: str = "finite",
         radius_slopes: float | str | np.ndarray | None = None, scalar_slopes: str | np.ndarray | None = None,
-        scaled: bool | None = None, rgb: bool | None = None, color: Any = None, cmap: Any = None, clim: Any = None,
-        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
-        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
-        opacity: Any = None, lighting: bool | None = None, min_width: float = 1.0, silhouettes: str = "auto",
-        solver: str = "auto", iterations: int | None = None, culling: str | None = "two-phase",
-        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
-        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True, user_matrix: Any = None,
-        reset_camera: bool | None = None, render: bool = True,
+        scaled: bool | None = None, rgb: bool | None = None, color: ColorLike | None = None,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
+        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: float | str | Sequence[float] | np.ndarray | None = None, lighting: bool | None = None,
+        min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto", iterations: int | None = None,
+        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
     ) -> TubeActor: ...
 
 class _SplineTubesComponent(SplineTubesComponent):
@@ -72,13 +78,16 @@ class _AddHaloLines(Protocol):
         strip_width: float | None = None, tapering: bool | tuple[int, float] = True,
         filter_taper: float | None = None, max_displacement: float | None = None,
         displacement: Displacement = "linear", width_cue: float = 0.5, threshold: Threshold = None,
-        color: Any = None, halo_color: Any = None, light_on_dark: bool = False, cmap: Any = None, clim: Any = None,
-        n_colors: int = 256, log_scale: bool = False, nan_color: Any = None, below_color: Any = None,
-        above_color: Any = None, annotations: dict[float, str] | None = None, flip_scalars: bool = False,
-        opacity: Any = None, lighting: bool = False, smooth: bool = True, min_width: float = 1.0,
-        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
-        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
-        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        color: ColorLike | None = None, halo_color: ColorLike | None = None, light_on_dark: bool = False,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
+        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: float | str | Sequence[float] | np.ndarray | None = None, lighting: bool = False,
+        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
+        render: bool = True,
     ) -> HaloLineActor: ...
 
 class _HaloLinesComponent(HaloLinesComponent):
@@ -90,14 +99,17 @@ class _AddHaloPoints(Protocol):
         self, source: HaloPointsSource, *, scalars: str | np.ndarray | None = None,
         filter_by: str | np.ndarray | None = None, rgb: bool | None = None, point_size: float | None = None,
         halo_size: float | None = None, max_displacement: float | None = None, displacement: Displacement = "linear",
-        width_cue: float = 0.5, threshold: Threshold = None, color: Any = None, halo_color: Any = None,
-        light_on_dark: bool = False, cmap: Any = None, clim: Any = None, n_colors: int = 256,
-        log_scale: bool = False, nan_color: Any = None, below_color: Any = None, above_color: Any = None,
-        annotations: dict[float, str] | None = None, flip_scalars: bool = False, opacity: Any = None,
-        lighting: bool = False, smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase",
-        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
-        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True, user_matrix: Any = None,
-        reset_camera: bool | None = None, render: bool = True,
+        width_cue: float = 0.5, threshold: Threshold = None, color: ColorLike | None = None,
+        halo_color: ColorLike | None = None, light_on_dark: bool = False,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
+        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
+        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
+        opacity: float | str | Sequence[float] | np.ndarray | None = None, lighting: bool = False,
+        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
+        render: bool = True,
     ) -> HaloPointActor: ...
 
 class _HaloPointsComponent(HaloPointsComponent):
@@ -110,19 +122,21 @@ class _AddRaycastVolume(Protocol):
         origin: Any = None, direction: Any = None, affine: Any = None, shape: Any = None, dtype: Any = None,
         blending: str | None = None, resolution: Any = None, multi_colors: bool = False,
         categories: bool | int = False, preference: str | None = None, mode: str = "composite",
-        values: float | Any = None, surface_opacities: float | Any = None, surface_colors: Any = None,
-        color: Any = None, cmap: Any = None, clim: Any = None, n_colors: int = 256, log_scale: bool = False,
-        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
-        opacity: str | float | Any = "linear", opacity_unit_distance: float | None = None, thresholds: Any = None,
-        peak: float | None = None, smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear",
-        refine: str = "regula-falsi", iterations: int = 5, integrator: str = "adaptive", jitter: bool = False,
-        octree: bool = True, homogeneous: float = 0.0, recon: bool = True, sparse: int = 1,
-        sparse_threshold: float = 0.05, stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5,
-        box: Any = None, lighting: bool | None = None, shade: bool = False, ambient: float | None = None,
+        values: float | Any = None, surface_opacities: float | Any = None,
+        surface_colors: Sequence[ColorLike] | None = None, color: ColorLike | None = None,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False, annotations: dict[float, str] | None = None,
+        flip_scalars: bool = False, opacity: float | str | Sequence[float] | np.ndarray = "linear",
+        opacity_unit_distance: float | None = None, thresholds: Any = None, peak: float | None = None,
+        smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear", refine: str = "regula-falsi",
+        iterations: int = 5, integrator: str = "adaptive", jitter: bool = False, octree: bool = True,
+        homogeneous: float = 0.0, recon: bool = True, sparse: int = 1, sparse_threshold: float = 0.05,
+        stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5, box: Any = None,
+        lighting: bool | None = None, shade: bool = False, ambient: float | None = None,
         diffuse: float | None = None, specular: float | None = None, specular_power: float | None = None,
         ray_occlusion: bool | dict[str, Any] = False, name: str | None = None, label: str | None = None,
         show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
-        user_matrix: Any = None, reset_camera: bool | None = None, render: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
     ) -> VolumeActor: ...
 
 class _RaycastVolumesComponent(RaycastVolumesComponent):
@@ -133,12 +147,13 @@ class _AddSlices(Protocol):
     def __call__(
         self, source: SlicesSource, *, position: Any = None,
         planes: str | Iterable[str] = ('axial', 'coronal', 'sagittal'), axes: str | np.ndarray = "world",
-        kind: str | None = None, labels: Any = None, modulate: Any = None, cmap: Any = "gray", clim: Any = None,
+        kind: str | None = None, labels: Any = None, modulate: Any = None,
+        cmap: ColormapOptions | pv.LookupTable = "gray", clim: float | Sequence[float] | None = None,
         percentiles: tuple[float, float] = (1.0, 99.0), log_scale: bool = False, below: float | None = None,
         above: float | None = None, opacity: float = 1.0, blend: str = "over", interpolation: str = "linear",
         index: int = 0, outline: bool = False, visible: bool = True, name: str | None = None, pickable: bool = True,
-        show_scalar_bar: bool = False, scalar_bar_args: dict[str, Any] | None = None, user_matrix: Any = None,
-        reset_camera: bool | None = None, render: bool = True,
+        show_scalar_bar: bool = False, scalar_bar_args: dict[str, Any] | None = None,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
     ) -> SliceStack: ...
 
 class _SlicesComponent(SlicesComponent):

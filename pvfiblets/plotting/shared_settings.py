@@ -17,6 +17,12 @@ CMAPS = (
 """Colour maps that a page offers; each also reversed, with ``_r``."""
 
 MAP_NAMES = (*CMAPS, *(f"{name}_r" for name in CMAPS))
+COLOR_LIKE = "ColorLike | None"
+COLORMAP = "ColormapOptions | pv.LookupTable | None"
+LIMITS = "float | Sequence[float] | None"
+OPACITIES = "float | str | Sequence[float] | np.ndarray | None"
+"""Types that are PyVista's own, for annotations."""
+
 MAPS = [(name, name.replace("_", " ")) for name in MAP_NAMES]
 
 
@@ -64,6 +70,7 @@ def color(doc: str) -> Setting[Any]:
         None,
         "One colour for all; setting it puts scalars out of use.",
         argument=doc,
+        kind=COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
         row=Row("Colour", "Of all, where nothing else colours it.", type="colour", default="#ffffff",
@@ -76,6 +83,7 @@ CMAP: Setting[Any] = Setting(
     "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
     argument="Colour map; the theme's by default. A :class:`pyvista.LookupTable` brings its range and its colours "
     "of what lies outside.",
+    kind=COLORMAP,
     header="str, list, colormap or LookupTable, optional",
     where=COLOURS,
     check=_colour_map,
@@ -94,6 +102,7 @@ CLIM: Setting[tuple[float, float]] = Setting(
     "Values of the first and the last colour; ``None`` sets the range of the data.\n\n"
     "Once set it stays, other scalars or not.",
     argument="Values of the first and the last colour; the range of the data by default.",
+    kind=LIMITS,
     header="float or (float, float), optional",
     where=COLOURS,
     read=lambda actor: tuple(actor.lookup_table.scalar_range),
@@ -117,6 +126,7 @@ LOG_SCALE: Setting[bool] = Setting(
 NAN_COLOR: Setting[Any] = Setting(
     None,
     "Colour of NaN.",
+    kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
     read=lambda actor: actor.lookup_table.nan_color,
@@ -127,6 +137,7 @@ NAN_COLOR: Setting[Any] = Setting(
 BELOW_COLOR: Setting[Any] = Setting(
     None,
     "Colour of values below ``clim``; ``None`` uses the first of the map.",
+    kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
 )
@@ -134,6 +145,7 @@ BELOW_COLOR: Setting[Any] = Setting(
 ABOVE_COLOR: Setting[Any] = Setting(
     None,
     "Colour of values above ``clim``; ``None`` uses the last of the map.",
+    kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
 )
@@ -158,7 +170,7 @@ def opacity(of: str) -> Setting[float]:
         argument=f"{of} The theme's by default. Or what ``actor.opacity_by`` takes: "
         '``"linear"``, ``"sigmoid"`` and the like, opacities along the colour map; numbers from 0 to 1 for that, or '
         "one per line.",
-        kind="Any",
+        kind=OPACITIES,
         header="float, str or array_like, optional",
         where=OWN,
         check=number_or_more,
@@ -235,6 +247,8 @@ class Common(Settings):
         None, "For :meth:`pyvista.Plotter.add_scalar_bar`.", kind="dict[str, Any] | None", header="dict, optional"
     )
     pickable = Argument(True, "Whether pickers find the actor.", kind="bool")
-    user_matrix = Argument(None, "From data to world coordinates.", header="transform-like, optional")
+    user_matrix = Argument(
+        None, "From data to world coordinates.", kind="TransformLike | None", header="transform-like, optional"
+    )
     reset_camera = Argument(None, "As for :meth:`pyvista.Plotter.add_mesh`.", kind="bool | None")
     render = Argument(True, "Render at once if the window is shown already.", kind="bool")

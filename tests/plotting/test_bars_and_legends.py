@@ -155,3 +155,19 @@ def test_entries_of_legends_go_with_their_actors(plotter, mesh):
     plotter.remove_actor(actor)
     actor.color = "blue"
     assert not plotter.renderer._labels
+
+
+def test_long_names_of_groups_are_neither_cut_nor_all_over_the_picture():
+    names = ["Fornix", "CC", "Inferior fronto-occipital fasciculus, left hemisphere", "Middle cerebellar peduncle"]
+    plotter = pv.Plotter(off_screen=True, window_size=(500, 400))
+    plotter.set_background("white")
+    lines = Streamlines.from_list([np.eye(3) * k for k in range(1, 5)])
+    lines.groups = {name: np.array([k]) for k, name in enumerate(names)}
+    actor = plotter.add_fiblets(lines, scalars="group")
+    actor.visibility = False
+    dark = plotter.screenshot(None).max(axis=2) < 120
+    columns = np.flatnonzero(dark[:, :440].any(axis=0))
+    assert 0.5 * 500 < columns[0] < 0.65 * 500
+    rows = dark[150:, 400:438].any(axis=1).astype(int)
+    assert np.count_nonzero(np.diff(rows) == 1) >= len(names)  # apart from each other
+    plotter.close()

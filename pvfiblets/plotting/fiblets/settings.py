@@ -93,7 +93,7 @@ class FibletSettings(Settings):
         argument="Of all streamlines, from 0, not to be seen, to 1; the theme's by default. Or what "
         '``actor.opacity_by`` takes: ``"linear"``, ``"sigmoid"`` and the like, opacities along the colour map; '
         "numbers from 0 to 1, or the name of an array with them, one per streamline or per point.",
-        kind="Any",
+        kind=shared.OPACITIES,
         header="float, str or array_like, optional",
         where=OWN,
         check=shared.number_or_more,

@@ -86,6 +86,7 @@ class HaloSettings(Settings):
         "One colour for all; black, or white with ``light_on_dark``, where none was given.\n\n"
         "Setting it puts scalars out of use; ``None`` sets that default.",
         argument="One colour for all, black by default. ``scalars`` go before it.",
+        kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
     )
@@ -94,6 +95,7 @@ class HaloSettings(Settings):
         "Colour of the halos: white, or black with ``light_on_dark``, where none was given.\n\n"
         '``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets\n'
         "the default.",
+        kind=shared.COLOR_LIKE,
         header='color-like or "background", optional',
         where=OWN,
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 from pvfiblets.plotting.setting_places import Place
 from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
-from pvfiblets.plotting.shared_settings import CMAP, MAPS, Common
+from pvfiblets.plotting.shared_settings import CMAP, LIMITS, MAPS, Common
 
 __all__ = ["LAYER", "MEANING", "SliceCommon", "SliceSettings"]
 
@@ -91,6 +91,7 @@ class SliceSettings(Settings):
     cmap: Setting[Any] = Setting(
         "gray",
         "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
+        kind="ColormapOptions | pv.LookupTable",
         header='str, list, colormap or LookupTable, default: "gray"',
         where=LAYER,
         check=lambda _name, value: CMAP.check(value),
@@ -102,6 +103,7 @@ class SliceSettings(Settings):
         "Values of the first and the last colour, the window; ``None`` sets that of ``percentiles``.",
         argument="Values of the first and the last colour, the window; those of ``percentiles`` by default. Of "
         "direction-coded images, weights of black and of full colour.",
+        kind=LIMITS,
         header="float or (float, float), optional",
         where=LAYER,
         check=_window,

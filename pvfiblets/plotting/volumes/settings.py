@@ -120,13 +120,14 @@ class VolumeSettings(Settings):
     surface_colors: Setting[Any] = Setting(
         None,
         "A colour for each of the surfaces of ``values``; ``None`` has that of the map, or ``color``.",
-        kind="Any",
+        kind="Sequence[ColorLike] | None",
         header="list of color-like, optional",
         where=CHOSEN,
     )
     color: Setting[Any] = Setting(
         None,
         "One colour for all in place of the map; ``None`` for the map.",
+        kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
         row=Row("Colour", "One for all, in place of the map.", type="colour", optional=True),
@@ -155,7 +156,7 @@ class VolumeSettings(Settings):
         "mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not\n"
         "touch them. A :class:`pyvista.LookupTable` as ``cmap`` that has opacities of its own has those in\n"
         "place of ``\"linear\"``.",
-        kind="str | float | Any",
+        kind="float | str | Sequence[float] | np.ndarray",
         header='str, float or list of float, default: "linear"',
         where=CHOSEN,
         row=Row("Opacity", "How opaque values are, from the low end of the range to the high one.", type="choice",
