@@ -115,7 +115,8 @@ def make_parser() -> argparse.ArgumentParser:
     )
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
-        help="codec, decode, culling, tubes, volumes, halos, features, antialias, translucency, stability",
+        help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
+        "translucency, stability",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

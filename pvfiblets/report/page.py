@@ -90,6 +90,8 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
     lines = [f"## {study.title}", "", study.approximates]
     for note in study.notes:
         lines += ["", note]
+    if study.across and study.records:
+        lines += ["", "### All data sets", "", *_across(study)]
     if any(record.default for record in study.records) and any(pair.has_front for pair in study.axes):
         lines += ["", "### The default", "", *_defaults(study)]
     for name, shows in pictures:
@@ -151,6 +153,40 @@ def _defaults(study: StudyResult) -> list[str]:
             cells.append(f"{_number(y)} / {_number(x)}" + (f": {'; '.join(beaten)}" if beaten else ""))
         lines.append(f"| {_cell(record.data)} | " + " | ".join(map(_cell, cells)) + " |")
     return lines
+
+
+def _across(study: StudyResult) -> list[str]:
+    """Some figures of all data sets, one row each: method beside method."""
+    labels = list(dict.fromkeys(record.label for record in study.records))
+    heads = []
+    for path in study.across:
+        kind, _, name = path.partition("/")
+        having = [record for record in study.records if math.isfinite(record.value(path))]
+        if kind == "times":
+            heads.append(f"{name}, M {having[0].times[name].item}s/s" if having else name)
+        else:
+            heads.append(f"{name}, {_unit(having, kind, name)}" if having else name)
+    lines = [
+        f"In each cell: {' / '.join(f'**{label}**' if _is_default(study, label) else label for label in labels)}.",
+        "",
+        "| data | " + " | ".join(heads) + " |",
+        "|---|" + "---|" * len(heads),
+    ]
+    for data in dict.fromkeys(record.data for record in study.records):
+        found = {record.label: record for record in study.records if record.data == data}
+        cells = []
+        for path in study.across:
+            numbers = []
+            for label in labels:
+                value = found[label].value(path) if label in found else math.nan
+                numbers.append(_number(1e-6 / value if path.startswith("times/") and value > 0.0 else value) or "–")
+            cells.append(" / ".join(numbers))
+        lines.append(f"| {_cell(data)} | " + " | ".join(map(_cell, cells)) + " |")
+    return lines
+
+
+def _is_default(study: StudyResult, label: str) -> bool:
+    return any(record.default and record.label == label for record in study.records)
 
 
 def _cases(cases: Sequence[CaseResult]) -> list[str]:

@@ -221,6 +221,8 @@ class StudyResult:
         How long the study took.
     cases : list of CaseResult
         Of a study of what holds rather than of what costs what.
+    across : list of str
+        Figures, as :meth:`Record.value` takes them, that one table shows of all data sets, method beside method.
     """
 
     name: str
@@ -233,3 +235,4 @@ class StudyResult:
     unavailable: str = ""
     seconds: float = 0.0
     cases: list[CaseResult] = field(default_factory=list)
+    across: list[str] = field(default_factory=list)

@@ -98,6 +98,7 @@ def one_study(name: str, options: Options) -> StudyResult:
     """Run one study; where it cannot be done, return the reason."""
     study = studies.find(name)
     result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
+    result.across = list(getattr(study, "across", ()))
     options.log(f"{name}: {study.title}")
     try:
         for found in study.run(options, result.left_out):

@@ -19,6 +19,8 @@ __all__ = ["MODULES", "chosen_names", "find"]
 MODULES = {
     "codec": "pvfiblets.report.codec",
     "decode": "pvfiblets.report.decode",
+    "tractograms": "pvfiblets.report.tractograms",
+    "pixels": "pvfiblets.report.pixels",
     "culling": "pvfiblets.report.culling",
     "tubes": "pvfiblets.report.tubes",
     "volumes": "pvfiblets.report.volumes",

@@ -3,7 +3,8 @@
 A study is an object with ``name``, ``title``, ``approximates`` (one sentence: what is approximated, beside what),
 ``axes`` (what is drawn against what), ``notes``, and ``run(options, left_out)``, which yields records as they are
 measured. What it cannot measure it puts into ``left_out`` with the reason; if it cannot measure anything (no GPU, no
-data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason.
+data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason. If it has
+``across`` as well, paths of figures, one table shows these of all data sets.
 """
 
 from __future__ import annotations
