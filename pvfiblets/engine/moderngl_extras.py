@@ -52,6 +52,7 @@ _LEVEL_FORMATS: dict[tuple[str, int], tuple[int, int, int]] = {
 }
 
 _TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
+_TEXTURE_2D_MULTISAMPLE = 0x9100
 _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
 _COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
@@ -310,6 +311,22 @@ class GLExtras:
             self._ctx.fbo, self._ctx.mglo.fbo = remembered
             self.function("glBindFramebuffer")(_DRAW_FRAMEBUFFER, draw)
             self.function("glBindFramebuffer")(_READ_FRAMEBUFFER, read)
+
+    def attach_outside(self, framebuffer: moderngl.Framebuffer, name: int, samples: int = 0) -> None:
+        """Make a framebuffer draw into somebody else's texture, or none; it stays bound.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer
+            With one attachment, for colours.
+        name : int
+            OpenGL's of the texture; 0 for none: a texture lives as long as a framebuffer draws into it.
+        samples : int
+            Of the texture; 0 for a plain one.
+        """
+        self.function("glBindFramebuffer")(_DRAW_FRAMEBUFFER, framebuffer.glo)
+        target = _TEXTURE_2D_MULTISAMPLE if samples else _TEXTURE_2D
+        self.function("glFramebufferTexture2D")(_DRAW_FRAMEBUFFER, _COLOR_ATTACHMENT_0, target, name, 0)
 
     def attach_level(
         self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int, attachment: int | None = 0

@@ -43,6 +43,22 @@ def test_the_mean_is_exact_and_only_in_its_part(gl, n):
     texture.release()
 
 
+def test_another_picture_of_the_same_name_is_drawn_into(gl):
+    """A framebuffer is kept from picture to picture; what it drew into may be gone, and its name be another's."""
+    sums = Accumulation(gl)
+    for value in (40, 200):
+        texture = gl.texture(SIZE, 4, bytes([value]) * (4 * SIZE[0] * SIZE[1]), dtype="f1")
+        colour = Attachment(texture.glo, 0)
+        sums.restart()
+        sums.add(colour, PART)
+        texture.write(bytes(4 * SIZE[0] * SIZE[1]))
+        sums.show(colour, PART)
+        found = np.frombuffer(texture.read(), np.uint8).reshape(*SIZE[::-1], 4)
+        assert (part(found) == value).all()
+        texture.release()
+    sums.release()
+
+
 def test_a_float_picture_and_another_beginning(gl):
     texture = gl.texture(SIZE, 4, dtype="f4")
     colour = Attachment(texture.glo, 0, floats=True)

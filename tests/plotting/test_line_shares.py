@@ -9,6 +9,7 @@ sides along the axes, whose centre is d beyond a half plane's border along its n
 
 from __future__ import annotations
 
+import moderngl
 import numpy as np
 import pytest
 
@@ -143,6 +144,23 @@ def test_a_pixel_shows_the_share_that_a_line_covers_while_the_camera_moves(found
 def test_pictures_at_rest_are_as_strong(found, add, pipeline, width):
     """OpenGL's own rule makes a slanted line of one pixel thinner, by up to 0.71 at 45 degrees."""
     hold(found, add, width, pipeline, 16, (26.6, 45.0, 122.0))
+
+
+def test_no_framebuffer_is_made_while_the_camera_moves(plotter, monkeypatch):
+    plotter.window_size = SIZE
+    add_lines(plotter, np.array([[-10.0, 0.0, 0.0], [0.0, 4.0, 0.0], [10.0, 0.0, 0.0]]), 1.0, "compute")
+    plotter.picture.antialias = "coverage"
+    plotter.show(auto_close=False)
+    made, framebuffer = [], moderngl.Context.framebuffer
+    monkeypatch.setattr(
+        moderngl.Context, "framebuffer", lambda *given, **more: made.append(1) or framebuffer(*given, **more)
+    )
+    for turn in range(5):
+        if turn == 2:
+            made.clear()  # the first frames may make what all others use
+        plotter.camera.Azimuth(3.0)
+        plotter.render()
+    assert made == []
 
 
 def test_the_closed_form_is_the_area():

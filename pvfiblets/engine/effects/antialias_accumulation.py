@@ -85,13 +85,7 @@ class Accumulation(PicturePasses):
                 self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
 
     def _show(self, name: str, share: float, target: Attachment, viewport: Viewport) -> None:
-        x, y, width, height = viewport
-        outside = self._outside(target, 4, (x + width, y + height))
-        with self._plain_state():
-            framebuffer = self._ctx.framebuffer([outside])
-            try:
-                framebuffer.viewport = viewport
-                uniforms = {"shift": (-x, -y), "share": share}
-                self._pass("mean", framebuffer, {"colours": self._textures[name]}, uniforms)
-            finally:
-                framebuffer.release()
+        x, y = viewport[:2]
+        with self._plain_state(), self._onto(target, viewport) as framebuffer:
+            uniforms = {"shift": (-x, -y), "share": share}
+            self._pass("mean", framebuffer, {"colours": self._textures[name]}, uniforms)

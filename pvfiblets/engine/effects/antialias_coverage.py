@@ -108,14 +108,10 @@ class Coverage(PicturePasses):
                 seen = outside | {"keys": lines.buffer.depth, "edges": lines.buffer.edges}
                 thinner = {"narrower": lines.narrower, "first": int(index == 0)}
                 self._tile_pass("visible_edges", target, seen, {**uniforms, **thinner}, features)
-            picture = self._ctx.framebuffer([self._outside(colour, 4, (x + width, y + height))])
-            try:
-                picture.viewport = (x, y, width, height)
+            with self._onto(colour, viewport) as picture:
                 textures = tiled | {"shown": self._textures["shown"]}
                 squares = {"start": (0, 0), "size": (width, height), "border": 0}
                 self._tile_pass("antialias_coverage", picture, textures, {"shift": (1 - x, 1 - y), **squares})
-            finally:
-                picture.release()
 
     def _tile_pass(
         self,

@@ -205,8 +205,7 @@ class PictureEffects(PicturePasses):
         lens : Projection, optional
             With the focus: of the viewport.
         """
-        x, y, width, height = viewport
-        outside = self._outside(target, 4, (x + width, y + height))
+        x, y = viewport[:2]
         shift = {"shift": (self._corner[0] - x, self._corner[1] - y)}
         with self._plain_state():
             if focus is not None and lens is not None:
@@ -215,12 +214,8 @@ class PictureEffects(PicturePasses):
             else:
                 textures = {"colours": self._textures["colours"]}
                 name, features = "tone", list(tone.features)
-            framebuffer = self._ctx.framebuffer([outside])
-            try:
-                framebuffer.viewport = viewport
+            with self._onto(target, viewport) as framebuffer:
                 self._pass(name, framebuffer, textures, shift | tone.uniforms(), features)
-            finally:
-                framebuffer.release()
 
     def _blurred(self, focus: Focus, lens: Projection) -> dict[str, moderngl.Texture]:
         """Say of each pixel of the copy how far its light spreads; returns what the last pass reads."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,6 +55,7 @@ class PicturePasses:
         self._programs = Programs(ctx, constants)
         self._textures: dict[str, moderngl.Texture] = {}
         self._framebuffers: dict[tuple[str, ...], moderngl.Framebuffer] = {}
+        self._lent: moderngl.Framebuffer | None = None
 
     def _plain_state(self) -> Any:
         """Return what keeps the framebuffers that are bound; what is drawn meanwhile is neither mixed nor tested."""
@@ -65,6 +67,23 @@ class PicturePasses:
         """Return somebody else's texture as one of moderngl's, which never deletes it."""
         dtype = "f4" if attachment.floats else "f1"
         return self._ctx.external_texture(attachment.name, size, components, attachment.samples, dtype)
+
+    @contextmanager
+    def _onto(self, attachment: Attachment, viewport: tuple[int, int, int, int]) -> Iterator[moderngl.Framebuffer]:
+        """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`.
+
+        The framebuffer is kept, what it draws into is not: its owner may delete it, and its name may be given again.
+        """
+        if self._lent is None:
+            x, y, width, height = viewport
+            self._lent = self._ctx.framebuffer([self._outside(attachment, 4, (x + width, y + height))])
+        else:
+            self._gl.attach_outside(self._lent, attachment.name, attachment.samples)
+        try:
+            self._lent.viewport = viewport
+            yield self._lent
+        finally:
+            self._gl.attach_outside(self._lent, 0)
 
     def _texture(self, name: str, size: tuple[int, int], components: int, dtype: str) -> moderngl.Texture:
         """Return a texture, made anew for another size or kind."""
@@ -132,6 +151,9 @@ class PicturePasses:
         """Give everything on the GPU back; twice is harmless."""
         for name in list(self._textures):
             self._drop(name)
+        if self._lent is not None:
+            self._lent.release()
+            self._lent = None
         self._programs.release()
 
 
