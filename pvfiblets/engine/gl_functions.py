@@ -16,6 +16,7 @@ FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glBindBuffer": ((_UINT, _UINT), 330),
     "glBindFramebuffer": ((_UINT, _UINT), 330),
     "glBindTexture": ((_UINT, _UINT), 330),
+    "glBindTextures": ((_UINT, _INT, _POINTER), 440),
     "glBindVertexArray": ((_UINT,), 330),
     "glBlitFramebuffer": ((*[_INT] * 8, _UINT, _UINT), 330),
     "glClearBufferfv": ((_UINT, _INT, _POINTER), 330),

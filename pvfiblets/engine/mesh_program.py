@@ -51,10 +51,16 @@ class MeshProgram:
     ------
     moderngl.Error
         If a stage does not compile, or the stages do not link; with what the driver says.
+
+    Attributes
+    ----------
+    extra : object
+        Whatever its users keep about it, as programs of moderngl have it.
     """
 
     def __init__(self, ctx: moderngl.Context, sources: Mapping[str, str], blocks: Mapping[str, int]) -> None:
         self._gl = GLExtras(ctx)
+        self.extra: Any = None
         self.glo = self._call("glCreateProgram")
         shaders = []
         try:

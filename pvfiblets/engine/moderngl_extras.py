@@ -138,6 +138,11 @@ class GLExtras:
         self._ctx = ctx
         self._functions: dict[str, Callable[..., Any]] = {}
 
+    def has(self, name: str) -> bool:
+        """Whether this OpenGL is new enough for a function, or has the extension that it is of."""
+        needs = FUNCTIONS[name][1]
+        return self._ctx.version_code >= needs if isinstance(needs, int) else needs in self._ctx.extensions
+
     def function(self, name: str) -> Callable[..., Any]:
         """Return an OpenGL function.
 
@@ -286,14 +291,17 @@ class GLExtras:
             self.function("glTexImage2D")(_TEXTURE_2D, level, internal, width, height, 0, pixels, number, None)
         self.limit_levels(texture, 0, levels - 1)
 
-    def limit_levels(self, texture: moderngl.Texture, first: int, last: int) -> None:
+    def limit_levels(self, texture: moderngl.Texture, first: int, last: int, unit: int | None = None) -> None:
         """Say which levels of a texture shaders may read; ``texelFetch`` counts them from ``first``.
+
+        The texture stays bound to the unit, moderngl's own by default.
 
         Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
         """
-        texture.use(self._ctx.default_texture_unit)
-        self.function("glTexParameteri")(_TEXTURE_2D, _BASE_LEVEL, first)
-        self.function("glTexParameteri")(_TEXTURE_2D, _MAX_LEVEL, last)
+        texture.use(self._ctx.default_texture_unit if unit is None else unit)
+        limit = self.function("glTexParameteri")
+        limit(_TEXTURE_2D, _BASE_LEVEL, first)
+        limit(_TEXTURE_2D, _MAX_LEVEL, last)
 
     @contextmanager
     def framebuffers_kept(self) -> Iterator[None]:

@@ -103,6 +103,9 @@ def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> N
     """
     if groups <= 0:
         return
+    if groups <= max_groups:
+        program.run(groups)
+        return
     rows = -(-groups // max_groups)
     if rows > max_groups:
         raise EngineError(f"{groups} work groups are more than {max_groups} x {max_groups}")

@@ -14,6 +14,7 @@ import moderngl
 from ..bindings import CULLING
 from ..gbuffer import GBuffer
 from ..moderngl_extras import GLExtras
+from ..program_uniforms import set_uniforms
 from ..shaders import Programs
 from ..view import Style, View
 
@@ -118,17 +119,18 @@ class DepthPyramid:
             width, height = target.size
             for level, framebuffer in enumerate(levels.framebuffers):
                 outside = self.outside if level == 0 else None
-                features = ["SCENE_DEPTH"] if outside else []
-                program, array = self._programs.screen("culling/pyramid_reduce.frag", features)
+                if level == 0 or (level == 1 and self.outside is not None):
+                    features = ["SCENE_DEPTH"] if outside else []
+                    program, array = self._programs.screen("culling/pyramid_reduce.frag", features)
+                    set_uniforms(program, source=CULLING["occlusion"])
                 if outside is not None:
                     outside.use(CULLING["outside"])
-                    program["outside"] = CULLING["outside"]
-                source = target.depth if level == 0 else levels.texture
-                source.use(CULLING["occlusion"])
-                program["source"] = CULLING["occlusion"]
-                program["last"] = width - 1, height - 1
-                if level:
-                    self._gl.limit_levels(levels.texture, level - 1, level - 1)
+                    set_uniforms(program, outside=CULLING["outside"])
+                if level == 0:
+                    target.depth.use(CULLING["occlusion"])
+                else:
+                    self._gl.limit_levels(levels.texture, level - 1, level - 1, CULLING["occlusion"])
+                set_uniforms(program, last=(width - 1, height - 1))
                 width, height = (width + 1) // 2, (height + 1) // 2
                 framebuffer.viewport = (0, 0, width, height)
                 framebuffer.use()
@@ -141,15 +143,10 @@ class DepthPyramid:
         last = self._last if self.predicts else None
         self._now.texture.use(CULLING["occlusion"])
         (last or self._now).texture.use(CULLING["last"])
-        values = {
-            "pyramid": CULLING["occlusion"],
-            "pyramid_levels": self._now.count,
-            "last_pyramid": CULLING["last"],
-            "prediction_level": -1 if last is None else min(PREDICTION_LEVEL, last.count - 1),
-        }
-        for name, value in values.items():
-            if name in program:
-                program[name] = value
+        set_uniforms(
+            program, pyramid=CULLING["occlusion"], pyramid_levels=self._now.count, last_pyramid=CULLING["last"],
+            prediction_level=-1 if last is None else min(PREDICTION_LEVEL, last.count - 1),
+        )  # fmt: skip
 
     @property
     def texture(self) -> moderngl.Texture:

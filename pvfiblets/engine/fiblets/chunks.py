@@ -92,7 +92,7 @@ class Chunk:
     kinds: frozenset[int]
     buffers: dict[str, moderngl.Buffer] = field(default_factory=dict)
     _bound: dict[str, moderngl.Buffer] = field(default_factory=dict, repr=False)
-    _binding: list[tuple[Callable[[int], None], int]] = field(default_factory=list, repr=False)
+    _binding: list[tuple[Callable[..., None], int]] = field(default_factory=list, repr=False)
 
     @property
     def n_fiblets(self) -> int:
@@ -102,11 +102,22 @@ class Chunk:
     def bind_storage(self) -> None:
         """Bind its uniform block, and what there is of its buffers to their storage bindings."""
         if self._bound != self.buffers:
-            held = self._bound = dict(self.buffers)
-            self._binding = [(held["chunk"].bind_to_uniform_block, BLOCKS["Chunk"])]
-            self._binding += [(held[name].bind_to_storage_buffer, at) for name, at in BINDINGS.items() if name in held]
+            self._look()
         for bind, binding in self._binding:
-            bind(binding)
+            bind(binding, 0, -1)
+
+    def bind_block(self) -> None:
+        """Bind its uniform block alone."""
+        if self._bound != self.buffers:
+            self._look()
+        bind, binding = self._binding[0]
+        bind(binding, 0, -1)
+
+    def _look(self) -> None:
+        """Find what to call: every pass of every picture does, once a chunk, so moderngl's own functions in C."""
+        held = self._bound = dict(self.buffers)
+        self._binding = [(held["chunk"].mglo.bind_to_uniform_block, BLOCKS["Chunk"])]
+        self._binding += [(held[name].mglo.bind_to_storage_buffer, at) for name, at in BINDINGS.items() if name in held]
 
     def release(self) -> None:
         """Give the buffers back; twice is harmless."""

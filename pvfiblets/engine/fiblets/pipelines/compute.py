@@ -44,10 +44,11 @@ import moderngl
 import numpy as np
 
 from ....codec.layout import MAX_POINTS
-from ...bindings import BLOCKS, IMAGES, STORAGE
+from ...bindings import IMAGES, STORAGE
 from ...errors import EngineError
 from ...moderngl_extras import GLExtras
 from ...passes import GROUP_SIZE, dispatch, is_software
+from ...program_uniforms import set_uniforms
 from ...shaders import EXTENDED, Programs
 from ..chunks import Chunk, storage_buffer
 from .constants import GROUP_WORDS, VISIBILITY_WORDS
@@ -158,7 +159,7 @@ class ComputePipeline:
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
             count = ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
-            self._set(clear, argument_base=self._argument_base, argument_count=count)
+            set_uniforms(clear, argument_base=self._argument_base, argument_count=count)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
@@ -252,7 +253,7 @@ class ComputePipeline:
             return
         with request.passes.timed("owners" if marking else "split"):
             split = self._program("split", ())
-            self._set(split, marking=int(marking))
+            set_uniforms(split, marking=int(marking))
             dispatch(split, request.target.size[1], self._max_groups)
             self._barrier()
 
@@ -263,12 +264,6 @@ class ComputePipeline:
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
         return self._programs.compute(f"fiblets/compute/{stage}.comp", features)
-
-    def _set(self, program: moderngl.ComputeShader, **uniforms: object) -> None:
-        """Set those uniforms that the compiler left in."""
-        for name, value in uniforms.items():
-            if isinstance(uniform := program.get(name, None), moderngl.Uniform):
-                uniform.value = value
 
     def _barrier(self) -> None:
         self._ctx.memory_barrier(
@@ -283,7 +278,7 @@ class ComputePipeline:
         """Tell a program of which round it is, and where lists and arguments stand; return the word of the latter."""
         at = self._argument_base + number * self._round_arguments * ARGUMENT_BYTES // 4
         places = {"list_base": self._list_base, "list_length": self._words, "argument_base": at}
-        self._set(program, drawing=number, **places, **uniforms)
+        set_uniforms(program, drawing=number, **places, **uniforms)
         return at
 
     def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
@@ -291,7 +286,7 @@ class ComputePipeline:
         plan = self._program("plan", ())
         self._set_round(plan, number, refined=int(refined))
         for chunk in chunks:
-            chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
+            chunk.bind_block()
             dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._barrier()
         arguments = self._program("arguments", ())
@@ -303,26 +298,37 @@ class ComputePipeline:
         """Draw one round's fiblets, class by class."""
         refined = number == REST and request.occlusion is not None and request.occlusion.halfway
         self._plan(number, request.chunks, refined)
-        for part, features in request.classes(one=self._one_class):
-            program = self._program(stage, [*features, *self._int64])
-            for share in self._shares if request.line_width > 0.0 else self._shares[:1]:
-                self._set(program, share=share)
-                self._run_listed(program, number, part, request)
-                if len(self._shares) > 1:  # of two segments with the same depth the later one writes the pixel
-                    self._barrier()
+        parts = [(self._program(stage, [*features, *self._int64]), part)
+                 for part, features in request.classes(one=self._one_class)]  # fmt: skip
+        shares = self._shares if request.line_width > 0.0 else self._shares[:1]
+        for share in shares:
+            for program, _ in parts:
+                set_uniforms(program, share=share)
+            self._run_listed(parts, number, request)
+            if len(shares) > 1:  # of two segments with the same depth the later one writes the pixel
+                self._barrier()
         self._barrier()
 
-    def _run_listed(self, program: moderngl.ComputeShader, number: int, part: int, request: DrawRequest) -> None:
-        at = 4 * self._set_round(program, number, part=part) + ARGUMENT_BYTES * part
-        request.kept.bind(program)
-        if request.peel is not None:
-            request.peel.bind(program)
-        if request.gather is not None:
-            request.gather.bind(program)
+    def _run_listed(
+        self, parts: Sequence[tuple[moderngl.ComputeShader, int]], number: int, request: DrawRequest
+    ) -> None:
+        """Run a program for each class of fiblets, chunk by chunk, of which each is bound once."""
+        listed = self._own["visibility_bits"]
+        runs = []
+        for program, part in parts:
+            at = 4 * self._set_round(program, number) + ARGUMENT_BYTES * part
+            request.kept.bind(program)
+            if request.peel is not None:
+                request.peel.bind(program)
+            if request.gather is not None:
+                request.gather.bind(program)
+            runs.append((program, part, at))
         for index, chunk in enumerate(request.chunks):
             chunk.bind_storage()
             request.kept.bind_chunk(index)
-            program.run_indirect(self._own["visibility_bits"], at + index * CLASSES * ARGUMENT_BYTES)
+            for program, part, at in runs:
+                set_uniforms(program, part=part)  # which some have in common
+                program.run_indirect(listed, at + index * CLASSES * ARGUMENT_BYTES)
 
     def _test(self, stage: str, request: DrawRequest) -> None:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
@@ -339,8 +345,7 @@ class ComputePipeline:
         """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
         program = self._program("refine", self._looking("refine", request))
         self._plan(TESTED, request.chunks)
-        for part, _ in request.classes(one=self._one_class):
-            self._run_listed(program, TESTED, part, request)
+        self._run_listed([(program, part) for part, _ in request.classes(one=self._one_class)], TESTED, request)
         self._barrier()
 
     def _run(self, stage: str, features: Sequence[str], request: DrawRequest) -> None:

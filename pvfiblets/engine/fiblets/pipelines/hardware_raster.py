@@ -29,7 +29,7 @@ from typing import Any, TypeVar
 
 import moderngl
 
-from ...bindings import BETWEEN_ROUNDS, BLOCKS, FIBLET_ROUNDS
+from ...bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
 from ...depth_texture import depth_texture
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
@@ -326,7 +326,7 @@ class RasterPipeline(abc.ABC):
         ctx.depth_func = "<"
         request.kept.bind(program)
         for index, chunk in enumerate(request.chunks):
-            chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
+            chunk.bind_block()
             request.kept.bind_chunk(index)
             self._draw(array, program, chunk, request)
 
