@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import moderngl
 
@@ -45,21 +46,23 @@ class Passes:
         """Forget the last redraw."""
         self._ran.clear()
 
-    @contextlib.contextmanager
-    def timed(self, name: str) -> Iterator[None]:
+    def timed(self, name: str) -> contextlib.AbstractContextManager[Any]:
         """Time the GL commands of a pass."""
         if self._software:
-            started = time.perf_counter()
-            yield
-            self._ran.append(name)
-            self._clock[name] = (time.perf_counter() - started) * 1e3
-            return
+            return self._clocked(name)
         query = self._queries.get(name)
         if query is None:
             query = self._queries[name] = self._ctx.query(time=True)
         self._ran.append(name)
-        with query:
-            yield
+        timed: contextlib.AbstractContextManager[Any] = query  # type: ignore[assignment]
+        return timed
+
+    @contextlib.contextmanager
+    def _clocked(self, name: str) -> Iterator[None]:
+        started = time.perf_counter()
+        yield
+        self._ran.append(name)
+        self._clock[name] = (time.perf_counter() - started) * 1e3
 
     def report(self) -> list[dict[str, object]]:
         """Wait for the last redraw and return its passes as ``{'name', 'ms'}``, in order."""

@@ -130,6 +130,9 @@ class _Layout:
 
     def fill(self, stored: npt.NDArray[Any], value: npt.ArrayLike) -> None:
         """Write a value into the words of the field."""
+        if type(value) is float and not self.shape and self.scalar.kind == "f":
+            stored[...] = value
+            return
         given = np.asarray(value)
         if given.dtype.kind not in ("buif" if self.scalar.kind == "f" else "bui"):
             raise UniformStructError(f"cannot hold numbers of type {given.dtype}")

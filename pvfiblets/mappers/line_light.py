@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 
 __all__ = ["LegendColours", "LineLight"]
@@ -21,7 +19,8 @@ class LineLight(ShaderEffect):
         lights = draw.renderer.GetLights()
         every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
         on = [light for light in every if light.GetSwitch() and light.GetIntensity() > 0.0]
-        total = sum((light.GetIntensity() * np.array(light.GetDiffuseColor()) for light in on), np.zeros(3))
+        shares = [(light.GetIntensity(), light.GetDiffuseColor()) for light in on]
+        total = [sum(intensity * colour[channel] for intensity, colour in shares) for channel in range(3)]
         program.SetUniform3f("fibletLights", [float(channel) for channel in total])
         program.SetUniformf("fibletStanding", float(any(light.LightTypeIsSceneLight() for light in on)))
 

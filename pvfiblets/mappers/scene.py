@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -48,13 +49,13 @@ class Frame:
     view: Matrix
     projection: Matrix
 
-    @property
+    @cached_property
     def model_view(self) -> Matrix:
         """(4, 4), data mm to view coordinates."""
         product: Matrix = self.view @ self.model
         return product
 
-    @property
+    @cached_property
     def model_view_projection(self) -> Matrix:
         """(4, 4), data mm to clip coordinates."""
         product: Matrix = self.projection @ self.model_view
@@ -111,9 +112,10 @@ class Frame:
             return -1.0, -1.0, 1.0, 1.0
         place = clip[:, :2] / w[:, None]
         pad = 2.0 * margin / np.array(self.viewport[2:], dtype=np.float64)
-        left, lower = np.clip(place.min(axis=0) - pad, -1.0, 1.0)
-        right, upper = np.clip(place.max(axis=0) + pad, -1.0, 1.0)
-        return float(left), float(lower), float(right), float(upper)
+        left, lower = (place.min(axis=0) - pad).tolist()
+        right, upper = (place.max(axis=0) + pad).tolist()
+        within = [min(max(edge, -1.0), 1.0) for edge in (left, lower, right, upper)]
+        return within[0], within[1], within[2], within[3]
 
     def pixel_rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[int, int, int, int]:
         """Return the same as x, y, width, height in whole pixels of the viewport."""
@@ -146,7 +148,9 @@ def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, i
 
 def to_array(matrix: vtkMatrix4x4) -> Matrix:
     """Return a VTK matrix as (4, 4) float64."""
-    return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+    numbers = [0.0] * 16
+    matrix.DeepCopy(numbers, matrix)  # type: ignore[call-overload]
+    return np.array(numbers).reshape(4, 4)
 
 
 def pixel_scale(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import moderngl
@@ -65,15 +66,13 @@ class SharedBlocks:
     ----------
     buffers : dict of str to moderngl.Buffer
         ``rotations``, ``coding``, ``frame``, and ``tubes`` and ``clip_planes`` while there are any.
-    segment : float
-        Pixels that the longest segments in the last view take, roughly.
     """
 
     def __init__(self, ctx: moderngl.Context, fiblets: FibletSet) -> None:
         self._ctx = ctx
         self._fiblets = fiblets
         self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
-        self.segment = 0.0
+        self._view: View | None = None
         coding = CODING_BLOCK.pack(
             anchor_scale=fiblets.anchor_scale,
             radius_scale=fiblets.reach_scale,
@@ -89,7 +88,7 @@ class SharedBlocks:
             "frame": ctx.buffer(bytes(FRAME_BLOCK.nbytes)),
         }
 
-    @property
+    @cached_property
     def place(self) -> tuple[Array, Array, int]:
         """Where anchors count from and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
         fiblets = self._fiblets
@@ -106,8 +105,7 @@ class SharedBlocks:
 
     def write_camera(self, view: View, style: FibletStyle) -> tuple[bool, bool]:
         """Bring the blocks of the camera up to date; say whether anything may cross the edges, or planes."""
-        # Where steps vary, four times their mean stands for the longest.
-        self.segment = segment_pixels(view, *self.place, 4.0 * self._fiblets.step)
+        self._view = view
         block, margin = frame_block(view, style, *self.place)
         radius = self._fiblets.parameters.largest_radius
         self.buffers["frame"].write(block)
@@ -122,6 +120,11 @@ class SharedBlocks:
         else:
             self._write("clip_planes", CLIP_PLANES_BLOCK, planes)
         return margin < radius, planes is not None
+
+    def segment(self) -> float:
+        """Return roughly how many pixels the longest segments take in the last view."""
+        # Where steps vary, four times their mean stands for the longest.
+        return 0.0 if self._view is None else segment_pixels(self._view, *self.place, 4.0 * self._fiblets.step)
 
     def _write(self, name: str, struct: UniformStruct, data: bytes) -> None:
         if name not in self.buffers:

@@ -37,7 +37,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -378,7 +378,7 @@ def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > STORAGE["nearest"]
 
 
-def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
+def _shares(line_width: float, segment: Callable[[], float]) -> list[tuple[int, int]]:
     """Cut the segments of a fiblet into ranges whose pixels software OpenGL draws before it leaves the loops.
 
     An invocation draws ``32 * GROUP_WORDS / GROUP_SIZE`` fiblets or fewer, and waits for its neighbours' segments.
@@ -387,7 +387,7 @@ def _shares(line_width: float, segment: float) -> list[tuple[int, int]]:
     if line_width == 0.0:
         return [(0, MAX_POINTS)]
     fiblets = 32 * GROUP_WORDS // GROUP_SIZE
-    count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment + line_width)))
+    count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment() + line_width)))
     if count < 1 and line_width > WIDEST_IN_SOFTWARE:
         raise EngineError(
             f"a line width of {line_width:g} pixels is more than software OpenGL draws whole; give at most "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -44,8 +44,8 @@ class DrawRequest:
         ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
     line_width : float
         Pixels of round brushes; 0 for thin lines and for tubes.
-    segment : float
-        Pixels that the longest segments in the picture take, roughly.
+    segment : callable
+        Returns the pixels that the longest segments in the picture take, roughly.
     occlusion : Occlusion, optional
         Tests what earlier depth hides.
     kept : Visibility
@@ -67,7 +67,7 @@ class DrawRequest:
     planes: tuple[str, ...]
     detail: tuple[str, ...]
     line_width: float
-    segment: float
+    segment: Callable[[], float]
     occlusion: Occlusion | None
     kept: Visibility
     tubes: tuple[str, ...] = ()
