@@ -88,6 +88,7 @@ class Explorer(TrameApp):
             pending=self._pending,
             failed=lambda error: self.complain(f"The picture could not be drawn: {error}"),
             drawn=self._drawn,
+            pane_at=self.scene.slicing.pane_at,
         )
         self._charts = describe.Charts(self.scene)
         self.camera = CameraActions(self)

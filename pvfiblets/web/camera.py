@@ -41,6 +41,7 @@ class CameraActions(Actions):
     def reset(self) -> None:
         """Show everything."""
         self._app.scene.reset()
+        self._app.scene.slicing.show_all()
         self._app.stream.request()
 
     def toggle_parallel(self) -> None:

@@ -168,6 +168,16 @@ class Slicing:
             })  # fmt: skip
         return found
 
+    def show_all(self) -> None:
+        """Show all of the slice in each pane."""
+        if self.workspace is not None:
+            for pane in self.workspace.panes.values():
+                pane.reset()
+
+    def pane_at(self, x: float, y: float) -> Any:
+        """Return the pane that a pixel of the picture, from the lower left, is in; None if it is in none."""
+        return None if self.workspace is None else self.workspace.pane_at(x, y)
+
     # Layers
 
     def add(self, layer: Layer, image: LabelledImage) -> Any:

@@ -58,6 +58,8 @@ class PictureStream:
         Told of an error while drawing.
     drawn : callable
         Called after each frame.
+    pane_at : callable
+        From a pixel to the pane of slices that it is in, which two fingers move; None elsewhere.
     """
 
     def __init__(
@@ -71,6 +73,7 @@ class PictureStream:
         pending: Callable[[], int] = lambda: 0,
         failed: Callable[[Exception], None] = lambda _: None,
         drawn: Callable[[], None] = lambda: None,
+        pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
@@ -95,7 +98,7 @@ class PictureStream:
         self._moving_at = 1.0
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
         self._pressed: set[str] = set()
-        self._fingers = Fingers(plotter)
+        self._fingers = Fingers(plotter, pane_at)
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="pictures")
         self._task: asyncio.Task[None] | None = None
         self._grab = vtkWindowToImageFilter()

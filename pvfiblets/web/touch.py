@@ -1,4 +1,4 @@
-"""What two fingers on the picture do to the camera: zoom as far as they part, and move with them.
+"""What two fingers on the picture do to the camera, or to a slice: zoom as far as they part, and move with them.
 
 VTK's trackball style knows no gestures, and its style for several fingers does not move the scene. Pages report which
 gesture they take a touch for; fingers seldom do one thing only, so zoom and shift are always taken from where the
@@ -8,7 +8,7 @@ fingers are, and only a turn must have been meant.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,10 +35,14 @@ class Fingers:
     Parameters
     ----------
     plotter : pyvista.Plotter
+    pane_at : callable
+        From a pixel to the pane of slices that it is in; None for the plotter's camera.
     """
 
-    def __init__(self, plotter: Any) -> None:
+    def __init__(self, plotter: Any, pane_at: Callable[[float, float], Any] = lambda _x, _y: None) -> None:
         self._plotter = plotter
+        self._pane_at = pane_at
+        self._pane: Any = None
         self._last: _Pair | None = None
 
     def take(self, event: Mapping[str, Any]) -> bool:
@@ -54,6 +58,8 @@ class Fingers:
         if gesture not in GESTURES:
             return False
         pair = _pair(event.get("positions") or {})
+        if self._last is None and pair is not None:
+            self._pane = self._pane_at(pair.x, pair.y)
         if kind == gesture and pair is not None and self._last is not None:
             self._follow(self._last, pair, turn=gesture == "Rotate")
         self._last = None if kind.startswith("End") else pair
@@ -66,6 +72,9 @@ class Fingers:
             self._last = _Pair(x * times, y * times, distance * times, angle)
 
     def _follow(self, before: _Pair, now: _Pair, *, turn: bool) -> None:
+        if self._pane is not None:
+            _follow_in(self._pane, before, now)
+            return
         camera = self._plotter.camera
         if min(before.distance, now.distance) >= LEAST:
             _zoom(camera, min(max(now.distance / before.distance, 1.0 / MOST), MOST))
@@ -83,6 +92,15 @@ def _pair(positions: Mapping[str, Mapping[str, float]]) -> _Pair | None:
     )
     across, up = x1 - x0, y1 - y0
     return _Pair((x0 + x1) / 2, (y0 + y1) / 2, math.hypot(across, up), math.degrees(math.atan2(up, across)))
+
+
+def _follow_in(pane: Any, before: _Pair, now: _Pair) -> None:
+    """Zoom and move a slice so that what was between the fingers stays there."""
+    place = pane.position_at(before.x, before.y)
+    if min(before.distance, now.distance) >= LEAST:
+        pane.zoom *= min(max(now.distance / before.distance, 1.0 / MOST), MOST)
+    x, y = pane.pixel_of(place)
+    pane.pan_by(now.x - x, now.y - y)
 
 
 def _zoom(camera: Any, times: float) -> None:

@@ -12,6 +12,7 @@ from pvfiblets.web.history import History
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.script import as_script
 from pvfiblets.web.slicing import ready_views
+from pvfiblets.web.touch import Fingers
 
 
 @pytest.fixture
@@ -123,6 +124,28 @@ def test_the_script_makes_the_same_picture(scene, folder):
     exec(compile(text, "script", "exec"), {})
     found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
     assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+
+
+def test_two_fingers_move_a_slice_and_reset_shows_all_of_it(scene):
+    scene.open("head.nii.gz", "image")
+    scene.set_slices(layout="axial")
+    scene.screenshot()
+    pane, fingers = scene.slicing.workspace.panes["axial"], Fingers(scene.plotter, scene.slicing.pane_at)
+    camera = scene.camera()
+    under = pane.position_at(100.0, 70.0)
+
+    def send(kind, *xs):
+        positions = {str(k): {"x": x, "y": 70.0} for k, x in enumerate(xs)}
+        assert fingers.take({"type": kind, "positions": positions})
+
+    send("StartPinch", 80.0, 120.0)
+    send("Pinch", 90.0, 170.0)
+    send("EndPinch", 90.0, 170.0)
+    assert pane.zoom == pytest.approx(2.0)
+    np.testing.assert_allclose(pane.position_at(130.0, 70.0), under, atol=1e-9)
+    assert scene.camera() == camera
+    scene.slicing.show_all()
+    assert pane.zoom == 1.0
 
 
 def test_images_are_not_cut_and_need_four_views(scene, folder, plotter):
