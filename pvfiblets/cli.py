@@ -10,8 +10,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
+from typing import Any
 
 from pvfiblets import cli_file_arguments as files
 from pvfiblets import cli_scene_arguments as scenes
@@ -40,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     module, function = options.pop("run").split(":")
     pipes = Pipes(options)
     try:
-        with held_to(options.pop("max_memory", None)), pipes:
+        with _plain_warnings(pipes), held_to(options.pop("max_memory", None)), pipes:
             code = getattr(import_module(module), function)(**options) or 0
         sys.stdout.flush()  # here, where a reader that has gone is no error
         return code
@@ -55,6 +58,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         print(f"pvfiblets: {pipes.renamed(sentence(error))}", file=sys.stderr)
         return 1
+
+
+@contextmanager
+def _plain_warnings(pipes: Pipes) -> Iterator[None]:
+    """Print warnings that people are meant to read as one sentence each, without the place in the source."""
+
+    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if category is UserWarning:
+            print(f"pvfiblets: {pipes.renamed(' '.join(str(message).split()))}", file=sys.stderr)
+        else:
+            usual(message, category, *place)
+
+    usual = warnings.showwarning
+    warnings.showwarning = show
+    try:
+        yield
+    finally:
+        warnings.showwarning = usual
 
 
 def make_parser() -> argparse.ArgumentParser:

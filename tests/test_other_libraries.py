@@ -203,10 +203,20 @@ def test_what_holds_no_lines_is_told(source, error, message):
     plotter.close()
 
 
-@pytest.mark.parametrize("source", [[], pv.PolyData(), Streamlines(np.zeros((0, 3)), [0])])
-def test_nothing_at_all_is_a_warning(source):
+@pytest.mark.parametrize(
+    ("source", "what"),
+    [
+        ([], "streamlines"),
+        (pv.PolyData(), "streamlines"),
+        (Streamlines(np.zeros((0, 3)), [0]), "streamlines"),
+        (pf.compress(Streamlines(np.zeros((0, 3)), [0])), "streamlines"),
+        (pf.compress(Streamlines(np.zeros((0, 3)), [0, 0, 0])), "points"),
+        (Streamlines(np.zeros((0, 3)), [0, 0, 0]), "points"),
+    ],
+)
+def test_nothing_at_all_is_a_warning(source, what):
     plotter = pv.Plotter(off_screen=True)
-    with pytest.warns(UserWarning, match="the source holds no streamlines: nothing is drawn"):
+    with pytest.warns(UserWarning, match=f"the source holds no {what}: nothing is drawn"):
         plotter.add_fiblets(source)
     plotter.close()
 

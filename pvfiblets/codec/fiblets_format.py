@@ -26,13 +26,21 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Decode a file piece by piece; see :func:`pvfiblets.iter_chunks`."""
+    empty = True
+    for chunk in _iter_chunks(path, max_points):
+        empty = False
+        yield chunk
+    if empty:
+        yield FibletSet.open(path).decompress()
+
+
+def _iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     if is_sharded(path):
         from .shards.sharded_set import ShardedSet
 
-        yield from ShardedSet.open(path).iter_chunks(max_points)
-        return
+        return ShardedSet.open(path).iter_chunks(max_points)
     fiblets = FibletSet.open(path)
-    yield from held_in_bounds(fiblets, fiblets.iter_chunks(max_points))
+    return held_in_bounds(fiblets, fiblets.iter_chunks(max_points))
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:

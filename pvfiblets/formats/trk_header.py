@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -91,7 +92,7 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
     from nibabel.orientations import aff2axcodes
 
     sizes = fields["voxel_sizes"].astype(np.float64)
-    if not (np.isfinite(sizes).all() and (sizes > 0).all()):
+    if not (np.isfinite(sizes).all() and (sizes >= 0).all()):
         raise FormatError(path, 12, f"voxel size {sizes.tolist()}", "three positive numbers (mm)")
     affine = fields["voxel_to_rasmm"].astype(np.float64)
     recorded = version != 1 and affine[3, 3] != 0
@@ -109,6 +110,8 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
         pair for c in voxel_order for pair in map(frozenset, ("LR", "PA", "SI")) if c in pair
     }:
         raise FormatError(path, 948, f"voxel order {voxel_order!r}", "one of L/R, one of P/A and one of S/I")
+    if not sizes.all():
+        sizes = _sizes_of(path, sizes, affine, voxel_order)
     dimensions = fields["dimensions"].astype(int)
     to_ras = trackvis_to_ras(sizes, dimensions, voxel_order, affine)
     space = {
@@ -123,6 +126,22 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
     if original := fields["pad2"].decode("latin-1").strip("\0 "):
         space["original_voxel_order"] = original
     return affine, to_ras, space
+
+
+def _sizes_of(
+    path: str, sizes: NDArray[np.float64], affine: NDArray[np.float64], voxel_order: str
+) -> NDArray[np.float64]:
+    """Voxel sizes along the axes of the header's order, by the affine, in place of those that are 0."""
+    from nibabel import orientations as orient
+
+    by_affine = np.sqrt((affine[:3, :3] ** 2).sum(axis=0))
+    move = orient.ornt_transform(orient.axcodes2ornt(voxel_order), orient.axcodes2ornt(orient.aff2axcodes(affine)))
+    found = np.where(sizes > 0, sizes, by_affine[move[:, 0].astype(int)])
+    warnings.warn(
+        f"{path}: voxel size is {sizes.tolist()}; {found.tolist()} mm is taken, by the voxel-to-RAS matrix",
+        stacklevel=2,
+    )
+    return found
 
 
 def trackvis_to_ras(

@@ -13,6 +13,8 @@ no zip, damaged or truncated zip, encryption,      FormatError
 a compression other than deflate
 an array's size that contradicts the header, or    FormatError at the entry
 offsets that decrease or leave the points
+a count of the header that is one off, where all   read by the arrays, with a warning
+arrays agree about it
 a group that names streamlines that do not exist   FormatError at the entry
 a point with NaN or infinity                       left out with its data and counted
 entries outside the specification's folders        left out and counted
@@ -22,6 +24,7 @@ entries outside the specification's folders        left out and counted
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
@@ -70,6 +73,7 @@ class _Trx:
         self.unknown = self.zip.odd_names
         for entry in self.zip.entries:
             self._sort(entry)
+        self._mend_counts()
         self._check_sizes()
 
     def _header(self) -> dict[str, Any]:
@@ -121,6 +125,37 @@ class _Trx:
             self.offsets = entry
         else:
             self.unknown += 1
+
+    def _mend_counts(self) -> None:
+        """Believe the arrays where the header is one off and they leave one reading."""
+        offsets, positions = self.offsets, self.positions
+        if offsets is None or positions is None or offsets.rows < 1 or offsets.dtype.kind not in "iu":
+            return
+        points, by_point = positions.rows, [entry.rows for entry in self.per_point.values()]
+        streamlines, by_line = self.n_streamlines, [entry.rows for entry in self.per_streamline.values()]
+        odd = abs(points - self.n_points) == 1 and all(rows == points for rows in by_point)
+        usual = offsets.rows in (streamlines, streamlines + 1) and all(rows == streamlines for rows in by_line)
+        if usual and not odd:
+            return  # as it should be
+        last = int(offsets.take(offsets.rows - 1, offsets.rows).reshape(-1)[0])
+        if odd and (last == points or (by_point and last < points and streamlines == offsets.rows)):
+            self._warn("NB_VERTICES", self.n_points, points)
+            self.n_points = points
+        for count in (streamlines - 1, streamlines + 1):
+            closed = offsets.rows == count + 1 and last == self.n_points
+            opened = offsets.rows == count and last < self.n_points
+            backed = bool(by_line) and all(rows == count for rows in by_line)
+            # Without data of streamlines, a total in place of the last streamline may as well be an empty one.
+            if (backed and (closed or opened)) or (closed and not by_line and count > streamlines):
+                self._warn("NB_STREAMLINES", streamlines, count)
+                self.n_streamlines = count
+                return
+
+    def _warn(self, key: str, value: int, count: int) -> None:
+        warnings.warn(
+            f"{self.path}: {key} is {value}, and all arrays are of {count}, which is believed; write the file again",
+            stacklevel=2,
+        )
 
     def _check_sizes(self) -> None:
         position = self._header_position

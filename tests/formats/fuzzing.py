@@ -176,6 +176,7 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
+            warnings.filterwarnings("ignore", message=r".*(which is believed|is taken, by the voxel-to-RAS)")
             read(target)
     except _expected_of(reader) as error:
         outcomes["refused" if _is_told(error, target) else "untold"] += 1

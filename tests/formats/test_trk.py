@@ -173,7 +173,7 @@ def patched(data: bytes, position: int, form: str, *values) -> bytes:
         (988, "<i", [-1], 988, "-1"),
         (36, "<h", [-1], 36, "scalars -1"),
         (238, "<h", [-2], 238, "properties -2"),
-        (12, "<f", [0.0], 12, "voxel size"),
+        (12, "<f", [-1.0], 12, "voxel size"),
         (12, "<f", [np.nan], 12, "voxel size"),
         (440, "<f", [np.inf], 440, "invertible"),
         (440, "<f", [0.0], 440, "invertible"),
@@ -188,6 +188,42 @@ def test_damaged_fields(file, position, form, values, at, words):
     error = refused(file, patched(file.read_bytes(), position, form, *values))
     assert at in (0, error.position)
     assert words in f"{error.found} {error.expected}"
+
+
+@pytest.mark.parametrize("zeros", [(0,), (0, 1, 2), (2,)])
+@pytest.mark.parametrize("order", ["RAS", "LPS", "SPL"])
+def test_voxels_of_size_0_have_the_size_that_the_matrix_says(tmp_path, order, zeros):
+    """The file with its sizes, by nibabel, is what the one without them must be read as."""
+    lines = rich(counts=COUNTS)
+    lines.affine = np.diag([2.0, 3.0, 4.0, 1.0]) @ nibabel.affines.from_matvec(np.eye(3), [1, 2, 3])
+    sizes = nibabel.orientations.apply_orientation(
+        np.arange(24).reshape(2, 3, 4),
+        nibabel.orientations.ornt_transform(
+            nibabel.orientations.axcodes2ornt("RAS"), nibabel.orientations.axcodes2ornt(order)
+        ),
+    ).shape
+    lines.space = {"dimensions": (20, 30, 40), "voxel_order": order, "voxel_sizes": np.array(sizes, float)}
+    path = tmp_path / "a.trk"
+    formats.write(path, lines)
+    whole = path.read_bytes()
+    want = assert_agrees(path)
+    for axis in zeros:
+        path.write_bytes(patched(path.read_bytes(), 12 + 4 * axis, "<f", 0.0))
+    with pytest.warns(UserWarning, match="voxel size is .*0.0.* is taken, by the voxel-to-RAS matrix"):
+        found = formats.read(path)
+    np.testing.assert_array_equal(found.points, want.points)
+    assert tuple(found.space["voxel_sizes"]) == sizes
+    formats.write(path, found)
+    assert path.read_bytes()[12:24] == whole[12:24]
+
+
+def test_voxels_of_size_0_and_no_matrix_are_of_1_mm(file):
+    data = patched(file.read_bytes(), 440, "<16f", *[0.0] * 16)
+    file.write_bytes(patched(data, 12, "<3f", 1.0, 1.0, 1.0))
+    want = assert_agrees(file)
+    file.write_bytes(patched(data, 12, "<3f", 0.0, 0.0, 0.0))
+    with pytest.warns(UserWarning, match="voxel size"):
+        np.testing.assert_array_equal(formats.read(file).points, want.points)
 
 
 @pytest.mark.parametrize("lost", [1, 4, 30])

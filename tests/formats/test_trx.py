@@ -178,8 +178,10 @@ def test_empty(tmp_path):
 @pytest.mark.parametrize(
     ("entries", "header", "words"),
     [
-        (base(), {"NB_VERTICES": 6}, "5 rows.*6, the header's NB_VERTICES"),
-        (base(), {"NB_VERTICES": 4}, "5 rows"),
+        (base(), {"NB_VERTICES": 7}, "5 rows.*7, the header's NB_VERTICES"),
+        (base(), {"NB_VERTICES": 3}, "5 rows"),
+        (base(**{"dpv/fa.float32": np.zeros(6, "f4")}), {"NB_VERTICES": 6}, "positions with 5 rows"),
+        (base(**{"offsets.uint64": np.array([0, 3], "u8")}), {"NB_VERTICES": 6}, "positions with 5 rows"),
         (base(), {"NB_STREAMLINES": 4}, "3 rows"),
         (base(), {"NB_STREAMLINES": -1}, "NB_STREAMLINES = -1"),
         (base(), {"NB_VERTICES": 10**18}, "rows"),
@@ -204,6 +206,39 @@ def test_contradictions(entries, header, words, tmp_path):
     import re
 
     assert re.search(words, str(error)), str(error)
+
+
+@pytest.mark.parametrize(
+    ("entries", "header"),
+    [
+        (base(), {"NB_VERTICES": 6}),
+        (base(), {"NB_VERTICES": 4}),
+        (base(**{"dpv/fa.float32": np.zeros(5, "f4")}), {"NB_VERTICES": 6}),
+        (base(**{"offsets.uint64": np.array([0, 3], "u8"), "dpv/i.uint8": bytes(5)}), {"NB_VERTICES": 4}),
+        (base(), {"NB_STREAMLINES": 1}),
+        (base(**{"dps/w.uint8": b"12"}), {"NB_STREAMLINES": 3}),
+        (base(**{"dps/w.uint8": b"12"}), {"NB_STREAMLINES": 1}),
+        (base(**{"offsets.uint64": np.array([0, 3], "u8"), "dps/w.uint8": b"12"}), {"NB_STREAMLINES": 1}),
+        (base(**{"offsets.uint64": np.array([0, 3], "u8"), "dps/w.uint8": b"12"}), {"NB_STREAMLINES": 3}),
+        (base(), {"NB_STREAMLINES": 1, "NB_VERTICES": 6}),
+    ],
+)
+@pytest.mark.parametrize("method", [ZIP_STORED, ZIP_DEFLATED])
+def test_a_header_that_is_one_off_is_told_and_the_arrays_are_believed(entries, header, method, tmp_path):
+    path = packed(tmp_path / "a.trx", entries, header, method)
+    for ask in (formats.read, lambda path: Streamlines.concatenate(formats.iter_chunks(path, 3))):
+        with pytest.warns(UserWarning, match=r"a.trx: NB_\w+ is \d, and all arrays are of \d, which is believed"):
+            s = ask(path)
+        assert s.counts.tolist() == [3, 2]
+        np.testing.assert_array_equal(s.points, POINTS)
+    with pytest.warns(UserWarning, match="believed"):
+        facts = formats.info(path)
+    assert (facts["streamlines"], facts["points"]) == (2, 5)
+
+
+def test_a_last_streamline_without_points_is_no_mistake(tmp_path):
+    s = formats.read(packed(tmp_path / "a.trx", base(), {"NB_STREAMLINES": 3}))
+    assert s.counts.tolist() == [3, 2, 0]
 
 
 def test_not_a_zip_no_header_and_odd_compression(tmp_path):

@@ -88,6 +88,7 @@ def as_fiblets(
         else:
             source = formats.read(path, progress=progress)
     if isinstance(source, FibletSet):
+        _warn_of_nothing(source)
         if max_error is not None or options:
             given = ", ".join(sorted([*options, *(["max_error"] if max_error is not None else [])]))
             raise ValueError(
@@ -95,8 +96,7 @@ def as_fiblets(
             )
         return with_point_values(source, scalars, rgb)
     streamlines = as_streamlines(source)
-    if not len(streamlines):
-        warnings.warn("the source holds no streamlines: nothing is drawn", UserWarning, stacklevel=6)
+    _warn_of_nothing(streamlines)
     from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
 
     if is_values_file(scalars, streamlines):
@@ -144,6 +144,13 @@ def as_fiblets(
         error = measure(fiblets, CODING_ERROR, original=streamlines)
         fiblets = with_coded_values(fiblets, CODING_ERROR, error.array())
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
+
+
+def _warn_of_nothing(data: FibletSet | Streamlines) -> None:
+    """Tell those who wonder why they see nothing."""
+    if not data.n_points:
+        what = "points" if len(data) else "streamlines"
+        warnings.warn(f"the source holds no {what}: nothing is drawn", UserWarning, stacklevel=7)
 
 
 def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None) -> tuple[FibletSet, Colours]:
