@@ -20,6 +20,7 @@ from pvfiblets import cli_file_arguments as files
 from pvfiblets import cli_scene_arguments as scenes
 from pvfiblets.cli_batch import add_options as add_batch_options
 from pvfiblets.cli_memory import held_to
+from pvfiblets.cli_parser import Parser
 from pvfiblets.cli_pipes import Pipes
 from pvfiblets.cli_values import angle, count, positive
 from pvfiblets.errors import EXPECTED, sentence
@@ -64,11 +65,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _plain_warnings(pipes: Pipes) -> Iterator[None]:
     """Print warnings that people are meant to read as one sentence each, without the place in the source."""
 
-    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
         if category is UserWarning:
             print(f"pvfiblets: {pipes.renamed(' '.join(str(message).split()))}", file=sys.stderr)
         else:
-            usual(message, category, *place)
+            usual(message, category, *place, **more)
 
     usual = warnings.showwarning
     warnings.showwarning = show
@@ -80,7 +81,7 @@ def _plain_warnings(pipes: Pipes) -> Iterator[None]:
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(prog="pvfiblets", description="Compress, check and draw tractograms of any size.")
+    parser = Parser(prog="pvfiblets", description="Compress, check and draw tractograms of any size.")
     parser.add_argument("--version", action=_Version)
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)

@@ -104,8 +104,7 @@ def table(source: str, target: str, *, group: str | None) -> None:
     """Write a row for each streamline."""
     from pvfiblets.codec.fibletset import FibletSet
 
-    path = Path(source).expanduser()
-    data = FibletSet.open(path) if path.suffix.lower() == ".fiblets" else formats.read(path)
+    data = FibletSet.open(source) if source.lower().endswith(".fiblets") else formats.read(source)
     if group is not None and group not in data.groups:
         raise ValueError(f"{source} has no group {group!r}; it has: {', '.join(data.groups) or 'none'}")
     data.table(None if group is None else data.groups[group]).save(target)

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
+from pvfiblets.addresses import path_of
 from pvfiblets.cli_files import print_json
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of
 from pvfiblets.web.values import plain
+from pvfiblets.whole_files import made_folder, replacing
 
 # Where a scalar bar covers nothing of a brain.
 NOTHING: dict[str, Any] = {"clip": [], "clip_away": [], "include": [], "exclude": [], "criterion": [], "groups": None,
@@ -27,10 +29,16 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
     plotter, scene = make_plotter(off_screen=True, size=size), None
     try:
         scene = fill(plotter, paths, **looks)
-        if scene is None:
-            plotter.screenshot(output, transparent_background=transparent, return_img=False)
-        else:
-            scene.screenshot(output, transparent=transparent)
+        with replacing(output) as file:
+            made = file.name + suffix
+            try:
+                if scene is None:
+                    plotter.screenshot(made, transparent_background=transparent, return_img=False)
+                else:
+                    scene.screenshot(made, transparent=transparent)
+                file.write(Path(made).read_bytes())
+            finally:
+                Path(made).unlink(missing_ok=True)
     finally:
         if scene is not None:
             scene.close()
@@ -84,7 +92,7 @@ def fill(
     if antialias is not None:
         plotter.picture.antialias = antialias
     for path in paths:
-        if not Path(path).exists():
+        if not path_of(path).exists():
             raise FileNotFoundError(2, "No such file or directory", path)
     if any(path.lower().endswith(".json") for path in paths):
         said = {"scalars": scalars, "color": color, "cmap": cmap, "clim": clim, "line_width": line_width,
@@ -167,8 +175,7 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
         if not json:
             print(text, flush=True)
 
-    folder = Path(output)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = made_folder(output)
     original, compressed, picture = (folder / f"brain.{end}" for end in ("tck", "fiblets", "png"))
 
     say(f"Making a whole-brain-like tractogram of {streamlines:,} streamlines ...")

@@ -15,6 +15,7 @@ from contextlib import ExitStack, redirect_stdout
 from pathlib import Path
 from typing import IO, Any, Self
 
+from pvfiblets.addresses import is_url
 from pvfiblets.formats.recognise import suffix_by_content
 from pvfiblets.whole_files import naming_target
 
@@ -90,6 +91,9 @@ class Pipes:
         return text
 
     def _enter(self) -> None:
+        target = self._options.get(self._writes or "")
+        if isinstance(target, str) and is_url(target):
+            raise ValueError(f"{target} is an address, and files are written here only; give a path")
         sources = [name for name in self._reads if _asks(self._options.get(name))]
         into = self._writes is not None and self._options[self._writes] == "-"
         if len(sources) + sum(_asks(self._options[name]) > 1 for name in sources) > 1:

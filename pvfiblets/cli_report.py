@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pvfiblets.report.report_file import Report
 from pvfiblets.report.run import make_report, to_stderr, write_pages
+from pvfiblets.whole_files import made_folder
 
 
 def report(
@@ -30,6 +31,7 @@ def report(
         if Path(source).resolve() not in (folder.resolve(), (folder / "report.json").resolve()):
             made.save(folder)
     else:
+        made_folder(folder)  # before minutes of work, not after
         made = make_report(folder, only=only, data=tuple(map(Path, data)), quick=quick, minutes=minutes, seed=seed)
     page = write_pages(made, folder)
     to_stderr(f"wrote {page}, the plots beside it, and {folder / 'report.json'}")

@@ -19,17 +19,24 @@ def antialias(text: str) -> str | int:
 
 def positive(text: str) -> float:
     """Parse a finite number above zero."""
-    value = float(text)
+    value = _number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return value
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
 
 
 def angle(text: str) -> float | None:
     """Parse degrees above zero and up to 90, or ``none``."""
     if text == "none":
         return None
-    value = float(text)
+    value = _number(text)
     if not 0.0 < value <= 90.0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0 and up to 90 degrees, or none")
     return value
@@ -37,7 +44,11 @@ def angle(text: str) -> float | None:
 
 def count(text: str) -> int:
     """Parse a whole number above zero."""
-    if (value := int(text)) < 1:
+    try:
+        value = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number") from None
+    if value < 1:
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return value
 

@@ -11,7 +11,7 @@ from os import PathLike
 from pathlib import Path
 from typing import BinaryIO
 
-__all__ = ["naming_target", "replacing"]
+__all__ = ["made_folder", "naming_target", "replacing"]
 
 _FULL = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 _CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
@@ -71,6 +71,28 @@ def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | N
         if error.errno is None or not _of_target(error, target):
             raise
         raise OSError(error.errno, _told(error, target, needed), os.fspath(path)) from error
+
+
+def made_folder(path: str | PathLike[str]) -> Path:
+    """Return a folder, made with its parents unless it is there.
+
+    Raises
+    ------
+    OSError
+        If it is no folder, or cannot be made; it says why.
+    """
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, "it is a file; name a folder", os.fspath(path)) from None
+    except OSError as error:
+        if error.errno == errno.ENOTDIR:
+            raise NotADirectoryError(error.errno, "it would lie in a file; name a folder", os.fspath(path)) from None
+        if error.errno in (*_CLOSED, errno.ENOENT):
+            raise OSError(error.errno, "this folder cannot be made; choose another one", os.fspath(path)) from error
+        raise
+    return folder
 
 
 def _of_target(error: OSError, target: Path) -> bool:

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from pvfiblets import memory as limits
 from pvfiblets.errors import sentence
 from pvfiblets.progress_bar import progress_bar
+from pvfiblets.whole_files import made_folder
 
 from .bids import filled
 from .connection import SHARE, connected, default_workers
@@ -167,7 +168,7 @@ def batch(
     before = dict(record.entries)
     if not (resume or overwrite):
         _refuse_old(record, jobs, out)
-    out.mkdir(parents=True, exist_ok=True)
+    made_folder(out)
     skipped = [] if overwrite else [
         job.name for job in jobs if job.name in before and before[job.name].holds(Path(job.source), job.asked, out)
     ]  # fmt: skip

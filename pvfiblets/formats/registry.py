@@ -9,6 +9,7 @@ knows all rooms, names those of others, such as the codec's (`pvfiblets.FORMATS`
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from importlib import import_module
 from os import PathLike, fspath
@@ -67,6 +68,8 @@ def suffix_of(path: str | PathLike[str]) -> str:
         if name.endswith(suffix):
             return suffix
     known = ", ".join(sorted(_MODULES))
+    if os.path.isdir(path):  # noqa: PTH112 - of what is no path at all, too
+        raise UnknownFormatError(f"{fspath(path)} is a folder; give a file of one of {known}")
     raise UnknownFormatError(
         f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of {known}"
     )

@@ -7,15 +7,17 @@ import html
 import math
 import sys
 from collections.abc import Iterator
-from contextlib import nullcontext
+from contextlib import contextmanager
+from io import TextIOWrapper
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
+from ..whole_files import replacing
 from .measures import CHUNK, mean_curvatures
 
 if TYPE_CHECKING:
@@ -73,7 +75,7 @@ class Table(dict[str, npt.NDArray[Any]]):
             self._save_parquet(target)
             return
         columns = [_texts(column) for column in self.values()]
-        with nullcontext(sys.stdout) if target is None else target.open("w", newline="", encoding="utf-8") as to:
+        with _text(target) as to:
             writer = csv.writer(to, lineterminator="\n", delimiter="\t" if suffix == ".tsv" else ",")
             writer.writerow(self)
             writer.writerows(zip(*columns, strict=True))
@@ -83,7 +85,8 @@ class Table(dict[str, npt.NDArray[Any]]):
         import pyarrow as pa
         from pyarrow import parquet
 
-        parquet.write_table(pa.table(dict(self)), target)
+        with replacing(target) as file:
+            parquet.write_table(pa.table(dict(self)), file)
 
     def _repr_html_(self) -> str:
         heads = "".join(f"<th>{html.escape(name)}</th>" for name in self)
@@ -93,6 +96,19 @@ class Table(dict[str, npt.NDArray[Any]]):
         )
         noun = "streamlines" if "streamline" in self else "rows"
         return f"<table><tr>{heads}</tr>{rows}</table><p>{self.n_rows:,} {noun}</p>"
+
+
+@contextmanager
+def _text(target: Path | None) -> Iterator[TextIO]:
+    """A file for text, which appears when it is whole; or standard output."""
+    if target is None:
+        yield sys.stdout
+        return
+    with replacing(target) as file:
+        text = TextIOWrapper(file, encoding="utf-8", newline="")
+        yield text
+        text.flush()
+        text.detach()  # the file is closed by who opened it
 
 
 def check_parquet(path: str | PathLike[str]) -> None:
