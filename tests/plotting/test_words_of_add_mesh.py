@@ -48,3 +48,10 @@ def test_tables_for_pandas_and_arrow(three_lines):
     pytest.importorskip("pyarrow")
     assert table.to_arrow().column_names == list(table)
     np.testing.assert_array_equal(table.to_arrow()["weight"], three_lines.per_streamline["weight"])
+
+
+def test_the_colour_cycler_colours_tubes(plotter, three_lines):
+    plotter.set_color_cycler(["red", "lime", "blue"])
+    found = [plotter.add_spline_tubes(three_lines).prop.color.name for _ in range(2)]
+    assert found == ["red", "lime"]
+    assert plotter.add_spline_tubes(three_lines, color="white").prop.color.name == "white"

@@ -159,6 +159,9 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         )
         if not tubes.n_segments:
             warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
+        renderer = self._plotter.renderer
+        if choice is None and settings["color"] is None and renderer._color_cycle is not None:  # noqa: SLF001
+            settings["color"] = renderer.next_color  # as `add_mesh` does after `set_color_cycler`
         return TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme)
 
 
