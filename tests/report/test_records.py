@@ -196,7 +196,9 @@ def test_turns_stop_when_they_are_told_to():
     assert turns.timing(0, 1).repeats == 4
 
 
-@pytest.mark.parametrize("name", ["amd-epyc", "amd-epyc-drawing", "amd-epyc-volumes", "intel-xeon"])
+@pytest.mark.parametrize(
+    "name", ["amd-epyc", "amd-epyc-drawing", "amd-epyc-tractograms", "amd-epyc-volumes", "intel-xeon"]
+)
 def test_committed_reports_are_read_and_written_under_their_names(name):
     path = Path(__file__).resolve().parents[2] / "docs/benchmarks/report" / name / "report.json"
     report, written = Report.load(path), json.loads(path.read_text(encoding="utf-8"))
