@@ -47,8 +47,13 @@ def _common(parser: argparse.ArgumentParser, count: Any) -> None:
     add("-o", "--output", required=True, metavar="OUT", help="the folder for all that is made")
     add("--cluster", metavar="ADDRESS", help="dask's scheduler, tcp://HOST:PORT, or its file (default: this machine)")
     add("--workers", type=count, metavar="N", help="processes of this machine (default: one a core)")
-    add("--memory", metavar="SIZE", help="most that a worker may have, such as 4G (default: 80%% of this machine's, "
-        "divided by the workers)")  # fmt: skip
+    add(
+        "--max-memory",
+        "--memory",
+        dest="memory",
+        metavar="SIZE",
+        help="most that a worker may have, such as 4G (default: 80%% of this machine's, divided by the workers)",
+    )
     old = parser.add_mutually_exclusive_group()
     old.add_argument("--resume", action="store_true", help="skip what an earlier run has finished")
     old.add_argument("--overwrite", action="store_true", help="do all again")

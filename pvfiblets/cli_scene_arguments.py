@@ -77,7 +77,9 @@ def add_serve(commands: Any) -> None:
     )
     add("--upload", type=int, default=2048, metavar="MB", help="most in one upload (default: %(default)s)")
     add(
+        "--max-memory",
         "--memory",
+        dest="memory",
         default="auto",
         metavar="SIZE",
         help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "

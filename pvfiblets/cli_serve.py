@@ -129,4 +129,4 @@ def memory_of(options: Any) -> str:
 
     if options.memory is None:
         return "Sessions have no limit of memory: this system cannot hold a process to one."
-    return f"A session may have {shown(options.memory)} of memory (--memory)."
+    return f"A session may have {shown(options.memory)} of memory (--max-memory)."

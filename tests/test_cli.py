@@ -380,6 +380,12 @@ def test_what_takes_more_memory_than_it_may_is_one_sentence(tmp_path, capsys):
     assert memory.limited_to() == before
 
 
+@pytest.mark.parametrize("command", [["serve"], ["batch", "convert", "a.tck", "-o", "out"]])
+def test_the_limit_of_memory_has_one_word_and_its_older_one(command):
+    for word in ("--max-memory", "--memory"):
+        assert make_parser().parse_args([*command, word, "3G"]).memory == "3G"
+
+
 @needs_limit
 def test_a_limit_of_memory_that_is_none_is_refused(tractogram, tmp_path, capsys):
     target = tmp_path / "a.fiblets"

@@ -324,7 +324,7 @@ def _entries(client: Client, jobs: list[Job], scratch: str) -> Iterator[Entry]:
                 if isinstance(error, KilledWorker):
                     why = (
                         f"workers died {error.allowed_failures + 1} times while they were at it; it may take more "
-                        "memory than a worker may have (--memory)"
+                        "memory than a worker may have (--max-memory)"
                     )
                 yield Entry(job.name, job.asked, error=why)
             future.release()

@@ -34,14 +34,15 @@ def reason(code: int | None, lines: Iterable[str], doing: str, most: int | None)
         Bytes of memory that it could have.
     """
     during = f" while it opened {doing}" if doing else ""
-    less = f"open {'a smaller file' if doing else 'less at once'}, or have the server started with a larger --memory"
+    what = "a smaller file" if doing else "less at once"
+    less = f"open {what}, or have the server started with a larger --max-memory"
     if any(sign in line for line in lines for sign in _SIGNS):
         share = "" if most is None else f" (a session may have {memory.shown(most)})"
         return f"its process ran out of memory{share}{during}; {less}"
     if code == -9:  # as Linux does when there is none
         return (
             f"its process ended unexpectedly{during}: the system stopped it, most likely since this machine ran out of "
-            "memory; open less at once, or have the server started with a smaller --memory or --limit"
+            "memory; open less at once, or have the server started with a smaller --max-memory or --limit"
         )
     return f"its process ended unexpectedly{during}"
 

@@ -108,10 +108,10 @@ class Options:
         if self.upload < 0:
             raise ValueError(f"--upload {self.upload}: a size of zero or more is needed")
         if self.memory is not None and not CAN_LIMIT:
-            raise ValueError("--memory: this system cannot hold a process to it; leave it out")
+            raise ValueError("--max-memory: this system cannot hold a process to it; leave it out")
         if self.memory is not None and self.memory < SMALLEST_MEMORY:
             raise ValueError(
-                f"--memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
+                f"--max-memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
                 "large; give as much or more"
             )
         check_look("--look", self.look)
@@ -144,7 +144,7 @@ class Options:
 
 
 def chosen_memory(text: str, sessions: int) -> int | None:
-    """Return the bytes that ``--memory auto|SIZE`` means, for each of some sessions; ``None`` where none can be set.
+    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set.
 
     By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
     fifth of the machine: four that are full leave the server what it needs.
@@ -153,7 +153,7 @@ def chosen_memory(text: str, sessions: int) -> int | None:
         try:
             return parse(text)
         except ValueError as error:
-            raise ValueError(f"--memory {error}") from None
+            raise ValueError(f"--max-memory {error}") from None
     machine = of_machine()
     if not CAN_LIMIT or not machine:
         return None

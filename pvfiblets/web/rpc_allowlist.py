@@ -132,7 +132,7 @@ def sentence(error: BaseException) -> str:
         most = limited_to()
         said = str(error) if isinstance(error, TooLargeError) else str(TooLargeError())
         of = "" if most is None else f" of the {shown(most)} that a session may have"
-        remedy = "" if most is None else ", or have the server started with a larger --memory"
+        remedy = "" if most is None else ", or have the server started with a larger --max-memory"
         return f"{said}{of}; remove layers, open less{remedy}"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror  # without the server's path

@@ -117,7 +117,7 @@ def hold_to(most: int | None) -> None:
     taken = memory.taken()
     if taken + LEAST > most:
         raise FibletsError(
-            f"--memory {memory.shown(most)}: a session takes {memory.shown(taken)} on this machine before it opens "
+            f"--max-memory {memory.shown(most)}: a session takes {memory.shown(taken)} on this machine before it opens "
             f"anything; start the server with {memory.shown(taken + LEAST)} or more"
         )
     memory.limit(most)

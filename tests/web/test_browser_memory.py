@@ -14,7 +14,7 @@ from tests.web import bombs
 
 @pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 def test_bombs_are_refused_on_the_page_and_the_session_goes_on(visit):
-    here = visit("lines.fiblets", "--memory", "768M")
+    here = visit("lines.fiblets", "--max-memory", "768M")
     root = here.served.root
     process = re.findall(r"started as process (\d+)", here.served.log.read_text())[-1]
     limits = Path(f"/proc/{process}/limits").read_text()

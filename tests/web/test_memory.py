@@ -76,7 +76,7 @@ def test_a_bomb_is_refused_in_one_sentence_and_leaves_nothing(opened, name):
     elif name in SWELLS:
         assert re.search(r"it inflates to \d+ MB, [\d,]+ times its size, .* `pvfiblets convert` makes", found["said"])
     else:
-        assert re.search(r"of the \d+ MB that a session may have; remove layers, .* larger --memory$", found["said"])
+        assert re.search(r"of the \d+ MB that a session may have; remove layers, .*er --max-memory$", found["said"])
         assert ("it needs more memory than is left" if name in SAYS_LESS else "it says that it takes") in found["said"]
     assert found["layers"] == found["kept"] == ["lines.trk"]
     assert found["left"] == []
@@ -158,18 +158,18 @@ def test_shares_of_the_machine(monkeypatch):
 
 
 def test_too_little_is_refused_before_anything_starts(tmp_path, monkeypatch):
-    with pytest.raises(ValueError, match="--memory 'lots' is no size of memory; give one such as 4G"):
+    with pytest.raises(ValueError, match="--max-memory 'lots' is no size of memory; give one such as 4G"):
         chosen_memory("lots", 8)
-    with pytest.raises(ValueError, match=r"--memory 100 MB: a session needs 640 MB .* give as much or more"):
+    with pytest.raises(ValueError, match=r"--max-memory 100 MB: a session needs 640 MB .* give as much or more"):
         Options(root=str(tmp_path), token=None, memory=100 << 20).checked()
     monkeypatch.setattr("pvfiblets.web.options.CAN_LIMIT", False)
-    with pytest.raises(ValueError, match="--memory: this system cannot"):
+    with pytest.raises(ValueError, match="--max-memory: this system cannot"):
         Options(root=str(tmp_path), token=None, memory=2**30).checked()
 
 
 def test_what_a_session_may_have_is_said_at_the_start(tmp_path):
     options = Options(root=str(tmp_path), token=None, memory=3 * 2**30)
-    assert memory_of(options) == "A session may have 3.0 GB of memory (--memory)."
+    assert memory_of(options) == "A session may have 3.0 GB of memory (--max-memory)."
     assert "no limit of memory: this system cannot" in memory_of(Options(root=str(tmp_path), token=None))
 
 
@@ -196,7 +196,7 @@ def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
             await server.stop()
 
     page = run(test())
-    assert re.search(r"--memory 300 MB: a session takes \d+ MB on this machine .* with \d+ MB or more<", page)
+    assert re.search(r"--max-memory 300 MB: a session takes \d+ MB on this machine .* with \d+ MB or more<", page)
 
 
 def test_a_file_with_which_vtk_ends_the_process_is_named(tmp_path):
@@ -226,7 +226,7 @@ def test_a_process_that_c_ends_for_want_of_memory_has_a_sentence(tmp_path, caplo
 
     page = run(test())
     assert "its process ran out of memory (a session may have 1.0 GB) while it opened head.glb; open a smaller" in page
-    assert "larger --memory" in page
+    assert "larger --max-memory" in page
     assert "exit code" not in page
     assert "SIGABRT" in caplog.text
 
