@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import signal
+import time
 from pathlib import Path
 
 import numpy as np
@@ -62,3 +63,48 @@ def test_damaged_session_files_are_refused_or_shown(folder, damage):
         scene.close()
         plotter.close()
     assert refused > N // 10
+
+
+def _nested(depth):
+    condition = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1.0}}
+    for _ in range(depth):
+        condition = {"op": "and", "of": [condition]}
+    return condition
+
+
+BOMBS = {
+    "deep": lambda layer: {"layers": [{**layer, "filters": {"regions": _nested(400)}}]},
+    "many layers": lambda layer: {"layers": [{**layer, "id": f"layer{k}"} for k in range(5000)]},
+    "many cuts": lambda layer: {"layers": [layer], "clips": 100_000 * [{}]},
+    "many runs": lambda layer: {"layers": [{**layer, "selected": list(range(2, 8_000_000, 7))}]},
+    "far runs": lambda layer: {"layers": [{**layer, "selected": [0, 2**61]}]},
+    "huge numbers": lambda layer: {"layers": [{**layer, "settings": {"opacity": 10**400}}]},
+    "long names": lambda layer: {"layers": [{**layer, "name": "x" * 10_000_000}]},
+    "a huge demo": lambda layer: {"layers": [{**layer, "source": {"demo": "tracts", "size": 10**9}}]},
+    "many measurements": lambda layer: {"layers": [layer], "measurements": 200_000 * [[[0, 0, 0], [1, 1, 1]]]},
+    "devices": lambda layer: {"layers": [{**layer, "source": {"path": "/dev/zero"}}]},
+    "up": lambda layer: {"layers": [{**layer, "source": {"path": "../../etc/passwd"}}]},
+    "itself": lambda layer: {"layers": [{**layer, "source": {"path": "bomb.json"}}]},
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_session_files_that_are_bombs_are_refused_soon(scene, folder, name):
+    scene.open("lines.fiblets")
+    (layer,) = session.to_dict(scene)["layers"]
+    saved = {**session.to_dict(scene), **BOMBS[name](layer)}
+    (folder / "bomb.json").write_text(json.dumps(saved), encoding="utf-8")
+    state = scene.state
+    started = time.monotonic()
+    with pytest.raises(session.SessionError) as refused:
+        session.load(scene, "bomb.json")
+    assert time.monotonic() - started < 20
+    assert len(str(refused.value)) < 1000
+    assert scene.state is state
+
+
+@pytest.mark.parametrize("text", ["[" * 200_000, '{"a":' * 200_000, "1" * 1_000_000, "\x00", '{"layers": NaN}'])
+def test_texts_that_are_bombs_are_refused_soon(scene, folder, text):
+    (folder / "bomb.json").write_text(text, encoding="utf-8")
+    with pytest.raises(session.SessionError):
+        session.load(scene, "bomb.json")
