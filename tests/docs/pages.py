@@ -116,6 +116,7 @@ numbers = np.random.default_rng(0).random((24, 28, 20)).astype("f4")
 nibabel.save(nibabel.Nifti1Image(numbers, np.array([[8.0, 0, 0, -90], [0, 8, 0, -110], [0, 0, 8, -60], [0, 0, 0, 1]])),
              "fa.nii.gz")
 """,
+    "docs/shards.md": "",
     "docs/from-vtk.md": "",
     "docs/tubes.md": "",
     "docs/halos.md": "",
