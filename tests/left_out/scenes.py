@@ -78,7 +78,9 @@ class Scene:
     def _helix(self):
         import pyvista as pv
 
-        return pv.read(self.folder / NODES)
+        helix = pv.read(self.folder / NODES)
+        helix.set_active_scalars(None)  # which would colour it
+        return helix
 
 
 def box(scene):
