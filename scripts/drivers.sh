@@ -16,7 +16,8 @@ PIPELINES="tests/engine/test_pipelines.py tests/engine/test_census.py tests/engi
 PICTURES="tests/engine/test_thin_lines.py tests/engine/test_wide_lines.py tests/engine/test_line_tubes.py tests/engine/test_two_phase.py
     tests/engine/test_clip_planes.py tests/engine/test_clip_regions.py tests/engine/test_tube_pictures.py tests/engine/test_halo_pictures.py
     tests/engine/test_gathering.py tests/engine/test_filter_textures.py tests/engine/test_volume.py tests/engine/test_volume_clip.py"
-MAPPER="tests/mappers/test_picture.py tests/mappers/test_passes.py tests/mappers/test_tubes.py tests/mappers/test_halos.py tests/mappers/test_volume.py"
+MAPPER="tests/mappers/test_picture.py tests/mappers/test_passes.py tests/mappers/test_tubes.py tests/mappers/test_halos.py tests/mappers/test_volume.py
+    tests/plotting/test_steady_frames.py"
 
 # Unoptimised, which is quicker to compile, but for zink: there LLVM 22.1 dies of it (docs/limits.md).
 run() { # run DRIVER COMMAND ... FILES
@@ -36,7 +37,8 @@ run() { # run DRIVER COMMAND ... FILES
 }
 
 if [ "${1:-}" = --part ]; then
-    files="$PIPELINES tests/engine/test_thin_lines.py tests/engine/test_tube_pictures.py tests/mappers/test_picture.py"
+    files="$PIPELINES tests/engine/test_thin_lines.py tests/engine/test_tube_pictures.py tests/mappers/test_picture.py
+        tests/plotting/test_steady_frames.py"
     run newer "$NEWER" python
     files="tests/engine/test_thin_lines.py tests/engine/test_halo_pictures.py tests/engine/test_volume_clip.py"
     run zink "$NEWER" --zink python
