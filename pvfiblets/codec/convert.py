@@ -206,7 +206,7 @@ def compress_file(
     seconds = time.perf_counter() - started
     originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
     every = 1 if verify == "all" else max(1, round(found.n_points / SAMPLE_POINTS))
-    error = compare_file(originals, found.n_points, target, progress, every=every)
+    error = compare_file(originals, found.n_points, target, progress, every=every, max_points=CHUNK_POINTS)
     size = Path(target).stat().st_size
     return {
         "streamlines": encoder.n_streamlines,

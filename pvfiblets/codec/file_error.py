@@ -42,6 +42,7 @@ def compare_file(
     progress: Progress,
     *,
     every: int = 1,
+    max_points: int = CHUNK_POINTS,
 ) -> CodingError:
     """Decode a file alongside its original; both come in chunks, which need not be cut at the same places.
 
@@ -56,6 +57,8 @@ def compare_file(
     progress : bool or callable
     every : int
         Compare streamlines 0, `every`, 2 `every` ... alone.
+    max_points : int
+        Decode so many at a time.
 
     Returns
     -------
@@ -74,7 +77,7 @@ def compare_file(
         # Steps and bounds, by which errors are measured, are those of the whole.
         part = replace(bare.extract(np.arange(0, len(coded), every)), bounds=coded.bounds)
     tally = ErrorTally(part, by_streamline=False)
-    decoded = iter_chunks(part, CHUNK_POINTS, np.float64)
+    decoded = iter_chunks(part, max_points, np.float64)
     rest: Streamlines | None = None
     seen = 0
     for chunk in _sampled(shown(originals, total, "measuring", progress), every):

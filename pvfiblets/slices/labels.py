@@ -19,8 +19,9 @@ __all__ = ["LabelTable", "as_label_table", "distinct_colours"]
 
 SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii")
 
-_ITKSNAP = re.compile(r'^\s*(\d+)\s+(\d+)\s+(\d+)\s+(\d+)\s+([\d.eE+-]+)\s+([01])\s+([01])\s+"(.*)"\s*$')
-_FREESURFER = re.compile(r"^\s*(-?\d+)\s+(\S.*?)\s+(\d+)\s+(\d+)\s+(\d+)(?:\s+(\d+))?\s*$")
+_SHARE = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_ITKSNAP = re.compile(r'^\s*(\d{1,18})' + 3 * r"\s+(\d{1,18})" + rf'\s+{_SHARE}\s+([01])\s+([01])\s+"(.*)"\s*$')
+_FREESURFER = re.compile(r"^\s*(-?\d{1,18})\s+(\S.*?)" + 3 * r"\s+(\d{1,18})" + r"(?:\s+\d+)?\s*$")
 
 
 @dataclass
@@ -147,7 +148,10 @@ def _bytes(*parts: int) -> tuple[int, int, int, int]:
 
 
 def _of_bids(path: Path, text: str) -> LabelTable:
-    rows = list(csv.DictReader(text.splitlines(), delimiter="\t"))
+    try:
+        rows = list(csv.DictReader(text.splitlines(), delimiter="\t"))
+    except csv.Error as error:
+        raise FormatError(path, None, f"no table ({error})", "lines whose columns are separated by tabs") from None
     columns = {str(name).strip().lower(): name for name in (rows[0] if rows else {})}
     index, name = (next((columns[one] for one in many if one in columns), None) for many in (
         ("index", "label", "id", "value"), ("name", "abbreviation", "region", "mapping"),
@@ -159,9 +163,9 @@ def _of_bids(path: Path, text: str) -> LabelTable:
     table = LabelTable()
     for row in rows:
         word = str(row[index]).strip()
-        if not re.fullmatch(r"-?\d+(\.0*)?", word):
+        if not re.fullmatch(r"-?\d{1,18}(\.0*)?", word):
             raise FormatError(path, None, f"index {word!r}", "a whole number")
-        label = int(float(word))
+        label = int(word.partition(".")[0])
         table.names[label] = str(row[name]).strip()
         if colour is not None and (hexes := re.fullmatch(r"#?([0-9a-fA-F]{6})", str(row[colour]).strip())):
             red, green, blue = bytes.fromhex(hexes[1])
@@ -170,11 +174,17 @@ def _of_bids(path: Path, text: str) -> LabelTable:
 
 
 def _of_gifti(path: Path) -> LabelTable:
-    import nibabel as nib
+    from nibabel.gifti.parse_gifti_fast import GiftiImageParser
 
-    image = nib.load(path)
+    parser = GiftiImageParser(buffer_size=1 << 16)  # its own is 35 MB
+    with path.open("rb") as file:
+        try:
+            parser.parse(fptr=file)
+        except Exception as error:  # of XML, numbers, base64 and compression
+            said = error or type(error).__name__
+            raise FormatError(path, None, f"no whole GIFTI data ({said})", "a GIFTI file") from error
     table = LabelTable()
-    for one in getattr(getattr(image, "labeltable", None), "labels", ()):
+    for one in getattr(getattr(parser.img, "labeltable", None), "labels", ()):
         table.names[int(one.key)] = str(one.label)
         if None not in (one.red, one.green, one.blue):
             parts = (one.red, one.green, one.blue, 1.0 if one.alpha is None else one.alpha)

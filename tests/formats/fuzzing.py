@@ -124,8 +124,24 @@ def _volume(path: Path) -> None:
     assert np.isfinite(volume.values).all()
 
 
+def _image(path: Path) -> None:
+    from pvfiblets.volumes.image_files import read_image
+
+    values, affine, *_ = read_image(path)
+    assert values.ndim >= 3
+    assert np.isfinite(affine).all()
+
+
+def _labels(path: Path) -> None:
+    from pvfiblets.slices.labels import as_label_table
+
+    table = as_label_table(path)
+    assert table.names or table.colours
+    assert all(0 <= part <= 255 for colour in table.colours.values() for part in colour)
+
+
 READERS: dict[str, Callable[[Path], None]] = {
-    "lines": _lines, "fiblets": _fiblets, "values": _values, "volume": _volume,
+    "lines": _lines, "fiblets": _fiblets, "values": _values, "volume": _volume, "image": _image, "labels": _labels,
 }  # fmt: skip
 
 
@@ -193,6 +209,8 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
 def _expected_of(reader: str) -> Any:
     """Errors that a damaged file may end in: of volumes those that say what cannot be drawn, too."""
     errors = importlib.import_module("pvfiblets.errors")
+    if reader == "image":  # whose data may be in a file of their own
+        return errors.FormatError, FileNotFoundError
     return (errors.FormatError, ValueError, FileNotFoundError) if reader == "volume" else errors.FormatError
 
 

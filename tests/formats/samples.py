@@ -193,3 +193,36 @@ def volume_corpus(folder: Path) -> dict[str, Path]:
     names = ("v.nii", "v.nii.gz", "v.mgh", "v.mgz", *packed, "apart.nhdr", "v.mha", "deflated.mha", "apart.mhd",
              "v.vti", "text.vti", "deflated.vti")  # fmt: skip
     return {name: folder / name for name in names}
+
+
+def image_corpus(folder: Path) -> dict[str, Path]:
+    """A small image in files of MRtrix, whose data follow their header."""
+    values = np.random.default_rng(0).integers(0, 200, (5, 6, 7, 3)).astype("<i2")
+    header = (
+        "mrtrix image\ndim: 5,6,7,3\nvox: 2,2,3,1\nlayout: +0,+1,+2,+3\ndatatype: Int16LE\n"
+        "transform: 1,0,0,-5\ntransform: 0,1,0,-6\ntransform: 0,0,1,-7\nscaling: 1,0.5\nfile: . 256\nEND\n"
+    )
+    data = header.encode().ljust(256, b"\0") + values.tobytes(order="F")
+    (folder / "v.mif").write_bytes(data)
+    (folder / "v.mif.gz").write_bytes(gzip.compress(data, mtime=0))
+    return {name: folder / name for name in ("v.mif", "v.mif.gz")}
+
+
+def label_corpus(folder: Path) -> dict[str, Path]:
+    """Names of three labels in tables of every kind."""
+    import nibabel as nib
+
+    (folder / "v.ctab").write_text("# FreeSurfer\n17 Left-Hippocampus 220 216 20 0\n53 Right 1 2 3 0\n7 Pons 9 8 7 0\n")
+    (folder / "v.label").write_text(
+        '0 0 0 0 0 0 0 "Clear Label"\n17 220 216 20 1 1 1 "Left Hippocampus"\n53 1 2 3 0.5 1 0 "Right"\n'
+    )
+    rows = ("index name color", "17 Left-Hippocampus #dcd814", "53 Right #010203", "7 Pons n/a")
+    (folder / "v.tsv").write_text("".join(row.replace(" ", "\t") + "\n" for row in rows))
+    table = nib.gifti.GiftiLabelTable()
+    for key, name in ((17, "Left-Hippocampus"), (53, "Right")):
+        one = nib.gifti.GiftiLabel(key, 0.5, 0.25, 0.1, 1.0)
+        one.label = name
+        table.labels.append(one)
+    array = nib.gifti.GiftiDataArray(np.array([17, 53, 17], np.int32), "NIFTI_INTENT_LABEL", "NIFTI_TYPE_INT32")
+    nib.save(nib.gifti.GiftiImage(labeltable=table, darrays=[array]), folder / "v.label.gii")
+    return {name: folder / name for name in ("v.ctab", "v.label", "v.tsv", "v.label.gii")}

@@ -20,7 +20,7 @@ import pytest
 from pvfiblets import compress, formats
 from pvfiblets.errors import FormatError
 
-from .samples import corpus, rich, values_corpus, volume_corpus
+from .samples import corpus, image_corpus, label_corpus, rich, values_corpus, volume_corpus
 
 N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 SEED = os.environ.get("PVFIBLETS_FUZZ_SEED", "1")
@@ -37,10 +37,14 @@ VOLUMES = [
 ]  # fmt: skip
 
 
+IMAGES = ["v.mif", "v.mif.gz"]
+LABELS = ["v.ctab", "v.label", "v.tsv", "v.label.gii"]
+
+
 @pytest.fixture(scope="module")
 def healthy(tmp_path_factory):
     folder = tmp_path_factory.mktemp("corpus")
-    files = corpus(folder) | values_corpus(folder) | volume_corpus(folder)
+    files = corpus(folder) | values_corpus(folder) | volume_corpus(folder) | image_corpus(folder) | label_corpus(folder)
     files[".fiblets"] = folder / "rich.fiblets"
     compress(rich(counts=(80, 1, 125, 0, 2, 7)), per_point=("fa",)).save(files[".fiblets"])
     return files
@@ -78,6 +82,19 @@ def test_damaged_volumes_give_errors_or_results(variant, healthy, tmp_path):
     outcomes = fuzzed("volume", healthy[variant], tmp_path)
     assert outcomes["read"] + outcomes["refused"] == N
     assert outcomes["refused"] > N // 50
+
+
+@pytest.mark.parametrize("variant", IMAGES)
+def test_damaged_images_give_errors_or_results(variant, healthy, tmp_path):
+    outcomes = fuzzed("image", healthy[variant], tmp_path)
+    assert outcomes["read"] + outcomes["refused"] == N
+    assert outcomes["refused"] > N // 20
+
+
+@pytest.mark.parametrize("variant", LABELS)
+def test_damaged_tables_of_labels_give_errors_or_results(variant, healthy, tmp_path):
+    outcomes = fuzzed("labels", healthy[variant], tmp_path)
+    assert outcomes["read"] + outcomes["refused"] == N
 
 
 @pytest.mark.parametrize("how", ["hang", "hang in C", "crash", "memory", "memory of C", "other error"])
