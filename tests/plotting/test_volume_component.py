@@ -307,7 +307,6 @@ def test_labels_stand_in_the_legend(plotter):
     ("source", "arguments", "error", "told"),
     [
         (np.zeros((4, 4)), {}, ValueError, r"shape \(4, 4\)"),
-        (np.zeros((4, 4, 1)), {}, ValueError, "2-D image"),
         (np.zeros((0, 4, 4)), {}, ValueError, "no voxels"),
         (np.zeros((4, 4, 4, 3)), {}, ValueError, r"shape \(4, 4, 4, 3\)"),
         (np.zeros((4, 4, 4), complex), {}, ValueError, "complex"),
