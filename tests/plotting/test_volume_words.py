@@ -161,8 +161,8 @@ def test_a_time_series_is_updated_in_place_or_by_other_sources(plotter, noise):
     assert np.abs(shown(plotter) - first).max() <= 1
     actor.update(np.asarray(later["values"]).reshape(N, N, N, order="F"), scalars=None)
     assert np.abs(shown(plotter) - expected).max() <= 1
-    with pytest.raises(ValueError, match="2-D image"):
-        actor.update(np.zeros((4, 4, 1)), scalars=None)
+    with pytest.raises(ValueError, match="no voxels"):
+        actor.update(np.zeros((0, 4, 4)), scalars=None)
     assert np.abs(shown(plotter) - expected).max() <= 1
 
 
