@@ -66,7 +66,7 @@ def main(folder: Path) -> None:
     print(f"{lines.n_lines:,} streamlines of {lines.n_points:,} vertices")
     plotter = pv.Plotter(off_screen=True, window_size=(1400, 850))
     plotter.set_background("white")
-    plotter.add_halo_lines(lines)
+    plotter.add_halo_lines(lines, color="black")  # not the speed of the air, which its lines carry
     for box in FURNITURE:
         plotter.add_mesh(pv.Box(box), color="white", lighting=False)
     edges = pv.merge([pv.Box(np.add(box, (-10, 10, -10, 10, 0, 10))).extract_feature_edges() for box in FURNITURE])
