@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
-from typing import Any, NoReturn
+from typing import Any
 
 __all__ = ["Parser"]
 
@@ -13,7 +13,7 @@ __all__ = ["Parser"]
 class Parser(argparse.ArgumentParser):
     """argparse's, whose errors name the option or command that is spelt most alike, and the command they are of."""
 
-    def parse_known_args(  # type: ignore[override]
+    def parse_known_args(  # type: ignore[override]  # argparse gives it overloads for other namespaces
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
         """Parse as argparse does, but for words that are not known, which a command tells itself."""
@@ -29,10 +29,6 @@ class Parser(argparse.ArgumentParser):
             raise argparse.ArgumentError(
                 action, f"{error.message}{_like(str(value), map(str, action.choices or ()))}"
             ) from None
-
-    def error(self, message: str) -> NoReturn:
-        """Print usage and message, and end with 2."""
-        super().error(message)
 
     def _commands(self) -> bool:
         return any(isinstance(action, argparse._SubParsersAction) for action in self._actions)  # noqa: SLF001

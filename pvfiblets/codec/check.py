@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
+from .archive import check_members
 from .capsules import capsule_ends
 from .layout import (
     DIRECTION,
@@ -26,7 +27,7 @@ from .layout import (
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["check_records", "code_bytes"]
+__all__ = ["check_file", "check_records", "code_bytes"]
 
 
 def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
@@ -38,6 +39,22 @@ def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
     width = np.select([plain, wide > 0, kind == LATTICE8], [PLAIN_BYTES, wide, 1], 2)
     size = last * width + np.where(wide > 0, WIDE_HEADER, 0)
     return np.where(kind == DIRECTION, np.maximum(last - 1, 0), size)
+
+
+def check_file(fiblets: FibletSet, path: str | PathLike[str]) -> None:
+    """Check every byte of the file that a set is mapped from against its checksums, and the records for sense.
+
+    Raises
+    ------
+    FormatError
+        Naming what is damaged.
+    """
+    damaged = check_members(path)
+    if damaged:
+        raise FormatError(
+            path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again"
+        )
+    check_records(fiblets, path)
 
 
 def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in memory") -> None:

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from os import PathLike, fspath
 from typing import Any
 
-from ..errors import FormatError
 from ..streamlines import Streamlines
-from .archive import check_members
+from .check import check_file
 from .compress import compress
 from .decompress import held_in_bounds
 from .fiblets_file import is_sharded
@@ -76,9 +75,9 @@ def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
     from .shards.sharded_set import ShardedSet
 
     whole = ShardedSet.open(path)
-    first, manifest = info(whole.place(0)), whole.manifest
+    manifest = whole.manifest
     return {
-        **{k: first[k] for k in ("format", "step_mm", "exact", "per_streamline", "affine")},
+        **info(whole.place(0)),
         "path": fspath(path),
         "streamlines": manifest.streamlines,
         "points": manifest.points,
@@ -87,7 +86,6 @@ def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
         "shards": len(manifest.shards),
         "promise_mm": manifest.promise_mm,
         "bounds_mm": list(manifest.bounds),
-        "per_point": first["per_point"],
         "groups": manifest.groups,
         "dropped": manifest.dropped,
     }
@@ -101,17 +99,9 @@ def verify_file(path: str | PathLike[str]) -> None:
     FormatError
         Naming what is damaged.
     """
-    from .check import check_records
-
     if is_sharded(path):
         from .shards.sharded_set import ShardedSet
 
         ShardedSet.open(path).verify()
-        return
-    fiblets = FibletSet.open(path)
-    damaged = check_members(path)
-    if damaged:
-        raise FormatError(
-            path, None, f"changed bytes in {', '.join(damaged)}", "bytes as written: copy or make the file again"
-        )
-    check_records(fiblets, path)
+    else:
+        check_file(FibletSet.open(path), path)

@@ -9,6 +9,8 @@ import time
 from functools import cache
 from pathlib import Path
 
+from ..cache_folder import cache_folder
+
 __all__ = ["HOME", "is_filled", "kept_folder", "mark_filled", "sources_digest"]
 
 FORGOTTEN = 30 * 86400.0  # seconds, after which kernels of other sources are not kept any more
@@ -29,7 +31,7 @@ def sources_digest(folder: Path = HOME) -> str:
 @cache
 def kept_folder(digest: str) -> Path:
     """Return the folder of the kernels of sources of some digest; of others, what nobody has used for a month goes."""
-    home = _cache() / "kernels"
+    home = cache_folder() / "kernels"
     folder = home / digest[:16]
     folder.mkdir(parents=True, exist_ok=True)
     os.utime(folder)
@@ -37,14 +39,6 @@ def kept_folder(digest: str) -> Path:
         if other.stat().st_mtime < time.time() - FORGOTTEN:
             shutil.rmtree(other, ignore_errors=True)
     return folder
-
-
-def _cache() -> Path:
-    try:
-        import platformdirs
-    except ImportError:  # a bare machine whose graphics card is measured (benchmarks/card.sh); the same place on Linux
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pvfiblets"
-    return Path(platformdirs.user_cache_dir("pvfiblets", appauthor=False))
 
 
 def _mark(work: str) -> Path:

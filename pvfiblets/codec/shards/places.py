@@ -43,8 +43,6 @@ def shards_of(fiblets: FibletSet, size: int) -> list[Ints]:
         For each shard the numbers of its streamlines, rising. Those without points belong to the first. There is at
         least one shard, and none that is empty beside another.
     """
-    if size < 1:
-        raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
     firsts = _firsts(fiblets)
     sizes = streamline_bytes(fiblets, firsts)
     order = np.argsort(_keys(fiblets, firsts), kind="stable")

@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from ...errors import FormatError
 from ...streamlines import Streamlines
-from ..archive import check_members
-from ..check import check_records
+from ..check import check_file
 from ..decompress import held_in_bounds
 from ..join import concatenate
 from .manifest import MANIFEST, Bounds, Manifest, Shard
@@ -201,7 +200,7 @@ class ShardedSet:
         Points lie within :attr:`bounds`, as those that :func:`pvfiblets.read` gives.
         """
         share = max(int(max_points * len(self) / max(self.n_points, 1)), 1)
-        for start in range(0, max(len(self), 1), share):
+        for start in range(0, len(self), share):
             part = replace(self[start : start + share], bounds=self.bounds)
             yield from held_in_bounds(part, part.iter_chunks(max_points))
 
@@ -215,11 +214,7 @@ class ShardedSet:
         """
         seen = np.zeros(len(self), bool)
         for number in range(len(self.shards)):
-            path, part = self.place(number), self.shard(number)
-            damaged = check_members(path)
-            if damaged:
-                raise FormatError(path, None, f"changed bytes in {', '.join(damaged)}", "the bytes as written")
-            check_records(part, path)
+            check_file(self.shard(number), self.place(number))
             ids = self.ids(number)
             if seen[ids].any():
                 twice = int(ids[seen[ids]][0])

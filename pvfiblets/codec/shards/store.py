@@ -18,7 +18,9 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ...addresses import is_url
+from ...cache_folder import cache_folder
 from ...errors import FormatError
+from ...whole_files import replacing
 from .manifest import StoredFile
 
 __all__ = ["Cache", "Folder", "Remote", "store_at"]
@@ -83,7 +85,7 @@ class Cache:
     Parameters
     ----------
     folder : str or PathLike, optional
-        ``pvfiblets/shards`` in the user's cache folder by default.
+        ``shards`` in the program's cache folder by default.
     size : int
         Bytes that it holds at most, but for the files in use last.
     """
@@ -91,8 +93,7 @@ class Cache:
     def __init__(self, folder: str | PathLike[str] | None = None, size: int = 10_000_000_000) -> None:
         if size < 1:
             raise ValueError(f"a cache of {size} bytes holds nothing; give a size such as 10 GB")
-        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        self.folder = Path(home) / "pvfiblets" / "shards" if folder is None else Path(folder).expanduser()
+        self.folder = cache_folder() / "shards" if folder is None else Path(folder).expanduser()
         self.size = size
 
     def place(self, file: StoredFile) -> Path:
@@ -183,24 +184,19 @@ class Remote:
         self._cache.folder.mkdir(parents=True, exist_ok=True)
         self._cache.make_room(file.bytes)
         url, target = f"{self._url}/{file.name}", self._cache.place(file)
-        part = target.with_name(f".{target.name}.{os.getpid()}.part")
         found = hashlib.sha256()
-        try:
-            with part.open("wb") as out:
-                while out.tell() < file.bytes:
-                    start, stop = out.tell(), min(out.tell() + PIECE, file.bytes)
-                    piece = self._piece(url, start, stop)
-                    if len(piece) == file.bytes:  # a server that knows no ranges sends all
-                        piece = piece[start:]
-                    elif len(piece) != stop - start:
-                        raise FormatError(url, start, f"{len(piece)} bytes", f"the {stop - start} that were asked for")
-                    out.write(piece)
-                    found.update(piece)
+        with replacing(target, file.bytes) as out:
+            while out.tell() < file.bytes:
+                start, stop = out.tell(), min(out.tell() + PIECE, file.bytes)
+                piece = self._piece(url, start, stop)
+                if len(piece) == file.bytes:  # a server that knows no ranges sends all
+                    piece = piece[start:]
+                elif len(piece) != stop - start:
+                    raise FormatError(url, start, f"{len(piece)} bytes", f"the {stop - start} that were asked for")
+                out.write(piece)
+                found.update(piece)
             if found.hexdigest() != file.sha256:
                 raise FormatError(url, None, "other bytes than its manifest names", "the set as it was written")
-            part.replace(target)
-        finally:
-            part.unlink(missing_ok=True)
         return target
 
     def _piece(self, url: str, start: int, stop: int) -> bytes:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["compress_file_in_shards", "write_shards"]
 
-PIECE = 1 << 22
 Ints = npt.NDArray[np.int64]
 
 
@@ -76,9 +75,7 @@ def compress_file_in_shards(
     from ... import FibletSet, compress_file  # by the package's own names for them: sets are saved in shards, too
 
     target = Path(target).expanduser()
-    _refuse_others(target)
-    if size < 1:
-        raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
+    _refuse(target, size)
     if Path(source).suffix.lower() == ".fiblets":
         usual = inspect.signature(compress_file).parameters
         given = sorted(name for name, value in options.items() if name not in usual or value != usual[name].default)
@@ -129,7 +126,7 @@ def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, 
         If it cannot be written to.
     """
     target = Path(target).expanduser()
-    _refuse_others(target)
+    _refuse(target, size)
     places = shards_of(fiblets, size)
     with naming_target(target, fiblets.nbytes), _appearing(target) as folder:
         shards = []
@@ -180,15 +177,14 @@ def _counted(places: list[Ints], progress: Progress) -> Iterator[Ints]:
 
 
 def _described(path: Path) -> StoredFile:
-    found = hashlib.sha256()
     with path.open("rb") as stream:
-        while piece := stream.read(PIECE):
-            found.update(piece)
-    return StoredFile(path.name, path.stat().st_size, found.hexdigest())
+        return StoredFile(path.name, path.stat().st_size, hashlib.file_digest(stream, "sha256").hexdigest())
 
 
-def _refuse_others(target: Path) -> None:
-    """Refuse to take the place of anything but a sharded set, and names of other formats."""
+def _refuse(target: Path, size: int) -> None:
+    """Refuse shards of no size, names of other formats, and to take the place of anything but a sharded set."""
+    if size < 1:
+        raise ValueError(f"shards of {size} bytes cannot hold anything; give a size such as 2 GB")
     if target.suffix.lower() != ".fiblets":
         raise ValueError(f"{target}: a set in shards is a folder whose name ends in .fiblets; name it so")
     if target.exists() and not (target / MANIFEST).is_file():
