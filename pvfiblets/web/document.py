@@ -7,7 +7,7 @@ A :class:`State` says all that a user may undo: layers, cuts, background. It hol
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -27,6 +27,7 @@ __all__ = [
     "Source",
     "State",
     "as_volume_choice",
+    "free_name",
     "volume_in",
 ]
 
@@ -320,6 +321,12 @@ class State:
         volumes = (volume_in(layer.settings.get("scalars")) for layer in self.layers)
         coloured = {("colours", source) for source in volumes if source is not None}
         return coloured | {(layer.kind, layer.source) for layer in self.layers}
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name, with a number behind it if that is taken."""
+    numbered = (f"{name} {k}" for k in range(2, len(taken) + 3))
+    return name if name not in taken else next(found for found in numbered if found not in taken)
 
 
 def _named(things: Iterable[Any], wanted: str, what: str) -> Any:

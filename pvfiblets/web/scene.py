@@ -27,6 +27,7 @@ from pvfiblets.web.document import (
     Source,
     State,
     as_volume_choice,
+    free_name,
     volume_in,
 )
 from pvfiblets.web.layer_queries import LayerQueries
@@ -465,10 +466,7 @@ class Scene(
                 return found
 
     def _free_name(self, name: str) -> str:
-        taken = {layer.name for layer in self.layers}
-        if name not in taken:
-            return name
-        return next(found for i in range(2, len(taken) + 3) if (found := f"{name} {i}") not in taken)
+        return free_name(name, {layer.name for layer in self.layers})
 
 
 def _whole(layer: Layer, actor: Any) -> Any:

@@ -13,24 +13,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.query.bundles.bundle_list import Bundles, group_colours, hidden_groups
-from pvfiblets.query.bundles.colours import distinct_colours
-from pvfiblets.web.document import Bundle, Ids, Layer, Source, State
+from pvfiblets.query.bundles.colours import distinct_colour, distinct_colours, hex_colour
+from pvfiblets.web.document import Bundle, Ids, Layer, Source, State, free_name
 from pvfiblets.web.layers import changed
 from pvfiblets.web.values import colour, mapping, shown, text, truth
 
 if TYPE_CHECKING:
     from pvfiblets.web.loading import Loaded
 
-__all__ = ["CONDITION", "BundleSync", "SceneBundles", "check_bundles", "hex_colour"]
+__all__ = ["CONDITION", "BundleSync", "SceneBundles", "check_bundles"]
 
 CONDITION = "bundles"
 MOST = 2000
 LONGEST = 120
-
-
-def hex_colour(parts: Iterable[float]) -> str:
-    """Return red, green, blue from 0 to 1 as ``#rrggbb``."""
-    return "#" + "".join(f"{round(255 * part):02x}" for part in parts)
 
 
 class SceneBundles:
@@ -87,8 +82,11 @@ class SceneBundles:
         if ids.highest >= self.data(layer).data.n_streamlines:
             raise ValueError(f"streamline {ids.highest} is asked for, of {self.data(layer).data.n_streamlines}")
         there = self.bundles(layer_id)
-        given = _free(there, f"bundle {len(there) + 1}") if name is None else self._new(there, name)
-        made = Bundle(given, ids, hex_colour(distinct_colours(len(there) + 1)[-1]))
+        if name is None:
+            given = free_name(f"bundle {len(there) + 1}", [one.name for one in there])
+        else:
+            given = self._new(there, name)
+        made = Bundle(given, ids, hex_colour(distinct_colour(len(there))))
         self._put(layer, (*there, made), f"bundle {given}")
         return made
 
@@ -97,7 +95,8 @@ class SceneBundles:
         layer, there = self._lines(layer_id), list(self.bundles(layer_id))
         colours = distinct_colours(len(there) + len(clusters))
         for number, ids in enumerate(clusters, 1):
-            there.append(Bundle(_free(there, f"cluster {number}"), Ids.of(ids), hex_colour(colours[len(there)])))
+            name = free_name(f"cluster {number}", [one.name for one in there])
+            there.append(Bundle(name, Ids.of(ids), hex_colour(colours[len(there)])))
         self._put(layer, tuple(there), f"{len(clusters)} clusters")
 
     def set_bundle(self, layer_id: str, bundle: str, /, **changes: Any) -> Bundle:
@@ -203,11 +202,6 @@ def _named(there: Sequence[Bundle], name: Any) -> Bundle:
         listed = ", ".join(repr(one.name) for one in there[:40]) or "none"
         raise KeyError(f"there is no bundle {shown(name)}; there are: {listed}")
     return found
-
-
-def _free(there: Sequence[Bundle], name: str) -> str:
-    taken = {one.name for one in there}
-    return next(one for one in (name, *(f"{name} {k}" for k in range(2, len(taken) + 3))) if one not in taken)
 
 
 def _own(data: Any) -> tuple[Bundle, ...]:

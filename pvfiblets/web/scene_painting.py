@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.query.bundles.colours import distinct_colours
+from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.query.bundles.colours import distinct_colour, hex_colour
 from pvfiblets.web.document import Layer, State
 from pvfiblets.web.painting import MOST_REGIONS, USES, Painted, Painting
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth
@@ -59,10 +60,8 @@ class ScenePainting:
         if len(painting.regions) >= MOST_REGIONS:
             raise ValueError(f"there are {MOST_REGIONS} painted regions, which is the most; remove one first")
         label = max((one.label for one in painting.regions), default=0) + 1
-        taken = {one.name for one in painting.regions}
-        name = next(found for k in range(1, len(taken) + 2) if (found := f"region {k}") not in taken)
-        red, green, blue = (round(255 * part) for part in distinct_colours(label)[-1].tolist())
-        made = Painted(name, label, f"#{red:02x}{green:02x}{blue:02x}")
+        name = unique_name((one.name for one in painting.regions), "region")
+        made = Painted(name, label, hex_colour(distinct_colour(label - 1)))
         wanted = replace(painting, regions=(*painting.regions, made))
         self.become(replace(self.state, painting=wanted), f"add {name}")
         return made

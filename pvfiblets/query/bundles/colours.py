@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["as_colour", "distinct_colours"]
+__all__ = ["as_colour", "distinct_colour", "distinct_colours", "hex_colour"]
 
 
 def distinct_colours(count: int) -> npt.NDArray[np.float64]:
@@ -16,12 +17,26 @@ def distinct_colours(count: int) -> npt.NDArray[np.float64]:
     The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
     brightness change with a rhythm of their own.
     """
-    index = np.arange(count)
+    return _colours(np.arange(count))
+
+
+def distinct_colour(number: int) -> tuple[float, float, float]:
+    """Return the colour of a number from 0 on, as :func:`distinct_colours` has it."""
+    red, green, blue = _colours(np.array([number]))[0].tolist()
+    return red, green, blue
+
+
+def _colours(index: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
     hue = np.modf(index * 0.6180339887498949)[0][:, None]
     saturation, value = (np.array(some)[index % 3][:, None] for some in ((0.9, 0.6, 0.75), (1.0, 0.9, 0.75)))
     # Travis, "Effective Color Displays", 1991: the hexagon of hues as three ramps.
     ramp = np.clip(np.abs(np.mod(hue * 6.0 + [0.0, 4.0, 2.0], 6.0) - 3.0) - 1.0, 0.0, 1.0)
     return np.asarray(value * (1.0 - saturation * (1.0 - ramp)))
+
+
+def hex_colour(parts: Iterable[float]) -> str:
+    """Return red, green, blue from 0 to 1 as ``#rrggbb``."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in parts)
 
 
 def as_colour(given: Any) -> tuple[float, float, float]:

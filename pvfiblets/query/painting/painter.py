@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import FormatError
-from ..bundles.colours import as_colour, distinct_colours
+from ..bundles.colours import as_colour, distinct_colour, hex_colour
 from ..labels import Labels
 from ..placement import finite_vector, positive
 from ..voxel_grid import VoxelGrid, grid_like
@@ -90,8 +90,7 @@ class RegionPainter:
         label = max((r.label for r in self.regions.values()), default=0) + 1
         if label > np.iinfo(np.uint16).max:
             raise ValueError("there are 65,535 regions; no more fit")
-        usual = distinct_colours(label)[-1].tolist()
-        made = PaintedRegion(name, label, (usual[0], usual[1], usual[2]) if color is None else as_colour(color))
+        made = PaintedRegion(name, label, distinct_colour(label - 1) if color is None else as_colour(color))
         self.regions[name] = made
         return made
 
@@ -297,7 +296,7 @@ class RegionPainter:
             writer = csv.writer(file, delimiter="\t", lineterminator="\n")
             writer.writerow(["index", "name", "color"])
             for r in self.regions.values():
-                writer.writerow([r.label, r.name, "#" + "".join(f"{round(255 * part):02x}" for part in r.color)])
+                writer.writerow([r.label, r.name, hex_colour(r.color)])
         return table
 
     @classmethod
@@ -328,13 +327,12 @@ class RegionPainter:
                         label, name, color = int(row["index"]), row["name"], row.get("color")
                     except (KeyError, TypeError, ValueError) as error:
                         raise FormatError(table, None, f"a row {row}", "columns index, name and color") from error
-                    usual = distinct_colours(max(label, 1))[-1].tolist()
-                    made.regions[name] = PaintedRegion(name, label, as_colour(color) if color else tuple(usual))
+                    usual = distinct_colour(max(label, 1) - 1)
+                    made.regions[name] = PaintedRegion(name, label, as_colour(color) if color else usual)
         known = {r.label for r in made.regions.values()}
         for label in found[found > 0].astype(int).tolist():
             if label not in known:
-                usual = distinct_colours(label)[-1].tolist()
-                made.regions[str(label)] = PaintedRegion(str(label), label, (usual[0], usual[1], usual[2]))
+                made.regions[str(label)] = PaintedRegion(str(label), label, distinct_colour(label - 1))
         return made
 
     # -------------------------------------------------------------------------------------------------------- inside
