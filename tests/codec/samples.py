@@ -7,6 +7,18 @@ import numpy as np
 from pvfiblets.streamlines import Streamlines
 
 
+def assert_equal_streamlines(found: Streamlines, wanted: Streamlines) -> None:
+    """Points, values and members of groups, whatever their order in a group."""
+    np.testing.assert_array_equal(found.points, wanted.points)
+    np.testing.assert_array_equal(found.offsets, wanted.offsets)
+    for kept in ("per_point", "per_streamline", "groups"):
+        ours, theirs = getattr(found, kept), getattr(wanted, kept)
+        assert ours.keys() == theirs.keys()
+        for name in theirs:
+            ordered = np.sort if kept == "groups" else np.asarray
+            np.testing.assert_array_equal(ordered(ours[name]), ordered(theirs[name]))
+
+
 def smooth(n: int = 40, points: int = 150, step: float = 0.5, seed: int = 0) -> Streamlines:
     """Helices and circles of many radii: constant step, slowly turning."""
     rng = np.random.default_rng(seed)

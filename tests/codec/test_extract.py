@@ -11,21 +11,13 @@ import pvfiblets as pf
 from pvfiblets.formats import UnknownFormatError
 from pvfiblets.streamlines import Streamlines
 
-from .samples import extremes, smooth
+from .samples import assert_equal_streamlines, extremes, smooth
 from .test_restrict import every_kind
 
 
 def assert_equal(part: pf.FibletSet, wanted: Streamlines, whole: pf.FibletSet) -> None:
     part.verify()
-    got = part.decompress(dtype=np.float64)
-    np.testing.assert_array_equal(got.points, wanted.points)
-    np.testing.assert_array_equal(got.offsets, wanted.offsets)
-    for kept in ("per_point", "per_streamline", "groups"):
-        ours, theirs = getattr(got, kept), getattr(wanted, kept)
-        assert ours.keys() == theirs.keys()
-        for name in theirs:
-            ordered = np.sort if kept == "groups" else np.asarray
-            np.testing.assert_array_equal(ordered(ours[name]), ordered(theirs[name]))
+    assert_equal_streamlines(part.decompress(dtype=np.float64), wanted)
     assert part.n_streamlines == len(part) == len(wanted)
     held = np.clip(np.reshape(wanted.bounds, (3, 2)).T, *np.reshape(whole.bounds, (3, 2)).T)  # in the originals' bounds
     assert part.bounds == (tuple(held.T.ravel()) if wanted.n_points else (0.0,) * 6)

@@ -39,6 +39,12 @@ VOLUMES = [
 
 IMAGES = ["v.mif", "v.mif.gz"]
 LABELS = ["v.ctab", "v.label", "v.tsv", "v.label.gii"]
+# Reader, file, and of how many damaged copies more than one is refused: in tables of labels much may be anything.
+DAMAGED = [
+    *(("lines", variant, 20) for variant in VARIANTS), ("fiblets", ".fiblets", 20),
+    *(("values", variant, 20) for variant in VALUES), *(("volume", variant, 50) for variant in VOLUMES),
+    *(("image", variant, 20) for variant in IMAGES), *(("labels", variant, None) for variant in LABELS),
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -63,38 +69,12 @@ def fuzzed(reader: str, path: Path, folder: Path, count: int = N, seed: str = SE
     return outcomes
 
 
-@pytest.mark.parametrize("variant", [*VARIANTS, ".fiblets"])
-def test_damaged_files_give_errors_or_results(variant, healthy, tmp_path):
-    outcomes = fuzzed("fiblets" if variant == ".fiblets" else "lines", healthy[variant], tmp_path)
+@pytest.mark.parametrize(("reader", "variant", "share"), DAMAGED)
+def test_damaged_files_give_errors_or_results(reader, variant, share, healthy, tmp_path):
+    outcomes = fuzzed(reader, healthy[variant], tmp_path)
     assert outcomes["read"] + outcomes["refused"] == N
-    assert outcomes["refused"] > N // 20
-
-
-@pytest.mark.parametrize("variant", VALUES)
-def test_damaged_values_give_errors_or_results(variant, healthy, tmp_path):
-    outcomes = fuzzed("values", healthy[variant], tmp_path)
-    assert outcomes["read"] + outcomes["refused"] == N
-    assert outcomes["refused"] > N // 20
-
-
-@pytest.mark.parametrize("variant", VOLUMES)
-def test_damaged_volumes_give_errors_or_results(variant, healthy, tmp_path):
-    outcomes = fuzzed("volume", healthy[variant], tmp_path)
-    assert outcomes["read"] + outcomes["refused"] == N
-    assert outcomes["refused"] > N // 50
-
-
-@pytest.mark.parametrize("variant", IMAGES)
-def test_damaged_images_give_errors_or_results(variant, healthy, tmp_path):
-    outcomes = fuzzed("image", healthy[variant], tmp_path)
-    assert outcomes["read"] + outcomes["refused"] == N
-    assert outcomes["refused"] > N // 20
-
-
-@pytest.mark.parametrize("variant", LABELS)
-def test_damaged_tables_of_labels_give_errors_or_results(variant, healthy, tmp_path):
-    outcomes = fuzzed("labels", healthy[variant], tmp_path)
-    assert outcomes["read"] + outcomes["refused"] == N
+    if share is not None:
+        assert outcomes["refused"] > N // share
 
 
 @pytest.mark.parametrize("how", ["hang", "hang in C", "crash", "memory", "memory of C", "other error"])

@@ -16,19 +16,12 @@ from pvfiblets.codec.shards.places import shards_of, streamline_bytes
 from pvfiblets.codec.shards.write import compress_file_in_shards, write_shards
 from pvfiblets.streamlines import Streamlines
 
-from ..samples import noisy, smooth
+from ..samples import assert_equal_streamlines, noisy, smooth
 from ..test_extract import with_groups
 
 
 def assert_same(found: Streamlines, wanted: Streamlines) -> None:
-    np.testing.assert_array_equal(found.points, wanted.points)
-    np.testing.assert_array_equal(found.offsets, wanted.offsets)
-    for kept in ("per_point", "per_streamline", "groups"):
-        ours, theirs = getattr(found, kept), getattr(wanted, kept)
-        assert ours.keys() == theirs.keys()
-        for name in theirs:
-            ordered = np.sort if kept == "groups" else np.asarray
-            np.testing.assert_array_equal(ordered(ours[name]), ordered(theirs[name]))
+    assert_equal_streamlines(found, wanted)
     np.testing.assert_array_equal(found.affine, wanted.affine)
     assert found.space == wanted.space
     assert found.dropped == wanted.dropped
