@@ -122,7 +122,7 @@ class SetQueries:
         threshold : float, default: 10.0
             mm from a cluster's mean line.
         **options
-            ``n_points, max_clusters, ids`` of that function.
+            ``n_points, max_clusters, ids, progress`` of that function.
 
         Returns
         -------
@@ -142,7 +142,7 @@ class SetQueries:
         distance : float, default: 10.0
             mm from the nearest of them.
         **options
-            ``n_points, ids`` of that function.
+            ``n_points, ids, progress`` of that function.
 
         Returns
         -------

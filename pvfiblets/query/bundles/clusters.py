@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
+from ...codec.progress import Progress
 from ...streamlines import Streamlines
 from .colours import distinct_colours
 from .resampled import check_count, check_distance, iter_resampled
@@ -173,6 +174,7 @@ def clusters(
     n_points: int = 12,
     max_clusters: int | None = None,
     ids: Any = None,
+    progress: Progress = False,
 ) -> Clusters:
     """Put streamlines that run alike into clusters, in one pass and bounded memory.
 
@@ -187,6 +189,9 @@ def clusters(
         Beyond so many, a streamline joins the nearest however far it is.
     ids : array_like, optional
         Streamlines to cluster, in this order; all by default, in their own.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
+        ends the work.
 
     Returns
     -------
@@ -216,7 +221,7 @@ def clusters(
     labels = np.full(len(data), -1, np.int32)
     centroids, means = np.zeros((ROOM, n_points, 3), np.float32), np.zeros((3, ROOM), np.float32)
     counts, used = np.zeros(ROOM, np.int64), 0
-    for numbers, lines in iter_resampled(data, n_points, chosen):
+    for numbers, lines in iter_resampled(data, n_points, chosen, progress, "clustering"):
         found, at = np.empty(len(lines), np.int32), 0
         while at < len(lines):
             if used == len(counts):

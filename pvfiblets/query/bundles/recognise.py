@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ...codec.progress import Progress
+from ...progress_bar import progress_bar
 from .resampled import check_count, check_distance
 
 if TYPE_CHECKING:
@@ -39,6 +41,7 @@ def recognise(
     cluster_threshold: float = 15.0,
     n_points: int = 20,
     seed: int = 0,
+    progress: Progress = False,
 ) -> dict[str, Ints]:
     """Recognise bundles by models of them.
 
@@ -64,6 +67,9 @@ def recognise(
         To which streamlines are resampled.
     seed : int, default: 0
         Of random choices.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1, before each
+        model. What it raises ends the work.
 
     Returns
     -------
@@ -99,6 +105,8 @@ def recognise(
         check_distance(value, name)
     check_count(n_points)
     known = _models(models)
+    if callable(progress):
+        progress("clustering the whole brain", 0.0)
     lines: Any = data if not hasattr(data, "decompress") else data.decompress(dtype=np.float32)
     there = np.flatnonzero(lines.counts > 1)  # a point alone has no course
     if not len(there):
@@ -109,16 +117,20 @@ def recognise(
         rng=np.random.default_rng(seed), verbose=False,
     )  # fmt: skip
     found = {}
-    for name, model in known.items():
-        options: dict[str, Any] = {
-            "model_clust_thr": model_threshold, "reduction_thr": reduction_threshold,
-            "pruning_thr": pruning_threshold, "slr": align, "num_threads": None,
-        }  # fmt: skip
-        some, labels = finder.recognize(model, **options)
-        if refine and len(some) > LEAST:
-            del options["num_threads"]
-            _, labels = finder.refine(model, some, **options)
-        found[name] = np.sort(there[np.asarray(labels, np.int64)])
+    with progress_bar(progress is True, total=len(known), desc="recognising", unit="bundles") as bar:
+        for done, (name, model) in enumerate(known.items()):
+            if callable(progress):  # clusters of the whole brain were the first step
+                progress(f"recognising {name}", (done + 1) / (len(known) + 1))
+            options: dict[str, Any] = {
+                "model_clust_thr": model_threshold, "reduction_thr": reduction_threshold,
+                "pruning_thr": pruning_threshold, "slr": align, "num_threads": None,
+            }  # fmt: skip
+            some, labels = finder.recognize(model, **options)
+            if refine and len(some) > LEAST:
+                del options["num_threads"]
+                _, labels = finder.refine(model, some, **options)
+            found[name] = np.sort(there[np.asarray(labels, np.int64)])
+            bar.update(1)
     return found
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ...codec.progress import Progress
 from ...codec.small_sets import prefer_kernels
+from ...progress_bar import progress_bar
 from ...streamlines import Streamlines
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ def resampled(lines: Streamlines, n_points: int) -> Lines:
 
 
 def iter_resampled(
-    data: FibletSet | Streamlines, n_points: int, ids: Ints | None = None
+    data: FibletSet | Streamlines, n_points: int, ids: Ints | None = None, progress: Progress = False, what: str = ""
 ) -> Iterator[tuple[Ints, Lines]]:
     """Resample streamlines, in bounded memory.
 
@@ -71,6 +73,10 @@ def iter_resampled(
     n_points : int
     ids : numpy.ndarray, optional
         ``(m,)`` int64, in the order wanted; all by default.
+    progress : bool or callable
+        Show a bar, or call this with ``what`` and the share that is done before each chunk; what it raises ends all.
+    what : str
+        What is done with them, for people.
 
     Yields
     ------
@@ -79,13 +85,19 @@ def iter_resampled(
     lines : numpy.ndarray
         ``(k, n_points, 3)`` float32 mm.
     """
-    for first, chunk in _chunks(data, ids):
-        numbers = np.arange(first, first + len(chunk)) if ids is None else ids[first : first + len(chunk)]
-        filled = chunk.counts > 0
-        if not filled.all():
-            chunk, numbers = chunk[filled], numbers[filled]
-        if len(chunk):
-            yield numbers, resampled(chunk, n_points)
+    total = len(data) if ids is None else len(ids)
+    with progress_bar(progress is True, total=total, desc=what, unit="streamlines", unit_scale=True) as bar:
+        for first, chunk in _chunks(data, ids):
+            if callable(progress):
+                progress(what, first / total)
+            many = len(chunk)
+            numbers = np.arange(first, first + many) if ids is None else ids[first : first + many]
+            filled = chunk.counts > 0
+            if not filled.all():
+                chunk, numbers = chunk[filled], numbers[filled]
+            if len(chunk):
+                yield numbers, resampled(chunk, n_points)
+            bar.update(many)
 
 
 def _chunks(data: FibletSet | Streamlines, ids: Ints | None) -> Iterator[tuple[int, Streamlines]]:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
+from ...codec.progress import Progress
 from ...streamlines import Streamlines
 from .resampled import check_count, check_distance, iter_resampled, resampled
 
@@ -70,7 +71,13 @@ class Similar:
 
 
 def similar(
-    data: FibletSet | Streamlines, like: Any, distance: float = 10.0, *, n_points: int = 12, ids: Any = None
+    data: FibletSet | Streamlines,
+    like: Any,
+    distance: float = 10.0,
+    *,
+    n_points: int = 12,
+    ids: Any = None,
+    progress: Progress = False,
 ) -> Similar:
     """Find streamlines that run near some others from end to end, in either direction.
 
@@ -87,6 +94,9 @@ def similar(
         To which all are resampled, at equal arc length.
     ids : array_like, optional
         Streamlines to look among; all by default.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
+        ends the work.
 
     Returns
     -------
@@ -113,7 +123,7 @@ def similar(
         raise ValueError("there is nothing to be similar to: no streamline with points was given")
     chosen = None if ids is None else select_streamlines(len(data), ids)
     parts: list[tuple[Ints, Floats, Ints]] = []
-    for numbers, lines in iter_resampled(data, n_points, chosen):
+    for numbers, lines in iter_resampled(data, n_points, chosen, progress, "comparing"):
         apart, which = np.empty(len(lines)), np.empty(len(lines), np.int64)
         nearest_of(lines, others, reach, apart, which)
         near = np.flatnonzero(which >= 0)

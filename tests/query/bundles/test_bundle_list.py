@@ -150,7 +150,10 @@ def test_models_recognise_their_bundles(tmp_path):
     for name, c in zip(("one", "two"), courses, strict=False):
         pvfiblets.write(models / f"{name}.trk", Streamlines.from_list([c + rng.normal(0, 1.0, 3) for _ in range(25)]))
     (models / "readme.md").write_text("not a tractogram")
-    found = brain.recognise(models, seed=1)
+    told = []
+    found = brain.recognise(models, seed=1, progress=lambda what, share: told.append((what, share)))
+    assert [share for _, share in told] == sorted(share for _, share in told)
+    assert all(any(name in what for what, _ in told) for name in found)
     assert list(found) == ["one", "two"]
     for k, name in enumerate(found):
         mine = set(range(40 * k, 40 * k + 40))

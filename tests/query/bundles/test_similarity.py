@@ -141,3 +141,31 @@ def test_clusters_are_limited_and_sorted_and_become_groups(lines):
 def test_bad_numbers_are_told(lines, ask, says):
     with pytest.raises(ValueError, match=says):
         ask(compress(Streamlines.from_list(lines[:9])))
+
+
+@pytest.mark.parametrize("what", ["clustering", "comparing"])
+def test_progress_is_told_and_can_end_the_work(lines, monkeypatch, what):
+    from pvfiblets.query.bundles import resampled
+
+    monkeypatch.setattr(resampled, "CHUNK", 1000)  # points
+    whole, told = Streamlines.from_list(lines), []
+
+    def find(**options):
+        if what == "clustering":
+            return bundles.clusters(whole, 5.0, **options)
+        return bundles.similar(whole, [3], 5.0, **options)
+
+    found = find(progress=lambda *said: told.append(said))
+    assert {said for said, _ in told} == {what}
+    shares = [share for _, share in told]
+    assert len(shares) > 3
+    assert shares[0] == 0.0
+    assert shares == sorted(shares)
+    assert shares[-1] < 1.0
+    assert len(found) == len(find())
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        find(progress=stop)
