@@ -8,7 +8,7 @@ import numpy as np
 
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.document import LINES
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.elements import eye, html, v3
 from pvfiblets.web.rpc_allowlist import number
 from pvfiblets.web.writing import EXPORTS
 
@@ -155,11 +155,8 @@ def build(app: Any) -> None:
         )  # fmt: skip
         with html.Div(v_if="bundles.rows.length"):
             with html.Div(classes="pv-pair px-2 pt-1"):
-                with v3.VBtn(
-                    icon=True, size="x-small", variant="text", click=(bundles.show_all, "[!bundles.all]"),
-                    aria_label=("bundles.all ? 'Hide all' : 'Show all'",), data_action="all-bundles",
-                ):  # fmt: skip
-                    v3.VIcon(icon=("bundles.all ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                eye("bundles.all", "Hide all", "Show all", click=(bundles.show_all, "[!bundles.all]"),
+                    data_action="all-bundles")  # fmt: skip
                 html.Span("{{ bundles.rows.length }} bundles", classes="pv-small", style="flex: 1")
                 v3.VBtn(
                     "Colour by bundle", size="x-small", classes="text-none", data_action="colour-by-bundle",
@@ -168,11 +165,7 @@ def build(app: Any) -> None:
                     click=(bundles.colour, "[!bundles.coloured]"),
                 )  # fmt: skip
             with html.Div(v_for="b in bundles.rows", key="b.name", classes="pv-pair px-2", data_bundle_row=("b.name",)):
-                with v3.VBtn(
-                    icon=True, size="x-small", variant="text", click=(bundles.set, "[b.name, 'visible', !b.visible]"),
-                    aria_label=("b.visible ? 'Hide' : 'Show'",), data_action="eye",
-                ):  # fmt: skip
-                    v3.VIcon(icon=("b.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                eye("b.visible", click=(bundles.set, "[b.name, 'visible', !b.visible]"), data_action="eye")
                 html.Input(
                     type="color", classes="pv-colour", style="width: 22px; height: 22px", value=("b.color",),
                     aria_label="Colour", change=(bundles.set, "[b.name, 'color', $event.target.value]"),

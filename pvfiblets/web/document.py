@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.painting import Painting
+from pvfiblets.web.values import shown
 
 __all__ = [
     "KINDS",
@@ -28,6 +29,7 @@ __all__ = [
     "State",
     "as_volume_choice",
     "free_name",
+    "named",
     "volume_in",
 ]
 
@@ -310,11 +312,11 @@ class State:
         KeyError
             If there is none of that id.
         """
-        return _named(self.layers, layer_id, "layer")
+        return named(self.layers, layer_id, "layer", by="id")
 
     def clip(self, clip_id: str) -> Clip:
         """Return a cut; errors as of :meth:`layer`."""
-        return _named(self.clips, clip_id, "cut")
+        return named(self.clips, clip_id, "cut", by="id")
 
     def sources(self) -> set[tuple[str, Source]]:
         """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
@@ -329,9 +331,26 @@ def free_name(name: str, taken: Collection[str]) -> str:
     return name if name not in taken else next(found for found in numbered if found not in taken)
 
 
-def _named(things: Iterable[Any], wanted: str, what: str) -> Any:
-    found = next((thing for thing in things if thing.id == wanted), None)
+def named(things: Iterable[Any], wanted: Any, what: str, *, by: str = "name") -> Any:
+    """Return the one of some things that has a name.
+
+    Parameters
+    ----------
+    things : iterable
+    wanted : str
+    what : str
+        What they are, for people.
+    by : str
+        The attribute that is asked for.
+
+    Raises
+    ------
+    KeyError
+        If there is none.
+    """
+    things = list(things)
+    found = next((thing for thing in things if getattr(thing, by) == wanted), None)
     if found is None:
-        there = ", ".join(thing.id for thing in things) or "none"
-        raise KeyError(f"there is no {what} {wanted!r}; there are: {there}")
+        there = ", ".join(repr(getattr(thing, by)) for thing in things[:40]) or "none"
+        raise KeyError(f"there is no {what} {shown(wanted)}; there are: {there}")
     return found

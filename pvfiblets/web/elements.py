@@ -13,7 +13,7 @@ from typing import Any
 from trame.widgets import html as _html
 from trame.widgets import vuetify3 as _vuetify
 
-__all__ = ["html", "v3"]
+__all__ = ["eye", "html", "v3"]
 
 PASSED_ON = ("data_", "aria_")
 PLAIN = frozenset({"accept", "autofocus", "download", "hidden", "inputmode", "maxlength", "role", "tabindex", "type"})
@@ -58,3 +58,20 @@ def written(name: str, value: Any) -> str:
 
 html = Elements(_html)
 v3 = Elements(_vuetify)
+
+
+def eye(shown: str, hide: str = "Hide", show: str = "Show", **attributes: Any) -> None:
+    """Build the button that shows or hides something of a list.
+
+    Parameters
+    ----------
+    shown : str
+        Expression of the page: whether it is shown.
+    hide, show : str
+        What the button does, for who hears the page read.
+    **attributes
+        Of the button, such as ``click``.
+    """
+    with v3.VBtn(icon=True, size="x-small", variant="text", aria_label=(f"{shown} ? '{hide}' : '{show}'",),
+                 **attributes):  # fmt: skip
+        v3.VIcon(icon=(f"{shown} ? 'mdi-eye' : 'mdi-eye-off'",), size=18)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.elements import eye, html, v3
 
 EXPERT = "Drawing"
 ICONS = {
@@ -31,11 +31,7 @@ def layers(app: Any) -> None:
                 data_layer=("layer.id",),
             ):
                 with v3.Template(v_slot_prepend=True):
-                    with v3.VBtn(
-                        icon=True, size="x-small", variant="text", aria_label=("layer.visible ? 'Hide' : 'Show'",),
-                        v_on_click_stop=(app.show, "[layer.id, !layer.visible]"), data_action="eye",
-                    ):  # fmt: skip
-                        v3.VIcon(icon=("layer.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                    eye("layer.visible", v_on_click_stop=(app.show, "[layer.id, !layer.visible]"), data_action="eye")
                     v3.VIcon(icon=(f"({ICONS!r})[layer.kind]",), size=16, classes="mx-1", title=("layer.kind",))
                 v3.VListItemTitle("{{ layer.name }}", title=("layer.name",), style="font-size: 13px")
                 with v3.Template(v_slot_append=True):

@@ -14,7 +14,7 @@ import numpy as np
 
 from pvfiblets.query.bundles.bundle_list import Bundles, group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colour, distinct_colours, hex_colour
-from pvfiblets.web.document import Bundle, Ids, Layer, Source, State, free_name
+from pvfiblets.web.document import Bundle, Ids, Layer, Source, State, free_name, named
 from pvfiblets.web.layers import changed
 from pvfiblets.web.values import colour, mapping, shown, text, truth
 
@@ -102,7 +102,7 @@ class SceneBundles:
     def set_bundle(self, layer_id: str, bundle: str, /, **changes: Any) -> Bundle:
         """Change a bundle's ``name``, ``color`` or ``visible``."""
         layer, there = self._lines(layer_id), self.bundles(layer_id)
-        old = _named(there, bundle)
+        old = named(there, bundle, "bundle")
         wanted: dict[str, Any] = {}
         for key, value in changes.items():
             if key == "name":
@@ -123,14 +123,14 @@ class SceneBundles:
     def show_bundles(self, layer_id: str, names: Sequence[str] | None) -> None:
         """Show some bundles only; None for all."""
         layer, there = self._lines(layer_id), self.bundles(layer_id)
-        wanted = {one.name for one in there} if names is None else {_named(there, name).name for name in names}
+        wanted = {one.name for one in there} if names is None else {named(there, name, "bundle").name for name in names}
         found = tuple(replace(one, visible=one.name in wanted) for one in there)
         self._put(layer, found, "show bundles")
 
     def merge_bundles(self, layer_id: str, names: Sequence[str]) -> Bundle:
         """Join bundles into the first of some, which keeps its name, place and colour."""
         layer, there = self._lines(layer_id), self.bundles(layer_id)
-        parts = [_named(there, name) for name in dict.fromkeys(names)]
+        parts = [named(there, name, "bundle") for name in dict.fromkeys(names)]
         if len(parts) < 2:
             raise ValueError("choose two bundles or more to merge")
         ids = Ids.of(np.concatenate([one.ids.array() for one in parts]))
@@ -143,7 +143,7 @@ class SceneBundles:
     def subtract_bundles(self, layer_id: str, names: Sequence[str]) -> Bundle:
         """Take the streamlines of other bundles out of the first of some."""
         layer, there = self._lines(layer_id), self.bundles(layer_id)
-        first, *others = (_named(there, name) for name in dict.fromkeys(names))
+        first, *others = (named(there, name, "bundle") for name in dict.fromkeys(names))
         if not others:
             raise ValueError("choose a bundle, and then those whose streamlines are taken out of it")
         ids = np.setdiff1d(first.ids.array(), np.concatenate([one.ids.array() for one in others]))
@@ -154,14 +154,14 @@ class SceneBundles:
     def remove_bundles(self, layer_id: str, names: Sequence[str]) -> None:
         """Take bundles off the list; their streamlines stay."""
         layer, there = self._lines(layer_id), self.bundles(layer_id)
-        gone = [_named(there, name) for name in names]
+        gone = [named(there, name, "bundle") for name in names]
         left = tuple(one for one in there if one not in gone)
         self._put(layer, left, f"remove {len(gone)} bundle(s)", {one.name: None for one in gone})
 
     def select_bundles(self, layer_id: str, names: Sequence[str]) -> None:
         """Select the streamlines of bundles."""
         there = self.bundles(layer_id)
-        parts = [_named(there, name).ids.array() for name in names]
+        parts = [named(there, name, "bundle").ids.array() for name in names]
         self.select(layer_id, np.unique(np.concatenate(parts)) if parts else [])
 
     def _new(self, there: Sequence[Bundle], name: Any) -> str:
@@ -194,14 +194,6 @@ def _refitted(layer: Layer, renamed: Mapping[str, str | None], any_left: bool) -
     names = [renamed.get(name, name) for name in groups]
     left = tuple(dict.fromkeys(name for name in names if name is not None))
     return replace(layer, filters=replace(layer.filters, groups=left or None))
-
-
-def _named(there: Sequence[Bundle], name: Any) -> Bundle:
-    found = next((one for one in there if one.name == name), None)
-    if found is None:
-        listed = ", ".join(repr(one.name) for one in there[:40]) or "none"
-        raise KeyError(f"there is no bundle {shown(name)}; there are: {listed}")
-    return found
 
 
 def _own(data: Any) -> tuple[Bundle, ...]:

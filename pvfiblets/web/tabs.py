@@ -6,7 +6,7 @@ from typing import Any
 
 from pvfiblets.web import bundles_tab, slices_tab
 from pvfiblets.web.controls import NAMES
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.elements import eye, html, v3
 from pvfiblets.web.writing import EXPORTS
 
 TABS = (
@@ -90,11 +90,7 @@ def _clip(app: Any) -> None:
     )  # fmt: skip
     with html.Div(v_for="clip in clips", key="clip.id", data_clip=("clip.id",)):
         with html.Div(classes="pv-pair px-2 pt-2"):
-            with v3.VBtn(
-                icon=True, size="x-small", variant="text", click=(app.cuts.enable, "[clip.id, !clip.enabled]"),
-                aria_label=("clip.enabled ? 'Switch off' : 'Switch on'",),
-            ):  # fmt: skip
-                v3.VIcon(icon=("clip.enabled ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+            eye("clip.enabled", "Switch off", "Switch on", click=(app.cuts.enable, "[clip.id, !clip.enabled]"))
             html.Span("{{ clip.name }}", style="flex: 1; font-size: 13px; font-weight: 500")
             v3.VBtn(
                 "{{ clip.side }}", size="x-small", variant="tonal", classes="text-none",
@@ -186,12 +182,9 @@ def _regions(app: Any) -> None:
     regions = app.regions
     with html.Div(classes="pv-pair pr-2"):
         html.Div("Regions", classes="pv-head", style="flex: 1")
-        with v3.VBtn(
-            v_if="filters.regions.length", icon=True, size="x-small", variant="text", data_action="show-regions",
-            click="show_regions = !show_regions", title="Show them in the picture",
-            aria_label=("show_regions ? 'Hide regions in the picture' : 'Show regions in the picture'",),
-        ):  # fmt: skip
-            v3.VIcon(icon=("show_regions ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+        eye("show_regions", "Hide regions in the picture", "Show regions in the picture", data_action="show-regions",
+            v_if="filters.regions.length", click="show_regions = !show_regions", title="Show them in the picture",
+            )  # fmt: skip
     with html.Div(classes="pv-pair px-3 pb-1", style="flex-wrap: wrap"):
         v3.VBtn("Sphere", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
                 click=(regions.add, "['sphere']"), data_region="sphere")  # fmt: skip

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.query.band_plot import plot_band
+
 if TYPE_CHECKING:
     from os import PathLike
 
@@ -57,23 +59,8 @@ class Profile:
         matplotlib.axes.Axes
             For labels and :meth:`matplotlib.figure.Figure.savefig` of its ``figure``.
         """
-        if ax is None:
-            import matplotlib.pyplot as plt
-
-            ax = plt.subplots()[1]
-        (line,) = ax.plot(self.position, self.mean, color=color, label=self.name or None)
-        ax.fill_between(
-            self.position,
-            self.mean - self.std,
-            self.mean + self.std,
-            color=line.get_color(),
-            alpha=0.25,
-            linewidth=0.0,
-        )
-        ax.set_xlabel("position along the bundle")
-        ax.set_ylabel(self.name)
-        ax.set_xlim(0.0, 1.0)
-        return ax
+        low, high = self.mean - self.std, self.mean + self.std
+        return plot_band(self.position, self.mean, low, high, self.name, ax, label=self.name, color=color)
 
     def chart(self, *, color: Any = "b") -> pv.Chart2D:
         """Return the same as a chart for :meth:`pyvista.Plotter.add_chart`.

@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
 from ...streamlines import Streamlines
+from ..band_plot import plot_band
 from ..table import Table
 from .resampled import check_count
 from .sampling import as_image
@@ -97,16 +98,8 @@ class TractProfile:
         -------
         matplotlib.axes.Axes
         """
-        if ax is None:
-            import matplotlib.pyplot as plt
-
-            ax = plt.subplots()[1]
-        (line,) = ax.plot(self.position, self.mean, color=color, label=self.bundle or self.name or None)
-        ax.fill_between(self.position, self.low, self.high, color=line.get_color(), alpha=0.25, linewidth=0.0)
-        ax.set_xlabel("position along the bundle")
-        ax.set_ylabel(self.name)
-        ax.set_xlim(0.0, 1.0)
-        return ax
+        label = self.bundle or self.name
+        return plot_band(self.position, self.mean, self.low, self.high, self.name, ax, label=label, color=color)
 
 
 def tract_profile(
