@@ -45,7 +45,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "regions.js", "slices.js", "painting.js", "connection.js")
+SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "connection.js")
 
 
 class Explorer(TrameApp):
