@@ -210,11 +210,6 @@ def read_mesh(path: str) -> Any:
 
     if not path.lower().endswith((".gii", ".gii.gz")):
         return pyvista.read(path)
-    import nibabel
-    import numpy as np
+    from pvfiblets.plotting.gifti import read_surface
 
-    image = nibabel.load(path)
-    points, faces = (image.agg_data(intent) for intent in ("NIFTI_INTENT_POINTSET", "NIFTI_INTENT_TRIANGLE"))
-    if isinstance(points, tuple) or isinstance(faces, tuple):
-        raise ValueError(f"{path} has no surface, or several: give a .gii of one set of points and its triangles")
-    return pyvista.PolyData.from_regular_faces(np.asarray(points, np.float64), np.asarray(faces))
+    return read_surface(path)

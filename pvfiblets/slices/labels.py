@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
-__all__ = ["LabelTable", "as_label_table", "distinct_colours"]
+__all__ = ["LabelTable", "as_label_table", "distinct_colours", "table_of_gifti"]
 
-SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii")
+SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii", ".gii.gz")
 
 _SHARE = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _ITKSNAP = re.compile(r'^\s*(\d{1,18})' + 3 * r"\s+(\d{1,18})" + rf'\s+{_SHARE}\s+([01])\s+([01])\s+"(.*)"\s*$')
@@ -95,7 +95,7 @@ def as_label_table(given: Any) -> LabelTable:
             "a dict such as {17: 'hippocampus'}"
         )
     path = Path(given).expanduser()
-    if path.name.lower().endswith(".gii"):
+    if path.name.lower().endswith((".gii", ".gii.gz")):
         return _of_gifti(path)
     text = path.read_text(encoding="utf-8", errors="replace")
     table = _of_bids(path, text) if path.name.lower().endswith(".tsv") else _of_lines(text)
@@ -174,17 +174,15 @@ def _of_bids(path: Path, text: str) -> LabelTable:
 
 
 def _of_gifti(path: Path) -> LabelTable:
-    from nibabel.gifti.parse_gifti_fast import GiftiImageParser
+    from pvfiblets.volumes.gifti_files import read_gifti
 
-    parser = GiftiImageParser(buffer_size=1 << 16)  # its own is 35 MB
-    with path.open("rb") as file:
-        try:
-            parser.parse(fptr=file)
-        except Exception as error:  # of XML, numbers, base64 and compression
-            said = error or type(error).__name__
-            raise FormatError(path, None, f"no whole GIFTI data ({said})", "a GIFTI file") from error
+    return table_of_gifti(path, read_gifti(path))
+
+
+def table_of_gifti(path: Path, image: Any) -> LabelTable:
+    """Return the table of labels of a file of GIFTI that was read; FormatError if it has none."""
     table = LabelTable()
-    for one in getattr(getattr(parser.img, "labeltable", None), "labels", ()):
+    for one in getattr(getattr(image, "labeltable", None), "labels", ()):
         table.names[int(one.key)] = str(one.label)
         if None not in (one.red, one.green, one.blue):
             parts = (one.red, one.green, one.blue, 1.0 if one.alpha is None else one.alpha)

@@ -20,7 +20,7 @@ from pvfiblets.errors import FormatError
 
 from .packed_numbers import data_file, numbers
 
-__all__ = ["read_mif"]
+__all__ = ["named_files", "read_mif"]
 
 MAGIC = b"mrtrix image"
 LONGEST_HEADER = 1 << 24  # a table of 10,000 gradients is well below
@@ -62,6 +62,24 @@ def read_mif(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
     while values.ndim < 3:
         values = values[..., None]
     return _scaled(path, fields, values), _affine(path, fields, transform, shape)
+
+
+def named_files(path: Path) -> list[str]:
+    """Return the files that a header says its numbers lie in, as :func:`read_mif` takes it; none if it is this one.
+
+    Raises
+    ------
+    FormatError
+        If it cannot be read.
+    """
+    _, files, _ = _header(path)
+    return [named for named in (_split(line)[0] for line in files) if named != "."]
+
+
+def _split(line: str) -> tuple[str, int]:
+    """Return the name and the offset of what stands behind ``file:``."""
+    named, _, offset = line.rpartition(" ") if re.search(r" \d+$", line) else (line, "", "0")
+    return named.strip(), int(offset)
 
 
 def _open(path: Path) -> IO[bytes]:
@@ -137,9 +155,8 @@ def _data(path: Path, fields: dict[str, str], files: list[str], shape: list[int]
     """All numbers of the file in one row."""
     if len(files) != 1:
         raise FormatError(path, None, f"{len(files)} lines 'file: ...'", "one: join the data by mrconvert first")
-    named, _, offset = files[0].rpartition(" ") if re.search(r" \d+$", files[0]) else (files[0], "", "0")
-    start = int(offset)
-    place = path if named.strip() == "." else data_file(path, named.strip())
+    named, start = _split(files[0])
+    place = path if named == "." else data_file(path, named)
     kind = fields.get("datatype", "none")
     packing: Any = "gzip" if place.name.lower().endswith(".gz") else "raw"
     at, skip = (0, start) if packing == "gzip" else (start, 0)

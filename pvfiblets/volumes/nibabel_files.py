@@ -60,6 +60,8 @@ def opened(path: Path) -> Iterator[Any]:
             image = nib.load(path)
         except (*errors, ValueError, TypeError) as error:
             raise told(error) from None
+        if not hasattr(image, "dataobj"):
+            raise told(TypeError(f"as {type(image).__name__}, which is no volume"))
         _check_size(path, image.dataobj)
         try:
             yield image

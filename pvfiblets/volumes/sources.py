@@ -15,7 +15,7 @@ from .volume import RaycastVolume
 __all__ = ["SUFFIXES", "as_raycast_volume"]
 
 NIBABEL = (".nii", ".nii.gz", ".mgh", ".mgz")
-SUFFIXES = (*NIBABEL, ".nrrd", ".nhdr", ".mhd", ".mha", ".vti")
+SUFFIXES = (*NIBABEL, ".mif", ".mif.gz", ".mih", ".nrrd", ".nhdr", ".mhd", ".mha", ".vti")
 """Of files that say what they hold."""
 
 _EXPECTED = (
@@ -55,9 +55,10 @@ def as_raycast_volume(
         - ``(nx, ny, nz)`` numbers, masked arrays (masked voxels are missing) and memory maps; or ``(array, affine)``.
           ``(nx, ny, nz, 4)`` of type uint8 are RGBA.
         - An image of nibabel; of type RGBA its colours count.
-        - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.nrrd``, ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD
-          files that say so, and of MetaImage files always, coordinates are LPS+ and are turned to RAS+. Any other, such
-          as ``.raw``: bare numbers, the first axis running fastest; they need ``shape`` and ``dtype``.
+        - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.mif``, ``.mif.gz``, ``.mih``, ``.nrrd``,
+          ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD files that say so, and of MetaImage files always, coordinates
+          are LPS+ and are turned to RAS+. Any other, such as ``.raw``: bare numbers, the first axis running fastest;
+          they need ``shape`` and ``dtype``.
         - A :class:`.RaycastVolume`, or anything else with ``values`` and ``affine``.
 
         What has one voxel along an axis, as a slice has, becomes as thick as this voxel: two of the same value.
@@ -223,12 +224,17 @@ def _of_nibabel(image: Any, what: str, name: str) -> Found:
 
 def _of_file(path: Path, scalars: Any) -> Found:
     lower = path.name.lower()
-    name = path.name[: -len(next((s for s in SUFFIXES if lower.endswith(s)), "")) or None]
+    name = path.name[: -len(max((s for s in SUFFIXES if lower.endswith(s)), key=len, default="")) or None]
     if lower.endswith(NIBABEL):
         from .nibabel_files import opened
 
         with opened(path) as image:
             return _of_nibabel(image, path.name, name)
+    if lower.endswith((".mif", ".mif.gz", ".mih")):
+        from .mif import read_mif
+
+        values, affine = read_mif(path)
+        return _three_axes(values, path.name), affine, name
     if lower.endswith((".nrrd", ".nhdr")):
         from .nrrd import read_nrrd
 

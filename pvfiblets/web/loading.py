@@ -18,19 +18,21 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
+from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
 
-__all__ = ["MESHES", "TABLES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
+__all__ = ["MESHES", "OF_VERTICES", "TABLES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
 
-MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf")
+MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI)
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
 
-VALUES = (".tsf",)
-"""Suffixes of files with values for the lines of another file."""
+VALUES = (".tsf", *OF_VERTICES)
+"""Suffixes of files with values for the lines, or for the vertices, of another file."""
 
-TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv")
+TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.gz")
 """Suffixes of files with names and colours of labels."""
 
 _EITHER = (".vtk", ".vtp")
@@ -212,7 +214,7 @@ class Files:
         source : Source
             Without ``ids``.
         kind : str, optional
-            Of the layer; that which the file is for by default.
+            Of the layer; that which the file is for by default: of volumes of several numbers per voxel, an image.
         progress : callable, optional
             Called with what is being done and the share of it that is, 0 to 1.
         cancel : callable, optional
@@ -230,7 +232,7 @@ class Files:
         if source.demo is not None:
             return _demo(source, kind)
         place = self.resolve(source.path)
-        kind = kind_of(place) if kind is None else kind
+        asked, kind = kind, kind_of(place) if kind is None else kind
         source = Source(self.name(place))
         name = place.name
         if kind in (*LINES, "tubes"):
@@ -242,7 +244,12 @@ class Files:
         if kind == "volume":
             from pvfiblets.volumes import as_raycast_volume
 
-            volume = as_raycast_volume(_of_vtk(place) if name.lower().endswith(_EITHER) else place)
+            try:
+                volume = as_raycast_volume(_of_vtk(place) if name.lower().endswith(_EITHER) else place)
+            except ValueError:
+                if asked is not None or (several := _several(place)) is None:
+                    raise
+                return Loaded("image", source, name, *several)
             watch("reading", 1.0)
             return Loaded(kind, source, name, volume, _volume_facts(volume))
         if kind == "image":
@@ -265,7 +272,7 @@ class Files:
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
 
     def with_values(self, loaded: Loaded, paths: tuple[str, ...]) -> Loaded:
-        """Return a tractogram with the values of files more, under the files' names, or an image with names of labels.
+        """Return a tractogram or a mesh with the values of files more, or an image with names of labels.
 
         Raises
         ------
@@ -275,6 +282,8 @@ class Files:
         add: Callable[[Any, Path], Any]
         if loaded.kind == "image":
             from pvfiblets.web.label_images import with_table as add
+        elif loaded.kind == "mesh":
+            from pvfiblets.plotting.gifti import with_vertex_values as add
         else:
             from pvfiblets.plotting.fiblets.sources import with_values_of as add
 
@@ -350,6 +359,16 @@ def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
     return Loaded("tubes", source, name, tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments})
 
 
+def _several(place: Path) -> tuple[Any, dict[str, Any]] | None:
+    """Return a file's image and its facts if its voxels hold several numbers each, which slices can show."""
+    from pvfiblets.web.label_images import facts_of, read_image
+
+    if not place.name.lower().endswith(VOLUMES):
+        return None
+    image = read_image(place)
+    return None if image.n_volumes == 1 else (image, facts_of(image))
+
+
 def _of_vtk(place: Path) -> Any:
     """Read a file with one of VTK's readers, which end the process where memory does not suffice."""
     import pyvista as pv
@@ -366,6 +385,10 @@ def _mesh(place: Path) -> Any:
 
     if not place.name.lower().endswith(MESHES):  # VTK has readers of its own for volumes, which follow other names
         raise UnknownFormatError(f"{place.name}: surfaces are in files of {', '.join(MESHES)}; convert it")
+    if place.name.lower().endswith(GIFTI):
+        from pvfiblets.plotting.gifti import read_surface
+
+        return read_surface(place)
     data = _of_vtk(place)
     if isinstance(data, pv.MultiBlock):
         data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()

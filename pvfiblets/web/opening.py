@@ -19,7 +19,7 @@ from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.document import LINES
-from pvfiblets.web.loading import MESHES, TABLES, VALUES, Cancelled
+from pvfiblets.web.loading import MESHES, OF_VERTICES, TABLES, VALUES, Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
 
@@ -97,7 +97,7 @@ class FileActions(Actions):
     async def open(self, path: str, kind: str | None = None) -> bool:
         """Open a file beside everything else; return whether it was, rather than cancelled.
 
-        A file of values colours the chosen tractogram.
+        A file of values colours the chosen tractogram, or the chosen mesh.
         """
         app = self._app
         name = Path(path).name
@@ -121,12 +121,13 @@ class FileActions(Actions):
         return True
 
     async def _attach(self, path: str) -> bool:
-        """Colour the chosen tractogram by a file of values, which is read beside everything else."""
+        """Colour the chosen tractogram or mesh by a file of values, which is read beside everything else."""
         app = self._app
         name = Path(path).name
-        lines = [layer.id for layer in app.scene.layers if layer.kind in LINES]
+        kinds, of = (("mesh",), "vertices of a surface") if _of_vertices(path) else (LINES, "points of a tractogram")
+        lines = [layer.id for layer in app.scene.layers if layer.kind in kinds]
         if not lines:
-            raise ValueError(f"{name} holds values for the points of a tractogram; open that first")
+            raise ValueError(f"{name} holds values for the {of}; open that first")
         target = app.page.chosen if app.page.chosen in lines else lines[-1]
         try:
             loaded = await self.beside(
@@ -450,6 +451,10 @@ def _place(part: Path, target: Path) -> None:
         part.replace(target)
 
 
+def _of_vertices(path: str) -> bool:
+    return path.lower().endswith(OF_VERTICES)
+
+
 def _is_lines(path: str) -> bool:
     return path.lower().endswith((".trk", ".trk.gz", ".tck", ".trx", ".tt.gz", ".fiblets"))
 
@@ -459,8 +464,8 @@ def _icon(entry: Any) -> str:
     if entry.folder:
         return "mdi-folder-outline"
     kinds = {
-        "mdi-vector-polyline": tuple(suffixes()), "mdi-cube-outline": VOLUMES, "mdi-triangle-outline": MESHES,
-        "mdi-chart-line": VALUES, "mdi-content-save-outline": (SESSION,),
+        "mdi-vector-polyline": tuple(suffixes()), "mdi-cube-outline": VOLUMES, "mdi-chart-line": VALUES,
+        "mdi-triangle-outline": MESHES, "mdi-content-save-outline": (SESSION,),
     }  # fmt: skip
     return next((icon for icon, ends in kinds.items() if name.endswith(tuple(ends))), "mdi-file-outline")
 

@@ -19,7 +19,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from pvfiblets.errors import FormatError
-from pvfiblets.volumes import metaimage, nrrd
+from pvfiblets.volumes import gifti_files, metaimage, mif, nrrd
 
 __all__ = ["check_references"]
 
@@ -122,5 +122,6 @@ def _of_obj(place: Path) -> list[str]:
 
 _FINDERS: dict[str, Callable[[Path], list[str]]] = {
     ".nrrd": _of_nrrd, ".nhdr": _of_nrrd, ".mhd": _of_metaimage, ".mha": _of_metaimage, ".gltf": _of_gltf,
-    ".glb": _of_gltf, ".obj": _of_obj,
+    ".glb": _of_gltf, ".obj": _of_obj, ".mif": mif.named_files, ".mif.gz": mif.named_files, ".mih": mif.named_files,
+    ".gii": gifti_files.named_files, ".gii.gz": gifti_files.named_files,
 }  # fmt: skip

@@ -317,23 +317,34 @@ class Scene(
         return self.add(self.load(path, kind, progress, cancel))
 
     def load_values(self, layer_id: str, path: str | Path) -> Loaded:
-        """Read a file of values for the streamlines of a layer, for :meth:`attach`; may run in a thread of its own."""
-        source = self._lines(layer_id).source
+        """Read values for a layer's streamlines or vertices, for :meth:`attach`; may run in a thread of its own."""
+        layer = self.layer(layer_id)
+        source = (layer if layer.kind == "mesh" else self._lines(layer_id)).source
         name = self.files.name(self.files.resolve(path))
         values = tuple(dict.fromkeys([*source.values, name]))
         twin = self.store.fork()
-        return twin.data(replace(self.layer(layer_id), source=replace(source, values=values), settings={}))
+        return twin.data(replace(layer, source=replace(source, values=values), settings={}))
 
     def attach(self, layer_id: str, loaded: Loaded) -> Layer:
         """Give a layer the values that :meth:`load_values` read, and colour it by the last of them."""
-        layer = self._lines(layer_id)
-        name = name_of(loaded.source.values[-1])
+        layer = self.layer(layer_id)
+        name = self._last_values(loaded)
         with self.store.with_new(loaded):
             checked = layers.check(layer.kind, "scalars", name, loaded.data)
             settings = layers.changed(layer.kind, layer.settings, "scalars", checked, loaded.data)
             changed = replace(layer, source=loaded.source, settings=settings)
             self._change(changed, f"values {name} of {layer.name}")
         return changed
+
+    @staticmethod
+    def _last_values(loaded: Loaded) -> str:
+        """Return what to colour by of the last file of values: of labels, by the colours of their table."""
+        if loaded.kind != "mesh":
+            return name_of(loaded.source.values[-1])
+        from pvfiblets.plotting.gifti import name_of as name_of_gifti
+
+        name = name_of_gifti(loaded.source.values[-1])
+        return f"{name}_rgb" if f"{name}_rgb" in loaded.data.point_data else name
 
     def load_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Loaded]:
         """Make tracts up, and a head around them, for :meth:`add_loaded_demo`; may run in a thread of its own."""

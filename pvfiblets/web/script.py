@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.distance_label import LABELS, NEAREST
@@ -20,7 +21,7 @@ from pvfiblets.web.document import LINES, Clip, Layer, Source
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import Python, code
 from pvfiblets.web.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
-from pvfiblets.web.shapes import condition_code, planes_of, shape_code, shapes_in
+from pvfiblets.web.shapes import condition_code, mesh_code, planes_of, shape_code, shapes_in
 
 if TYPE_CHECKING:
     from pvfiblets.web.scene import Scene
@@ -189,6 +190,12 @@ class _Writer:
         """Return Python of what a layer draws."""
         source = layer.source
         loaded = self._scene.data(layer)
+        if source.values and layer.kind == "mesh":
+            self._imports.add("from pvfiblets.plotting.gifti import with_vertex_values")
+            mesh = self._mesh(str(source.path))
+            for one in source.values:
+                mesh = f"with_vertex_values({mesh}, {self._file(one)})"
+            return mesh
         if source.values and source.ids is None:
             return self._whole(source, loaded.kept)
         if source.demo == "head":
@@ -201,11 +208,19 @@ class _Writer:
             return f"{self._whole(source, loaded.kept)}.extract({self._ids(source.ids.runs)})"
         assert source.path is not None
         path = self._file(source.path)
-        if layer.kind == "mesh" or (layer.kind == "volume" and source.path.lower().endswith((".vtk", ".vtp"))):
+        if layer.kind == "mesh":
+            return self._mesh(source.path)
+        if layer.kind == "volume" and source.path.lower().endswith((".vtk", ".vtp")):
             return f"pv.read({path})"
         if layer.kind in LINES and loaded.kept:
             return f"{path}, per_point={list(loaded.kept)}"
         return path
+
+    def _mesh(self, path: str) -> str:
+        """Return Python that reads a surface."""
+        if path.lower().endswith(GIFTI):
+            self._imports.add("from pvfiblets.plotting.gifti import read_surface")
+        return mesh_code(path, self._file)
 
     def _colours(self, source: Source) -> Python:
         """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
@@ -282,7 +297,7 @@ class _Writer:
         if not names:
             return
         if clip.shape["kind"] == "mesh":
-            region = f"pv.read({self._file(clip.shape['path'])})"
+            region = self._mesh(clip.shape["path"])
         else:
             self._needs(clip.shape)
             region = shape_code(clip.shape, self._file)
@@ -319,6 +334,8 @@ class _Writer:
             self._imports.add("from pvfiblets import regions")
         elif shape["kind"] == "mesh" or shape["labels"] is None:
             self._imports.add("from pvfiblets.plotting.region_sources import as_region")
+            if shape["kind"] == "mesh":
+                self._mesh(shape["path"])
         else:
             self._imports |= {"import nibabel as nib", "import numpy as np", "from pvfiblets import regions"}
             self._uses_labels = True

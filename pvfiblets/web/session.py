@@ -368,8 +368,8 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     if kind not in KINDS:
         raise ValueError(f"the kind of a layer is {shown(kind)}; choose one of {', '.join(KINDS)}")
     source = _source_from_dict(value["source"], paths)
-    if source.values and kind not in (*LINES, "image"):
-        raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms and images alone have")
+    if source.values and kind not in (*LINES, "image", "mesh"):
+        raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms, images and meshes have")
     if (kind == "selection") != (source.ids is not None):
         raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
     visible = truth(value.get("visible", True), "visible")

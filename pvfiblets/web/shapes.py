@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.web.values import mapping, number, numbers, shown, text, whole
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CUTTING", "HOWS", "SHAPES", "check_condition", "check_shape", "condition_code", "make_predicate",
-    "make_region", "planes_of", "shape_code", "shapes_in",
+    "make_region", "mesh_code", "planes_of", "shape_code", "shapes_in",
 ]  # fmt: skip
 
 SHAPES = ("plane", "slab", "box", "sphere", "mesh", "labels")
@@ -224,10 +225,15 @@ def shape_code(shape: Mapping[str, Any], file: Callable[[str], str]) -> str:
     if kind == "sphere":
         return f"regions.Sphere({shape['center']}, {shape['radius']})"
     if kind == "mesh":
-        return f"as_region(pv.read({file(shape['path'])}))"
+        return f"as_region({mesh_code(shape['path'], file)})"
     if shape["labels"] is None:
         return f"as_region({file(shape['path'])})"
     return f"labels_of({file(shape['path'])}, {shape['labels']})"
+
+
+def mesh_code(path: str, file: Callable[[str], str]) -> str:
+    """Return Python that reads a surface: of GIFTI by ``pvfiblets.plotting.gifti.read_surface``."""
+    return f"{'read_surface' if path.lower().endswith(GIFTI) else 'pv.read'}({file(path)})"
 
 
 def condition_code(condition: Mapping[str, Any], file: Callable[[str], str]) -> str:

@@ -20,6 +20,11 @@ HEADERS = {
     ".mhd": "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nHeaderSize = -1\nElementDataFile = {}\n",
     ".mha": "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = {}\n",
     ".gltf": '{{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "{}", "byteLength": 8}}]}}',
+    ".mif": "mrtrix image\ndim: 2,2,2\nvox: 1,1,1\nlayout: +0,+1,+2\ndatatype: UInt8\nfile: {} 0\nEND\n",
+    ".mih": "mrtrix image\ndim: 2,2,2\nvox: 1,1,1\nlayout: +0,+1,+2\ndatatype: UInt8\nfile: {}\nEND\n",
+    ".gii": '<GIFTI Version="1.0" NumberOfDataArrays="1"><DataArray Intent="NIFTI_INTENT_SHAPE" DataType='
+    '"NIFTI_TYPE_UINT8" ArrayIndexingOrder="RowMajorOrder" Dimensionality="1" Dim0="8" Encoding="ExternalFileBinary" '
+    'Endian="LittleEndian" ExternalFileName="{}" ExternalFileOffset="0"><Data/></DataArray></GIFTI>',
     ".obj": "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
 }
 
@@ -71,7 +76,7 @@ def test_references_in_the_root_are_followed(home, suffix):
     for named in ("inside.raw", f"{home}/inside.raw"):
         (home / f"a{suffix}").write_text(HEADERS[suffix].format(named))
         assert Files(home).resolve(f"a{suffix}") == home / f"a{suffix}"
-    if suffix in (".nhdr", ".mhd"):
+    if suffix in (".nhdr", ".mhd", ".mif", ".mih"):
         from pvfiblets.volumes import as_raycast_volume
 
         assert as_raycast_volume(home / f"a{suffix}").values.ravel("F").tolist() == list(range(8))

@@ -20,7 +20,7 @@ from pvfiblets.web.loading import Files
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="inotify is Linux's")
 
 IN_ACCESS, IN_OPEN = 0x1, 0x20
-KINDS = (None, "tractogram", "tubes", "volume", "labels", "colours", "mesh")
+KINDS = (None, "tractogram", "tubes", "volume", "image", "labels", "colours", "mesh")
 
 XML = (
     '<?xml version="1.0"?><!DOCTYPE VTKFile [<!ENTITY e SYSTEM "{0}">]>'
@@ -58,6 +58,12 @@ TEXTS = {
     "pattern.mha": "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = {0}%d 1 1 1\n",
     "twice.mhd": "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = {0}\n"
     "ElementDataFile = LOCAL\n",
+    "a.mif": "mrtrix image\ndim: 2,2,2\nlayout: +0,+1,+2\ndatatype: UInt8\nfile: {0} 0\nEND\n",
+    "UPPER.MIH": "mrtrix image\nDIM: 2,2,2\nLAYOUT: +0,+1,+2\nDATATYPE: UInt8\nFILE: {0}\nEND\n",
+    "a.gii": '<!DOCTYPE GIFTI [<!ENTITY e SYSTEM "{0}">]><GIFTI Version="1.0" NumberOfDataArrays="1"><DataArray '
+    'Intent="NIFTI_INTENT_POINTSET" DataType="NIFTI_TYPE_UINT8" ArrayIndexingOrder="RowMajorOrder" Dimensionality="2" '
+    'Dim0="4" Dim1="2" Encoding="ExternalFileBinary" Endian="LittleEndian" ExternalFileName="{0}" '
+    'ExternalFileOffset="0"><Data>&e;</Data></DataArray></GIFTI>',
     "UPPER.MHD": "NDIMS = 3\nDIMSIZE = 2 2 2\nELEMENTTYPE = MET_UCHAR\nELEMENTDATAFILE = {0}\n",
 }
 GLTF = (
@@ -168,12 +174,13 @@ def test_the_same_files_are_followed_inside(home):
     """That readers follow what the other test refuses: else it would say nothing."""
     followed = set()
     with watched(home / "inside.raw") as count:
-        for name in ("plain-buffer.gltf", "plain-buffer-2.glb", "first.nrrd", "UPPER.MHD"):
+        names = {"plain-buffer.gltf", "plain-buffer-2.glb", "first.nrrd", "UPPER.MHD", "a.mif", "UPPER.MIH", "a.gii"}
+        for name in sorted(names):
             (home / name).write_bytes(files("inside.raw")[name])
             open_all(home, name)
             if count():
                 followed.add(name)
-    assert followed == {"plain-buffer.gltf", "plain-buffer-2.glb", "first.nrrd", "UPPER.MHD"}
+    assert followed == names
 
 
 def test_an_image_of_two_files_in_one_name_stays_alone(home):
