@@ -16,6 +16,8 @@ from typing import Any
 from trame.app import TrameApp
 
 from pvfiblets.web import describe, layout
+from pvfiblets.web.bundle_finding import FindingActions
+from pvfiblets.web.bundle_measures import MeasureActions
 from pvfiblets.web.bundles_tab import BundleActions
 from pvfiblets.web.camera import CameraActions
 from pvfiblets.web.clip_tab import CutActions
@@ -100,6 +102,8 @@ class Explorer(TrameApp):
         self.slices = SliceActions(self)
         self.painting = PaintActions(self)
         self.bundles = BundleActions(self)
+        self.finding = FindingActions(self)
+        self.measuring = MeasureActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
@@ -139,6 +143,7 @@ class Explorer(TrameApp):
             "save_picture": self.camera.save_picture,
             "selection_csv": lambda: selection_csv(self.scene),
             "profile_csv": self.selecting.profile_csv,
+            "bundle_table": self.measuring.fetch,
             "slide": self.sliders.slide,
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
@@ -209,6 +214,8 @@ class Explorer(TrameApp):
             self.slices.refresh()
             self.painting.refresh()
             self.bundles.refresh()
+            self.finding.refresh()
+            self.measuring.refresh()
         self.stream.request()
 
     def _show_info(self) -> None:

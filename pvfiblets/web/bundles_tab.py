@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.web import bundle_finding, bundle_measures
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.document import LINES
 from pvfiblets.web.elements import eye, html, v3
-from pvfiblets.web.rpc_allowlist import number
 from pvfiblets.web.writing import EXPORTS
 
 __all__ = ["BundleActions", "build"]
@@ -63,19 +63,31 @@ class BundleActions(LineActions):
             raise ValueError(f"a bundle is made of what is selected or shown, not of {str(what)[:40]!r}")
         self._app.scene.add_bundle(self._layer.id, what)
 
-    def cluster(self, text: Any) -> None:
-        """Add a bundle for each cluster of streamlines that run alike."""
-        self._app.later(self._cluster(number(float(str(text).replace(",", ".") or "nan"), 0.1, 1000.0)))
+    def chosen(self) -> list[str]:
+        """Names of the bundles chosen by their boxes, in the order in which they were."""
+        return list(self._checked)
 
-    async def _cluster(self, threshold: float) -> None:
-        app, layer = self._app, self._layer
-        fiblets = app.scene.actor(layer.id).fiblets
-        found = await app.files.beside(
-            layer.name, lambda *_: fiblets.clusters(threshold=threshold), "clustering", cancellable=False
-        )
-        largest = sorted((np.asarray(one.ids) for one in found), key=len, reverse=True)[:CLUSTERS]
-        app.scene.add_clusters(layer.id, largest)
-        app.say(f"{len(found):,} clusters; the {len(largest)} largest are bundles now", "success")
+    def chosen_ids(self) -> Any:
+        """Streamlines of the bundles chosen, each once."""
+        parts = [one.ids.array() for one in self._app.scene.bundles(self._layer.id) if one.name in self._checked]
+        return np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
+
+    def move(self, by: int) -> None:
+        """Move the bundles chosen up or down the list."""
+        layer, names = self._layer, self._checked
+        if not names:
+            raise ValueError("choose bundles by their boxes first")
+        listed = [one.name for one in self._app.scene.bundles(layer.id)]
+        places = [listed.index(name) for name in names]
+        to = min(places) - 1 if by < 0 else max(places) - len(places) + 2
+        self._app.scene.move_bundles(layer.id, names, to)
+
+    def drop(self, name: str, on: str) -> None:
+        """Put a bundle to where another is, as it was dragged."""
+        layer = self._layer
+        listed = [one.name for one in self._app.scene.bundles(layer.id)]
+        if name in listed and on in listed and name != on:
+            self._app.scene.move_bundles(layer.id, [name], listed.index(on))
 
     def set(self, name: str, what: str, value: Any) -> None:
         """Set name, colour or visibility of a bundle."""
@@ -120,15 +132,10 @@ class BundleActions(LineActions):
 
     def export(self, suffix: str) -> None:
         """Write the streamlines of the chosen bundles to a file, where the tab Selection says."""
-        scene, layer = self._app.scene, self._layer
-        names = list(self._checked)
-        if not names:
+        layer = self._layer
+        if not self._checked:
             raise ValueError("choose bundles by their boxes first")
-        parts = [one.ids.array() for one in scene.bundles(layer.id) if one.name in names]
-        self._app.exports.export_ids(layer.id, np.unique(np.concatenate(parts)), suffix, names[0])
-
-
-CLUSTERS = 50
+        self._app.exports.export_ids(layer.id, self.chosen_ids(), suffix, self._checked[0])
 
 
 def build(app: Any) -> None:
@@ -146,9 +153,6 @@ def build(app: Any) -> None:
                     click=(bundles.add, f"['{what}']"), data_bundle=what,
                     disabled=("!bundles.selected",) if what == "selected" else False,
                 )  # fmt: skip
-            v3.VBtn("Clusters", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                    title="Bundles of streamlines that run alike, 10 mm apart at most",
-                    click=(bundles.cluster, "['10']"), data_bundle="clusters")  # fmt: skip
         html.Div(
             "No bundles yet. Make one of what is selected, or of what filters and regions leave.",
             v_if="!bundles.rows.length", classes="pv-small px-3 pt-2",
@@ -164,22 +168,8 @@ def build(app: Any) -> None:
                     color=("bundles.coloured ? 'primary' : undefined",),
                     click=(bundles.colour, "[!bundles.coloured]"),
                 )  # fmt: skip
-            with html.Div(v_for="b in bundles.rows", key="b.name", classes="pv-pair px-2", data_bundle_row=("b.name",)):
-                eye("b.visible", click=(bundles.set, "[b.name, 'visible', !b.visible]"), data_action="eye")
-                html.Input(
-                    type="color", classes="pv-colour", style="width: 22px; height: 22px", value=("b.color",),
-                    aria_label="Colour", change=(bundles.set, "[b.name, 'color', $event.target.value]"),
-                )  # fmt: skip
-                html.Input(
-                    classes="pv-num", style="flex: 1; width: auto; border-color: transparent", value=("b.name",),
-                    maxlength=120, change=(bundles.set, "[b.name, 'name', $event.target.value]"),
-                    aria_label="Name of the bundle", data_field="name", title=("b.name",),
-                )  # fmt: skip
-                html.Span("{{ b.count }}", classes="pv-small", data_value="count")
-                v3.VCheckbox(
-                    model_value=("b.order > 0",), density="compact", hide_details=True, style="flex: none",
-                    update_modelValue=(bundles.check, "[b.name, !!$event]"), aria_label=("'Choose ' + b.name",),
-                )  # fmt: skip
+            with html.Div(style="max-height: 42vh; overflow: hidden auto", id="bundle-list"):
+                _rows(bundles)
             html.Div("{{ bundles.more }}", v_if="bundles.more", classes="pv-small px-3")
             with html.Div(
                 v_if="bundles.checked", classes="px-3 pt-2", style="display: flex; flex-wrap: wrap; gap: 4px",
@@ -197,7 +187,41 @@ def build(app: Any) -> None:
                     )  # fmt: skip
                 v3.VBtn("Export…", size="x-small", variant="tonal", classes="text-none", id="export-bundles",
                         data_bundle_act="export")  # fmt: skip
+                for by, icon, hint in ((-1, "mdi-arrow-up", "Up the list"), (1, "mdi-arrow-down", "Down the list")):
+                    with v3.VBtn(icon=True, size="x-small", variant="tonal", aria_label=hint, title=hint,
+                                 click=(bundles.move, f"[{by}]"), data_bundle_move=by):  # fmt: skip
+                        v3.VIcon(icon, size=16)
                 with v3.VMenu(activator="#export-bundles"), v3.VList(density="compact"):
                     for suffix in EXPORTS:
                         v3.VListItem(title=suffix, click=(bundles.export, f"['{suffix}']"),
                                      data_bundle_export=suffix)  # fmt: skip
+        bundle_finding.build(app)
+        bundle_measures.build(app)
+
+
+def _rows(bundles: BundleActions) -> None:
+    """Build a row for each bundle."""
+    with html.Div(
+        v_for="b in bundles.rows", key="b.name", classes="pv-pair px-2", data_bundle_row=("b.name",),
+        v_on_dragover_prevent="", v_on_drop_prevent=(
+            bundles.drop, "[$event.dataTransfer.getData('text/plain'), b.name]"),
+    ):  # fmt: skip
+        html.Span(
+            "⠿", draggable="true", classes="pv-grip", title="Drag to another place of the list",
+            v_on_dragstart="$event.dataTransfer.setData('text/plain', b.name)", data_action="grip",
+        )  # fmt: skip
+        eye("b.visible", click=(bundles.set, "[b.name, 'visible', !b.visible]"), data_action="eye")
+        html.Input(
+            type="color", classes="pv-colour", style="width: 22px; height: 22px", value=("b.color",),
+            aria_label="Colour", change=(bundles.set, "[b.name, 'color', $event.target.value]"),
+        )  # fmt: skip
+        html.Input(
+            classes="pv-num", style="flex: 1; width: auto; border-color: transparent", value=("b.name",),
+            maxlength=120, change=(bundles.set, "[b.name, 'name', $event.target.value]"),
+            aria_label="Name of the bundle", data_field="name", title=("b.name",),
+        )  # fmt: skip
+        html.Span("{{ b.count }}", classes="pv-small", data_value="count")
+        v3.VCheckbox(
+            model_value=("b.order > 0",), density="compact", hide_details=True, style="flex: none",
+            update_modelValue=(bundles.check, "[b.name, !!$event]"), aria_label=("'Choose ' + b.name",),
+        )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 
 import numpy as np
@@ -36,6 +37,25 @@ def histogram_chart(counts: ArrayLike) -> str:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Band:
+    """A mean with its band along streamlines.
+
+    Attributes
+    ----------
+    name, color : str
+        What it is of, and how it is drawn.
+    mean, low, high : numpy.ndarray, shape (n,)
+        Values; those that are not finite leave a gap.
+    """
+
+    name: str
+    color: str
+    mean: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
 def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: ArrayLike, title: str = "value") -> str:
     """Return a mean with its band along streamlines.
 
@@ -48,11 +68,18 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
     title : str
         What the values are, with their unit: the title of their axis.
     """
-    x, y, below, above = (np.asarray(values, np.float64) for values in (positions, mean, low, high))
-    fine = np.isfinite(y) & np.isfinite(below) & np.isfinite(above)
-    if not fine.any():
+    y, below, above = (np.asarray(values, np.float64) for values in (mean, low, high))
+    return profiles_chart(positions, [Band(title, COLOURS[0], y, below, above)], title)
+
+
+def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "value") -> str:
+    """Return several means with their bands over the same places; see :func:`profile_chart`."""
+    x = np.asarray(positions, np.float64)
+    fine = [np.isfinite(one.mean) & np.isfinite(one.low) & np.isfinite(one.high) for one in bands]
+    if not any(some.any() for some in fine):
         return ""
-    least, most = float(below[fine].min()), float(above[fine].max())
+    least = min(float(one.low[some].min()) for one, some in zip(bands, fine, strict=True) if some.any())
+    most = max(float(one.high[some].max()) for one, some in zip(bands, fine, strict=True) if some.any())
     reach = (most - least) or 1.0
     width, height, left, bottom = 290.0, 146.0, 58.0, 30.0
     named = escape(title if len(title) <= 24 else f"{title[:23]}…")
@@ -63,9 +90,18 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
     def down(values: ArrayLike) -> np.ndarray:
         return height - bottom - (np.asarray(values) - least) / reach * (height - bottom - 6.0)
 
-    edge = np.concatenate([np.c_[across(x[fine]), down(above[fine])], np.c_[across(x[fine]), down(below[fine])][::-1]])
-    band = " ".join(f"{a:.1f},{b:.1f}" for a, b in edge)
-    line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(across(x[fine]), down(y[fine]), strict=True))
+    def drawn(one: Band, some: np.ndarray) -> str:
+        edge = np.concatenate(
+            [np.c_[across(x[some]), down(one.high[some])], np.c_[across(x[some]), down(one.low[some])][::-1]]
+        )
+        color = escape(one.color)
+        return (
+            f'<polygon points="{_points(edge)}" fill="{color}" opacity=".3"/>'
+            f'<polyline points="{_points(np.c_[across(x[some]), down(one.mean[some])])}" fill="none" stroke="{color}" '
+            'stroke-width="1.8"/>'
+        )
+
+    lines = "".join(drawn(one, some) for one, some in zip(bands, fine, strict=True))
     ticks = "".join(_label(left - 4.0, float(down(value)) + 4.0, f"{value:.3g}", "end") for value in (least, most))
     ends = "".join(
         _label(float(across(share)), height - 17.0, text, anchor)
@@ -86,15 +122,27 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
     step = (width - left - 6.0) / max(len(x) - 1, 1)
     told = "".join(
         f'<rect x="{float(across(a)) - step / 2:.1f}" y="0" width="{step:.2f}" height="{height - bottom:g}" '
-        f'fill="transparent">'
-        f"<title>{100.0 * a:.0f} % of the way: {named} {b:.4g} ({low:.4g} to {high:.4g})</title></rect>"
-        for a, b, low, high in zip(x[fine], y[fine], below[fine], above[fine], strict=True)
+        f'fill="transparent"><title>{100.0 * a:.0f} % of the way: {_told(bands, fine, k)}</title></rect>'
+        for k, a in enumerate(x)
+        if any(some[k] for some in fine)
     )
     return (
         f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="profile">'
-        f'<polygon points="{band}" fill="{COLOURS[0]}" opacity=".3"/>'
-        f'<polyline points="{line}" fill="none" stroke="{COLOURS[0]}" stroke-width="1.8"/>'
-        f"{axes}{ticks}{ends}{told}</svg>"
+        f"{lines}{axes}{ticks}{ends}{told}</svg>"
+    )
+
+
+def _points(places: np.ndarray) -> str:
+    return " ".join(f"{a:.1f},{b:.1f}" for a, b in places)
+
+
+def _told(bands: Sequence[Band], fine: Sequence[np.ndarray], place: int) -> str:
+    """Return the values at a place, for people."""
+    return ", ".join(
+        f"{escape(one.name if len(one.name) <= 24 else f'{one.name[:23]}…')} {one.mean[place]:.4g} "
+        f"({one.low[place]:.4g} to {one.high[place]:.4g})"
+        for one, some in zip(bands, fine, strict=True)
+        if some[place]
     )
 
 

@@ -1,4 +1,4 @@
-"""What the tab Selection shows, as CSV: every number in full, every name as text."""
+"""What the page shows in tables, as CSV: every number in full, every name as text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pvfiblets.web.scene import Scene
 
-__all__ = ["MOST_ROWS", "profile_csv", "selection_csv"]
+__all__ = ["MOST_ROWS", "profile_csv", "selection_csv", "table_text"]
 
 MOST_ROWS = 100_000
 PIECE = 5000
@@ -56,9 +56,16 @@ def profile_csv(profile: Mapping[str, Any], title: str) -> str:
     )
 
 
-def _written(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+def table_text(table: Mapping[str, Any], *, tabs: bool = False) -> str:
+    """Return columns by name as CSV, or with tabs between; missing numbers are empty."""
+    columns = [column.tolist() for column in table.values()]
+    rows = ([None if value != value else value for value in row] for row in zip(*columns, strict=True))
+    return _written(list(table), rows, "\t" if tabs else ",")
+
+
+def _written(head: Sequence[str], rows: Iterable[Sequence[Any]], between: str = ",") -> str:
     file = io.StringIO(newline="")
-    writer = csv.writer(file)
+    writer = csv.writer(file, delimiter=between)
     writer.writerow([_cell(title) for title in head])
     writer.writerows([_cell(value) for value in row] for row in rows)
     return file.getvalue()

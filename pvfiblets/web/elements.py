@@ -16,7 +16,9 @@ from trame.widgets import vuetify3 as _vuetify
 __all__ = ["eye", "html", "v3"]
 
 PASSED_ON = ("data_", "aria_")
-PLAIN = frozenset({"accept", "autofocus", "download", "hidden", "inputmode", "maxlength", "role", "tabindex", "type"})
+PLAIN = frozenset(
+    {"accept", "autofocus", "download", "draggable", "hidden", "inputmode", "maxlength", "role", "tabindex", "type"}
+)
 
 
 class Elements:

@@ -92,6 +92,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-num:focus { outline: 2px solid rgb(var(--v-theme-primary)); outline-offset: -1px }
 .pv-colour { width: 44px; height: 26px; padding: 0; border: 1px solid rgba(128,128,128,.5); border-radius: 4px;
   background: none }
+.pv-grip { cursor: grab; opacity: .45; font-size: 13px; user-select: none }
 .pv-pair { display: flex; gap: 6px; align-items: center; min-width: 0 }
 .pv-chart { margin: 0 6px } /* as wide as the slider below, so that its thumbs point at bars */
 .pv-chart svg { width: 100%; height: 36px; display: block }

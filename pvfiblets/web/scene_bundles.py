@@ -90,14 +90,37 @@ class SceneBundles:
         self._put(layer, (*there, made), f"bundle {given}")
         return made
 
-    def add_clusters(self, layer_id: str, clusters: Sequence[Any]) -> None:
-        """Add a bundle for each of some arrays of streamlines, in one step."""
+    def add_bundles(self, layer_id: str, groups: Mapping[str, Any], what: str) -> list[Bundle]:
+        """Add a bundle for each of some arrays of streamlines by name, in one step; names get a number where need be.
+
+        Raises
+        ------
+        ValueError
+            If one has no streamlines, or one that the set does not have.
+        """
         layer, there = self._lines(layer_id), list(self.bundles(layer_id))
-        colours = distinct_colours(len(there) + len(clusters))
-        for number, ids in enumerate(clusters, 1):
-            name = free_name(f"cluster {number}", [one.name for one in there])
-            there.append(Bundle(name, Ids.of(ids), hex_colour(colours[len(there)])))
-        self._put(layer, tuple(there), f"{len(clusters)} clusters")
+        colours, total = distinct_colours(len(there) + len(groups)), self.data(layer).data.n_streamlines
+        made: list[Bundle] = []
+        for name, given in groups.items():
+            ids = Ids.of(given)
+            if not len(ids):
+                raise ValueError(f"the bundle {shown(name)} has no streamlines")
+            if ids.highest >= total:
+                raise ValueError(f"streamline {ids.highest} is asked for, of {total}")
+            free = free_name(text(name, "name of a bundle", LONGEST), [one.name for one in there])
+            made.append(Bundle(free, ids, hex_colour(colours[len(there)])))
+            there.append(made[-1])
+        self._put(layer, tuple(there), what)
+        return made
+
+    def move_bundles(self, layer_id: str, names: Sequence[str], to: int) -> None:
+        """Put bundles together, in the order in which they are listed, to a place of the list from 0 on."""
+        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        moved = {id(named(there, name, "bundle")) for name in names}
+        first = [one for one in there if id(one) not in moved]
+        at = min(max(to, 0), len(first))
+        ordered = (*first[:at], *(one for one in there if id(one) in moved), *first[at:])
+        self._put(layer, ordered, f"order of {len(moved)} bundle(s)")
 
     def set_bundle(self, layer_id: str, bundle: str, /, **changes: Any) -> Bundle:
         """Change a bundle's ``name``, ``color`` or ``visible``."""

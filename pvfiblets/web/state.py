@@ -37,6 +37,9 @@ class Page:
     brush: float = 3.0  # radius, mm
     brush_deep: bool = False  # beyond the slice
     painting_name: str = ""
+    like_mm: str = "8"  # distances of the tab Bundles, as they were typed
+    cluster_mm: str = "10"
+    models_folder: str = ""
 
     toast_number: int = 0  # of the sentence: pages remember which they have shown
     layers: list[Record] = field(default_factory=list)
@@ -63,6 +66,10 @@ class Page:
     placing_name: str = ""
     selection: Record = field(default_factory=dict)
     bundles: Record = field(default_factory=lambda: {"layer": "", "rows": []})
+    finding: Record = field(default_factory=lambda: {"open": False, "folders": [], "dipy": False})
+    measures: Record = field(
+        default_factory=lambda: {"open": False, "values": [], "value": "", "profile": {}, "table": {}}
+    )
     painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
     slicing: Record = field(default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": ""})
     info: list[Record] = field(default_factory=list)
@@ -102,6 +109,9 @@ WRITABLE: dict[str, type] = {
     "brush": float,
     "brush_deep": bool,
     "painting_name": str,
+    "like_mm": str,
+    "cluster_mm": str,
+    "models_folder": str,
 }
 """Fields that browsers may write, and their types."""
 

@@ -6,6 +6,9 @@ import asyncio
 import contextlib
 from types import SimpleNamespace
 
+from pvfiblets.web.bundle_finding import FindingActions
+from pvfiblets.web.bundle_measures import MeasureActions
+from pvfiblets.web.bundles_tab import BundleActions
 from pvfiblets.web.clip_tab import CutActions
 from pvfiblets.web.confined import Confined
 from pvfiblets.web.describe import Charts
@@ -37,7 +40,15 @@ class Desk:
         self.cuts = CutActions(self)
         self.regions = RegionActions(self)
         self.filtering = FilterActions(self, Charts(scene))
+        self.bundles = BundleActions(self)
+        self.finding = FindingActions(self)
+        self.measuring = MeasureActions(self)
         self.tasks = []
+
+    def choose(self, layer):
+        """Make a layer the one that the panels are about."""
+        self.page.chosen, self.page.chosen_kind = layer.id, layer.kind
+        return layer.id
 
     def say(self, text, kind="info"):
         self.said.append((kind, text))
