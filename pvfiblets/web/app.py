@@ -147,6 +147,7 @@ class Explorer(TrameApp):
             "slide": self.sliders.slide,
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
+            "step_volume": self.slices.step_volume,
             "paint": self.painting.paint,
             "paint_end": self.painting.end,
             "release": self.sliders.release,

@@ -31,6 +31,7 @@ __all__ = [
     "free_name",
     "named",
     "volume_in",
+    "volumes_of",
 ]
 
 KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")
@@ -145,6 +146,16 @@ def volume_in(setting: Any) -> Source | None:
         return None
     named = setting["volume"]
     return Source(named.get("path"), named.get("demo"), named.get("size", 0))
+
+
+VOLUME_SETTINGS = ("scalars", "modulate")
+"""Settings that may name a volume: what colours lines, and what directions of an image are as bright as."""
+
+
+def volumes_of(settings: Mapping[str, Any]) -> dict[str, Source]:
+    """Return the volumes that settings of a layer name, by setting."""
+    found = {name: volume_in(settings.get(name)) for name in VOLUME_SETTINGS}
+    return {name: source for name, source in found.items() if source is not None}
 
 
 @dataclass(frozen=True)
@@ -320,8 +331,7 @@ class State:
 
     def sources(self) -> set[tuple[str, Source]]:
         """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
-        volumes = (volume_in(layer.settings.get("scalars")) for layer in self.layers)
-        coloured = {("colours", source) for source in volumes if source is not None}
+        coloured = {("colours", source) for layer in self.layers for source in volumes_of(layer.settings).values()}
         return coloured | {(layer.kind, layer.source) for layer in self.layers}
 
 

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from pvfiblets.errors import FormatError
 from pvfiblets.slices.image import SliceImage, as_slice_image
 from pvfiblets.slices.labels import LabelTable, as_label_table
+from pvfiblets.volumes.image_files import SUFFIXES
 
-__all__ = ["LabelledImage", "facts_of", "read_image", "with_table"]
+__all__ = ["LabelledImage", "facts_of", "read_image", "table_beside", "with_table"]
 
 LARGEST = 4 << 20  # bytes of a table
+BESIDE = (".tsv", ".ctab", ".label", ".lbl")
+"""Suffixes of tables that are taken without being asked for: BIDS lays them beside its images under the same name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +52,24 @@ def with_table(image: LabelledImage, place: Path) -> LabelledImage:
     if place.stat().st_size > LARGEST:
         raise ValueError(f"{place.name} has {place.stat().st_size:,} bytes; tables of labels have {LARGEST:,} at most")
     return replace(image, table=as_label_table(place))
+
+
+def table_beside(image: SliceImage, place: Path) -> Path | None:
+    """Return the table that lies beside a file of labels under its name; None if none does, or these are no labels."""
+    name = place.name[: -len(max((one for one in SUFFIXES if place.name.lower().endswith(one)), key=len, default=""))]
+    if image.n_volumes != 1 or not name:
+        return None
+    if image.values.dtype.kind == "f":
+        some = image.values.ravel(order="K")[:: max(1, image.values.size // 100_000)]
+        if not (np.isfinite(some) & (some == np.rint(some))).all():
+            return None
+    for suffix in BESIDE:
+        found = place.with_name(name + suffix)
+        with contextlib.suppress(FormatError, OSError):
+            if found.is_file() and found.stat().st_size <= LARGEST:
+                as_label_table(found)
+                return found
+    return None
 
 
 def facts_of(image: LabelledImage) -> dict[str, Any]:

@@ -140,6 +140,9 @@ IMAGE = _table(
     {
         "interpolation": [own(MEANING, "choice", "Numbers are", "What the numbers of the image mean.", "Drawing",
                               "scalars", choices=_meanings, resets=("clim", "below", "above", "index"))],
+        "cmap": [own("modulate", "choice", "Bright by", "An image by whose values directions are bright, such as FA.",
+                     choices=[(None, "nothing")], volumes=True, resets=("clim",),
+                     matters=lambda settings: settings[MEANING] == "direction")],
     },
 )  # fmt: skip
 

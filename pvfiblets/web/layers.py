@@ -106,7 +106,8 @@ def beginning(kind: str, data: Any) -> dict[str, Any]:
     """Return the settings that a new layer of some data begins with."""
     found = defaults(kind)
     if kind == "image":
-        found[MEANING] = "labels" if data.is_labels else "rgb" if data.is_colours else "scalars"
+        labels = data.is_labels or data.table is not None
+        found[MEANING] = "labels" if labels else "rgb" if data.is_colours else "scalars"
     if kind == "volume" and (window := _window(data)) is not None:
         found["clim"] = check(kind, "clim", list(window), data)
     return found

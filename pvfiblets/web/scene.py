@@ -28,7 +28,7 @@ from pvfiblets.web.document import (
     State,
     as_volume_choice,
     free_name,
-    volume_in,
+    volumes_of,
 )
 from pvfiblets.web.layer_queries import LayerQueries
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
@@ -231,9 +231,10 @@ class Scene(
     def _draw_image(self, layer: Layer, drawn: _Drawn | None) -> None:
         data = self.data(layer).data
         if drawn is None:
-            self._drawn[layer.id] = _Drawn(self.slicing.add(layer, data), layer, ())
+            self._drawn[layer.id] = _Drawn(self.slicing.add(layer, data, self.store.colours), layer, ())
         elif drawn.layer is not layer:
-            self._drawn[layer.id] = _Drawn(self.slicing.look(drawn.actor, drawn.layer, layer, data), layer, ())
+            image = self.slicing.look(drawn.actor, drawn.layer, layer, data, self.store.colours)
+            self._drawn[layer.id] = _Drawn(image, layer, ())
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
         try:
@@ -259,12 +260,19 @@ class Scene(
         return self.store.shape(kind, path)
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
-        """Return what colours a layer by a volume, and how that is called: the scene's volumes, and its present one."""
+        """Return what colours a layer by a volume, and how that is called: the scene's volumes, and its present one.
+
+        Of images of slices, the scene's other images of one number per voxel, too.
+        """
         named = {other.source: other.name for other in self.layers if other.kind == "volume"}
-        present = volume_in(layer.settings.get("scalars"))
-        if present is not None and present not in named:
-            named[present] = f"demo {present.demo}" if present.path is None else Path(present.path).name
-        return [(as_volume_choice(source), f"volume {name}") for source, name in named.items()]
+        if layer.kind == "image":
+            others = [other for other in self.layers if other.kind == "image" and other.id != layer.id]
+            named |= {one.source.bare: one.name for one in others if self.data(one).data.n_volumes == 1}
+        for present in volumes_of(layer.settings).values():
+            if present not in named:
+                named[present] = f"demo {present.demo}" if present.path is None else Path(present.path).name
+        word = "" if layer.kind == "image" else "volume "
+        return [(as_volume_choice(source), f"{word}{name}") for source, name in named.items()]
 
     # Layers -------------------------------------------------------------------------------------
 
@@ -287,7 +295,7 @@ class Scene(
                 f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
             )
         place = self.files.resolve(path)
-        return self.files.load(Source(self.files.name(place)), kind, progress, cancel)
+        return self.with_names(self.files.load(Source(self.files.name(place)), kind, progress, cancel))
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""

@@ -31,6 +31,18 @@ class SceneSlices:
         layer: Callable[[str], Layer]
         _change: Callable[..., None]
 
+    def with_names(self, loaded: Loaded) -> Loaded:
+        """Return an image of labels with the table that lies beside its file, if one does; all else as it is."""
+        if loaded.kind != "image" or loaded.source.path is None or loaded.source.values:
+            return loaded
+        from pvfiblets.web.label_images import table_beside
+
+        beside = table_beside(loaded.data, self.files.resolve(loaded.source.path))
+        if beside is None:
+            return loaded
+        name = self.files.name(self.files.resolve(self.files.name(beside)))
+        return self.files.with_values(loaded, (name,))
+
     def load_labels(self, layer_id: str, path: str | Path) -> Loaded:
         """Read names and colours of an image's labels, for :meth:`name_labels`; may run in a thread of its own."""
         layer = self.layer(layer_id)

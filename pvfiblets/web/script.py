@@ -17,7 +17,7 @@ from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.distance_label import LABELS, NEAREST
 from pvfiblets.web.distance_label import LINES as LINE_LOOKS
-from pvfiblets.web.document import LINES, Clip, Layer, Source
+from pvfiblets.web.document import LINES, Clip, Layer, Source, volumes_of
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import Python, code
 from pvfiblets.web.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
@@ -169,6 +169,8 @@ class _Writer:
         name, usual, meaning = self._names[layer.id], layers.USUAL["image"], layer.settings[MEANING]
         said = {key: value for key, value in looks.items() if usual[key] != value}
         arguments = image_arguments(layer, meaning, self._file) | said
+        if meaning == "direction" and (weights := volumes_of(layer.settings).get("modulate")) is not None:
+            arguments["modulate"] = Python(self._image_source(replace(layer, source=weights)))
         if self._sliced:
             self._call(f"{name} = workspace.slices.add", self._image_source(layer), arguments)
         else:

@@ -32,7 +32,8 @@ from pvfiblets.web.document import (
     Source,
     State,
     as_volume_choice,
-    volume_in,
+    VOLUME_SETTINGS,
+    volumes_of,
 )
 from pvfiblets.web.painting import as_json, check_painting
 from pvfiblets.web.scene_bundles import check_bundles
@@ -243,8 +244,8 @@ def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
     if source.ids is not None:
         found["source"]["ids"] = source.ids.runs.ravel().tolist()
     found["settings"] = dict(layer.settings)
-    if (volume := volume_in(layer.settings.get("scalars"))) is not None:
-        found["settings"]["scalars"] = {"volume": _place_of(volume, path_of)}
+    for name, volume in volumes_of(layer.settings).items():
+        found["settings"][name] = {"volume": _place_of(volume, path_of)}
     if layer.filters.active:
         found["filters"] = _filters_to_dict(layer.filters, shape_of)
     if layer.selected is not None:
@@ -353,7 +354,7 @@ class _Reading:
         """Return the one volume that a setting names, as a choice; none if it names none."""
         if not isinstance(setting, Mapping):
             return []
-        mapping(setting, "scalars", ("volume",))
+        mapping(setting, "volume of a setting", ("volume",))
         source = _source_from_dict(setting["volume"], self.paths)
         if source.ids is not None or source.values:
             raise ValueError("a volume that colours lines has ids or values; volumes have no streamlines")
@@ -380,7 +381,7 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
         if name == "scalars" and setting == "group" and reading.bundles.get(source):
             settings[name] = setting  # of bundles that come with the session
             continue
-        volumes = reading.volume(setting) if name == "scalars" else []
+        volumes = reading.volume(setting) if name in VOLUME_SETTINGS else []
         settings[name] = layers.check(kind, name, volumes[0][0] if volumes else setting, data, volumes)
     layer = replace(layer, settings=settings)
     if kind not in LINES:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web import painting_tab
+from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
@@ -39,7 +40,8 @@ class SliceActions(Actions):
         workspace, page = app.scene.slicing.workspace, app.page
         volumes = [layer.name for layer in app.scene.layers if layer.kind == "volume"]
         if workspace is None:
-            page.slicing = {"shown": False, "layout": "3d", "boxes": [], "volume": volumes[-1] if volumes else ""}
+            volume = volumes[-1] if volumes else ""
+            page.slicing = {"shown": False, "layout": "3d", "boxes": [], "volume": volume, "series": []}
             return
         view = app.scene.slicing.view
         values = workspace.slices.values()
@@ -49,8 +51,17 @@ class SliceActions(Actions):
             "position": [f"{part:.1f}" for part in view.position or ()],
             "voxel": [str(part) for part in workspace.voxel or ()],
             "values": [[name, _told(value)] for name, value in values.items() if value != (0, "0")],
-            "boxes": app.scene.slicing.boxes(), "volume": "",
+            "boxes": app.scene.slicing.boxes(), "volume": "", "series": self._series(),
         }  # fmt: skip
+
+    def _series(self) -> list[dict[str, Any]]:
+        """Return the images of several volumes, of which one is shown: times, directions, components."""
+        scene, found = self._app.scene, []
+        for layer in scene.layers:
+            last = scene.data(layer).data.n_volumes - 1 if layer.kind == "image" else 0
+            if last and layer.settings[MEANING] in ("scalars", "labels"):
+                found.append({"id": layer.id, "name": layer.name, "index": layer.settings["index"], "last": last})
+        return found
 
     # What is done
 
@@ -89,7 +100,7 @@ class SliceActions(Actions):
             raise ValueError(f"{layer.name!r} is of kind {layer.kind}; slices are of volumes")
         source = layer.source
         loaded = await app.files.beside(
-            layer.name, lambda *_: app.scene.files.load(source, "image"), "reading", cancellable=False
+            layer.name, lambda *_: app.scene.with_names(app.scene.files.load(source, "image")), "reading", cancellable=False
         )
         found = app.scene.add(loaded, name=layer.name)
         app.scene.show(layer.id, False)
@@ -145,6 +156,16 @@ class SliceActions(Actions):
             place[axis] = value
             workspace.position = place
         self._changed()
+
+    def step_volume(self, by: Any) -> None:
+        """Show the next volume of the chosen image, or of the first that has several; the one before by -1."""
+        app = self._app
+        series = self._series()
+        found = next((one for one in series if one["id"] == app.page.chosen), series[0] if series else None)
+        if found is None:
+            raise ValueError("no image has several volumes")
+        wanted = found["index"] + round(number(by, -MOST_STEP, MOST_STEP))
+        app.scene.set(found["id"], "index", min(max(wanted, 0), found["last"]))
 
     def step(self, x: Any, y: Any, right: Any, up: Any, toward: Any) -> None:
         """Move the cross-hair by voxels of the pane in a place of the picture, in shares from its upper left."""
@@ -255,6 +276,23 @@ def build(app: Any) -> None:
         with html.Div(v_for="(row, i) in slicing.values", key="i", classes="pv-row", data_under=("row[0]",)):
             html.Label("{{ row[0] }}", classes="text-truncate", title=("row[0]",))
             html.Div("{{ row[1] }}", classes="pv-value")
+        with html.Div(v_for="s in slicing.series", key="s.id", classes="pv-row", data_series=("s.name",)):
+            html.Label("{{ slicing.series.length > 1 ? s.name : 'Volume' }}", classes="text-truncate", title=(
+                "s.name + ': which of its volumes is shown (comma, full stop)'",))
+            with html.Div(classes="pv-pair"):
+                v3.VSlider(
+                    model_value=("s.index",), min=0, max=("s.last",), step=1, density="compact", hide_details=True,
+                    color="primary", thumb_size=14, track_size=3, aria_label=("'Volume of ' + s.name",),
+                    end=(app.set_property, "[s.id, 'index', $event]"),
+                    data_live=("JSON.stringify(['property', s.id, 'index'])",),
+                )  # fmt: skip
+                held = "held.at === 'property ' + s.id + ' index'"
+                html.Input(
+                    classes="pv-num", style="width: 46px", inputmode="numeric", aria_label=("s.name + ', volume'",),
+                    value=(f"{held} ? held.shown[0] : s.index",), data_field="volume",
+                    change=(app.set_number, "[s.id, 'index', $event.target.value]"),
+                )  # fmt: skip
+                html.Span("of {{ s.last }}", classes="pv-small", style="white-space: nowrap")
         painting_tab.build(app)
         html.Div("Panes", classes="pv-head")
         with html.Div(classes="pv-row"):

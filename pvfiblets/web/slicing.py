@@ -12,11 +12,12 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.slices.settings import MEANING
-from pvfiblets.web.document import Layer
+from pvfiblets.web.document import Layer, volume_in
 from pvfiblets.web.layers import looks
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
 
 if TYPE_CHECKING:
+    from pvfiblets.web.actors import Colours
     from pvfiblets.web.label_images import LabelledImage
 
 __all__ = ["CONVENTIONS", "LAYOUTS", "NAMES", "SliceView", "Slicing", "check_view", "ready_views"]
@@ -34,6 +35,9 @@ LAYOUTS = {
 CONVENTIONS = ("radiological", "neurological")
 NAMES = ("axial", "coronal", "sagittal", "3d")
 """Views in the order of the plotter's renderers."""
+
+WEIGHTS = "modulate"
+"""The setting that names the image which a direction-coded one is as bright as."""
 
 _THICKEST = 1000.0  # mm
 
@@ -180,10 +184,16 @@ class Slicing:
 
     # Layers
 
-    def add(self, layer: Layer, image: LabelledImage) -> Any:
-        """Show an image above those that are there; return its layer of the stack."""
+    def add(self, layer: Layer, image: LabelledImage, colours: Colours) -> Any:
+        """Show an image above those that are there; return its layer of the stack.
+
+        ``colours`` gives the image that a direction-coded one is as bright as.
+        """
         meaning = layer.settings[MEANING]
         made = {"kind": meaning, "labels": image.table if meaning == "labels" else None}
+        weights = volume_in(layer.settings[WEIGHTS])
+        if meaning == "direction" and weights is not None:
+            made["modulate"] = colours(weights)
         made |= looks(layer.kind, layer.settings)
         if self.workspace is None:
             self.workspace = self._plotter.slices.workspace(
@@ -198,7 +208,7 @@ class Slicing:
         self._call(found, layer)
         return found
 
-    def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage) -> Any:
+    def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage, colours: Colours) -> Any:
         """Bring an image in step with its layer; return its layer of the stack, which may be another one.
 
         Raises
@@ -206,8 +216,8 @@ class Slicing:
         ValueError
             If a value is refused; all is as it was.
         """
-        if old.settings[MEANING] != new.settings[MEANING]:
-            found = self.add(new, data)
+        if any(old.settings[name] != new.settings[name] for name in (MEANING, WEIGHTS)):
+            found = self.add(new, data, colours)
             self.workspace.slices.remove_layer(image)
             return found
         before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)

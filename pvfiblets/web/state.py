@@ -71,7 +71,9 @@ class Page:
         default_factory=lambda: {"open": False, "values": [], "value": "", "profile": {}, "table": {}}
     )
     painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
-    slicing: Record = field(default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": ""})
+    slicing: Record = field(
+        default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": "", "series": []}
+    )
     info: list[Record] = field(default_factory=list)
     frame: str = ""
 

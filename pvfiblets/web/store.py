@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from pvfiblets.web.document import LINES, Layer, Source, State, volume_in
+from pvfiblets.web.document import LINES, Layer, Source, State, volumes_of
 from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 
 __all__ = ["Store"]
@@ -74,8 +74,7 @@ class Store:
                     raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
                 loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
             self.loaded[key] = loaded
-        volume = volume_in(layer.settings.get("scalars"))
-        if volume is not None:
+        for volume in volumes_of(layer.settings).values():
             self.colours(volume, progress, cancel)
         return self.loaded[key]
 

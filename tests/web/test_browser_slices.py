@@ -161,3 +161,23 @@ def test_a_bundle_is_made_named_exported_and_kept(visit):
     here.ready()
     assert names() == ["near", "far", "<b>shown</b>"]
     assert here.page.locator("[data-bundle-row] [data-field=name]").nth(2).input_value() == "<b>shown</b>"
+
+
+def test_volumes_of_a_series_are_gone_through(visit):
+    import nibabel
+
+    here = visit("lines.fiblets")
+    series = np.stack([np.full((8, 8, 8), 10.0 * k, np.float32) for k in range(5)], axis=-1)
+    nibabel.save(nibabel.Nifti1Image(series, np.diag([8.0, 8.0, 8.0, 1.0])), here.served.root / "bold.nii.gz")
+    sliced(here, "bold.nii.gz")
+    index = lambda: here.state("slicing")["series"][0]["index"]  # noqa: E731
+    here.page.locator("[data-series='bold.nii.gz'] [role=slider]").focus()
+    here.press("ArrowRight")
+    here.wait(lambda: index() == 1, "the second volume")
+    here.page.evaluate("document.activeElement.blur()")
+    here.press(".")
+    here.wait(lambda: index() == 2, "the third volume")
+    here.page.fill("[data-series] [data-field=volume]", "4")
+    here.press("Enter")
+    under = here.page.locator("[data-under='bold.nii.gz'] .pv-value")
+    here.wait(lambda: under.inner_text() == "40", "the last volume's value under the cross-hair")

@@ -174,3 +174,49 @@ def test_an_image_of_colours_and_one_of_several_volumes(scene, folder):
         scene.set(image.id, "index", 3)
     scene.set(image.id, "meaning", "direction")
     assert scene.slicing.workspace.slices.layers[0].kind == "direction"
+
+
+def test_directions_are_as_bright_as_another_image_of_the_scene(scene, folder):
+    affine = np.diag([4.0, 4.0, 4.0, 1.0])
+    vectors = np.zeros((16, 16, 16, 3), np.float32)
+    vectors[..., 0] = -1.0
+    fa = np.full((16, 16, 16), 0.5, np.float32)
+    nibabel.save(nibabel.Nifti1Image(vectors, affine), folder / "v1.nii.gz")
+    nibabel.save(nibabel.Nifti1Image(fa, affine), folder / "fa.nii.gz")
+    weights = scene.open("fa.nii.gz", "image")
+    image = scene.open("v1.nii.gz")
+    assert image.kind == "image"
+    history = History(scene)
+    scene.set(image.id, "meaning", "direction")
+    choices = {one["name"]: one for one in scene.properties(image.id)}["modulate"]["choices"]
+    value = next(one["value"] for one in choices if one["title"] == "fa.nii.gz")
+    scene.set(image.id, "modulate", value)
+    scene.set(image.id, "clim", [0.0, 1.0])
+    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False, layout="axial")
+    picture = scene.screenshot()
+    assert (abs(picture[80, 120].astype(int) - [128, 0, 0]) <= 2).all()  # right to left is red, by half
+    scene.remove(weights.id)
+    assert (scene.screenshot()[80, 120] == picture[80, 120]).all()
+    kept = session.to_dict(scene)
+    text = as_script(scene, "found.png").replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    exec(compile(text.replace("'found.png'", repr(str(folder / "found.png"))), "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    while history.undo():
+        pass
+    assert scene.screenshot()[80, 120].tolist() != picture[80, 120].tolist()
+    session.from_dict(scene, kept)
+    assert (scene.screenshot()[80, 120] == picture[80, 120]).all()
+
+
+def test_a_table_beside_labels_is_taken_and_other_tables_are_not(scene, folder):
+    (folder / "atlas.tsv").write_text("index\tname\tcolor\n3\tputamen\t#ff0000\n5\tinsula\t#00ff00\n")
+    (folder / "head.tsv").write_text("index\tname\n1\tone\n")  # beside numbers that are no labels
+    atlas = scene.open("atlas.nii.gz", "image")
+    assert atlas.settings["meaning"] == "labels"
+    scene.set_slices(position=[2.0, 8.0, 8.0])
+    assert scene.slicing.workspace.values().images["atlas.nii.gz"] == (3, "putamen")
+    assert scene.open("head.nii.gz", "image").settings["meaning"] == "scalars"
+    (folder / "atlas.tsv").write_text("subject\tage\n1\t40\n")
+    scene.remove(atlas.id)
+    assert scene.open("atlas.nii.gz", "image").settings["meaning"] == "scalars"

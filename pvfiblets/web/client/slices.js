@@ -46,6 +46,7 @@
     if (event.key.toLowerCase() === "x") {
       call("set_layout", slicing?.layout === "beside" ? "3d" : "beside");
     } else if (STEPS[event.key] && slicing?.shown) step(STEPS[event.key]);
+    else if (/^[,.]$/.test(event.key) && slicing?.series?.length) call("step_volume", event.key === "." ? 1 : -1);
     else return;
     event.preventDefault();
     event.stopPropagation();
