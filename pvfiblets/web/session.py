@@ -24,6 +24,7 @@ from pvfiblets.web.cameras import check_camera
 from pvfiblets.web.document import (
     KINDS,
     LINES,
+    VOLUME_SETTINGS,
     Bundle,
     Clip,
     Filters,
@@ -32,7 +33,6 @@ from pvfiblets.web.document import (
     Source,
     State,
     as_volume_choice,
-    VOLUME_SETTINGS,
     volumes_of,
 )
 from pvfiblets.web.painting import as_json, check_painting

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.web import painting_tab
 from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.web import painting_tab
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
@@ -99,9 +99,9 @@ class SliceActions(Actions):
         if layer.kind != "volume":
             raise ValueError(f"{layer.name!r} is of kind {layer.kind}; slices are of volumes")
         source = layer.source
-        loaded = await app.files.beside(
-            layer.name, lambda *_: app.scene.with_names(app.scene.files.load(source, "image")), "reading", cancellable=False
-        )
+        scene = app.scene
+        work = lambda *_: scene.with_names(scene.files.load(source, "image"))  # noqa: E731
+        loaded = await app.files.beside(layer.name, work, "reading", cancellable=False)
         found = app.scene.add(loaded, name=layer.name)
         app.scene.show(layer.id, False)
         if not app.page.chosen or app.page.chosen == layer.id:
