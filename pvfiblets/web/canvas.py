@@ -11,7 +11,7 @@ from pvfiblets.query.painting.live import LiveRegions
 from pvfiblets.query.painting.painter import PaintedRegion, RegionPainter, Stroke
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.labels import LabelTable
-from pvfiblets.web.painting import Painting, Strokes, path_between
+from pvfiblets.web.painting import USES, Painting, Strokes, path_between
 
 if TYPE_CHECKING:
     from pvfiblets.web.document import Layer
@@ -150,8 +150,10 @@ class Canvas:
 
     def _mask(self, fiblets: Any, used: tuple[tuple[str, str], ...]) -> np.ndarray:
         live = self.live(fiblets)
-        by = {use: [name for name, its in used if its == use] for use in ("passes", "misses", "ends_in", "stays_in")}
-        mask = live.select(include=by["passes"], exclude=by["misses"], ends_in=by["ends_in"])
+        by = {use: [name for name, its in used if its == use] for use in USES}
+        mask = live.select(
+            include=by["passes"], exclude=by["misses"], ends_in=by["ends_in"], in_order=by["in_order"]
+        )
         for name in by["stays_in"]:
             mask &= live.select(stays_in=name)
         return mask

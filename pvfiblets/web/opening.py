@@ -37,6 +37,7 @@ PURPOSES = {
     "region": (*MESHES, *LABELS),
     "slices": VOLUMES,
     "labels": TABLES,
+    "painted": VOLUMES,
 }
 """What a file may be chosen for, and the suffixes that are shown then."""
 MOST_WAITING = 16
@@ -270,6 +271,8 @@ class FileActions(Actions):
             app.regions.add_file(path)
         elif purpose == "slices":
             app.later(self.open(path, "image"))
+        elif purpose == "painted":
+            app.painting.open_labels(path)
         elif purpose == "labels":
             app.slices.name_labels(path)
         elif path.lower().endswith(SESSION):

@@ -25,6 +25,7 @@ USES = {
     "misses": "miss",
     "ends_in": "end in",
     "stays_in": "stay in",
+    "in_order": "pass in order",
 }
 """What streamlines that are shown do at a region."""
 

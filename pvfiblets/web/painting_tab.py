@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,15 +18,20 @@ from pvfiblets.web.scene_painting import TOOLS
 
 __all__ = ["PAINTING", "PaintActions", "build", "over"]
 
-PAINTING = "['brush', 'erase', 'fill'].includes(tool)"
+PAINTING = f"{list(TOOLS)}.includes(tool)"
 """Whether a tool that paints is in hand, for the page."""
 
 ICONS = (
     ("brush", "mdi-brush", "Brush (N)"),
     ("erase", "mdi-eraser", "Erase (E)"),
     ("fill", "mdi-format-color-fill", "Fill (F)"),
+    ("outline", "mdi-vector-polygon", "Outline: draw around what is to be filled (U)"),
+    ("sphere", "mdi-circle-outline", "Ball: drag from its middle outwards (J)"),
+    ("grow", "mdi-auto-fix", "Grow over voxels of like values (W)"),
 )
 SUFFIXES = (".nii.gz", ".nii")
+AT_ONCE = ("fill", "outline", "sphere", "grow")
+"""Tools of which one list of places is all."""
 
 
 class PaintActions(Actions):
@@ -88,11 +94,12 @@ class PaintActions(Actions):
     # The list
 
     def add(self) -> None:
-        """Add a region, and take the brush in hand."""
+        """Add a region, and take the brush in hand, unless another tool that paints is."""
         app = self._app
         chosen = app.page.chosen if app.page.chosen_kind == "image" else None
         self._active = app.scene.add_painted(chosen).name
-        app.page.tool = "brush"
+        if app.page.tool not in TOOLS:
+            app.page.tool = "brush"
         app.refresh()
 
     def choose(self, name: str) -> None:
@@ -145,7 +152,8 @@ class PaintActions(Actions):
 
         Parameters
         ----------
-        tool : {'brush', 'erase', 'fill'}
+        tool : str
+            Of `TOOLS`; outlines and balls come whole, when they are done.
         places : list of [x, y]
             Shares of the picture from its upper left.
         begins : bool
@@ -161,18 +169,19 @@ class PaintActions(Actions):
             self._pane = app.slices.pane_at(*places[0])
             self._last = None
             self._gesture = str(next(self._numbers))
-        if self._pane is None or (tool == "fill" and begins is not True):
+        if self._pane is None or (tool in AT_ONCE and begins is not True):
             return
         pane = self._pane
         path = [pane.position_at(*app.slices.pixel(*place)).tolist() for place in places]
         if self._last is not None:
             path = [self._last, *path]
         self._last = path[-1]
-        plane = None if app.page.brush_deep else self._across(pane)
+        plane = None if app.page.brush_deep and tool != "outline" else self._across(pane)
         app.history.held = True
         app.sliders.moving = True  # the page is brought in step when the stroke ends
         try:
-            app.scene.paint(tool, self._active, path, app.page.brush, plane, self._gesture)
+            share = app.page.grow_share / 100.0
+            app.scene.paint(tool, self._active, path, app.page.brush, plane, self._gesture, share)
         finally:
             app.sliders.moving = False
         self._show()
@@ -192,6 +201,28 @@ class PaintActions(Actions):
     def _show(self) -> None:
         with self._app.state:
             self.refresh()
+
+    def move(self, name: str, by: int) -> None:
+        """Move a region up or down in the list."""
+        self._app.scene.move_painted(name, 1 if by == 1 else -1)
+
+    def open_labels(self, path: str) -> None:
+        """Take the labels of a file as regions."""
+        self._app.later(self._open_labels(path))
+
+    async def _open_labels(self, path: str) -> None:
+        app = self._app
+        work = lambda *_: app.scene.load(path, "image")  # noqa: E731
+        loaded = await app.files.beside(Path(path).name, work, "reading", cancellable=False)
+        self._active = app.scene.add_labels(loaded)[0].name
+        app.refresh()
+
+    def set_share(self, text: Any) -> None:
+        """Set how far growing goes, in per cent of the image's window, as it was typed or slid."""
+        value = typed(str(text), "range", optional=False)
+        if value is None or not 0.0 <= value <= 100.0:
+            raise ValueError(f"range is {value}; give 0 to 100 per cent of the image's window")
+        self._app.page.grow_share = value
 
     def set_brush(self, text: Any) -> None:
         """Set the brush's radius, mm, as it was typed or slid."""
@@ -220,6 +251,9 @@ def build(app: Any) -> None:
     paint = app.painting
     with html.Div(classes="pv-pair pr-2"):
         html.Div("Painted regions", classes="pv-head", style="flex: 1")
+        v3.VBtn("Labels", size="x-small", variant="text", classes="text-none", prepend_icon="mdi-folder-open-outline",
+                click=(app.files.browse, "['', 'painted']"), data_action="open-labels",
+                title="Take the labels of a file as regions")  # fmt: skip
         v3.VBtn("Region", size="x-small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
                 click=paint.add, data_action="add-painted")  # fmt: skip
     html.Div(
@@ -237,14 +271,25 @@ def build(app: Any) -> None:
                 ):  # fmt: skip
                     v3.VIcon(icon, size=18)
                     v3.VTooltip(hint, activator="parent", location="bottom")
-            with v3.VBtnToggle(
-                model_value=("brush_deep ? '3-D' : '2-D'",), update_modelValue="brush_deep = $event === '3-D'",
-                mandatory=True, density="compact", style="height: 28px",
-            ):  # fmt: skip
-                v3.VBtn("2-D", value="2-D", size="x-small", classes="text-none", title="In the slice alone")
-                v3.VBtn("3-D", value="3-D", size="x-small", classes="text-none", title="In slices beside it, too",
-                        data_action="deep")  # fmt: skip
-        with html.Div(classes="pv-row"):
+        with html.Div(classes="pv-pair px-3 pt-1", v_if="!['outline', 'sphere'].includes(tool)"), v3.VBtnToggle(
+            model_value=("brush_deep ? '3-D' : '2-D'",), update_modelValue="brush_deep = $event === '3-D'",
+            mandatory=True, density="compact", style="height: 28px",
+        ):  # fmt: skip
+            v3.VBtn("2-D", value="2-D", size="x-small", classes="text-none", title="In the slice alone")
+            v3.VBtn("3-D", value="3-D", size="x-small", classes="text-none", title="In slices beside it, too",
+                    data_action="deep")  # fmt: skip
+        with html.Div(classes="pv-row", v_if="tool === 'grow'"):
+            html.Label("Range ±", title="How far values may be from the one that is clicked, of the image's window")
+            with html.Div(classes="pv-pair"):
+                v3.VSlider(
+                    model_value=("grow_share",), min=0, max=50, step=1, density="compact", hide_details=True,
+                    color="primary", thumb_size=14, track_size=3, end=(paint.set_share, "[$event]"),
+                    aria_label="Range of values that are grown over, per cent of the image's window",
+                )  # fmt: skip
+                html.Input(classes="pv-num", style="width: 52px", inputmode="decimal", value=("grow_share",),
+                           change=(paint.set_share, "[$event.target.value]"), aria_label="Range, per cent")  # fmt: skip
+                html.Span("%", classes="pv-small")
+        with html.Div(classes="pv-row", v_if="!['fill', 'outline', 'grow'].includes(tool)"):
             html.Label("Brush")
             with html.Div(classes="pv-pair"):
                 v3.VSlider(
@@ -287,6 +332,11 @@ def build(app: Any) -> None:
                     update_modelValue=(paint.set, "[r.name, 'use', $event]"), aria_label="What streamlines do there",
                     data_select="use",
                 )  # fmt: skip
+                for by, icon, hint in ((-1, "mdi-arrow-up", "Earlier"), (1, "mdi-arrow-down", "Later")):
+                    v3.VBtn(
+                        icon=icon, size="x-small", variant="text", v_if="r.use === 'in_order'", aria_label=hint,
+                        click=(paint.move, f"[r.name, {by}]"), data_order=str(by),
+                    )  # fmt: skip
                 html.Span(
                     "{{ r.voxels }} voxels{{ r.passing === '' ? '' : ', ' + r.passing + ' pass' }}",
                     classes="pv-small", style="flex: none; min-width: 96px; text-align: right", data_value="painted",

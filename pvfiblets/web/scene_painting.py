@@ -12,8 +12,9 @@ import numpy as np
 
 from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.query.bundles.colours import distinct_colour, hex_colour
+from pvfiblets.query.painting.painter import Stroke
 from pvfiblets.web.document import Layer, State
-from pvfiblets.web.painting import MOST_REGIONS, USES, Painted, Painting
+from pvfiblets.web.painting import MOST_REGIONS, USES, Painted, Painting, Strokes
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TOOLS", "ScenePainting"]
 
-TOOLS = ("brush", "erase", "fill")
+TOOLS = ("brush", "erase", "fill", "outline", "sphere", "grow")
 WIDEST = 100.0  # mm
 MOST_PLACES = 600
 
@@ -38,6 +39,7 @@ class ScenePainting:
         @property
         def state(self) -> State: ...  # noqa: D102 - of the scene
 
+        actor: Callable[[str], Any]
         become: Callable[..., None]
         data: Callable[..., Loaded]
 
@@ -118,23 +120,28 @@ class ScenePainting:
     # Strokes
 
     def paint(
-        self, tool: str, name: str, path: Any, radius: float, plane: int | None = None, gesture: Any = None
-    ) -> int:
-        """Paint, erase or fill.
+        self, tool: str, name: str, path: Any, radius: float, plane: int | None = None, gesture: Any = None,
+        share: float = 0.1,
+    ) -> int:  # fmt: skip
+        """Paint, erase, fill, outline or grow.
 
         Parameters
         ----------
-        tool : {"brush", "erase", "fill"}
+        tool : {"brush", "erase", "fill", "outline", "sphere", "grow"}
         name : str
             Of the region; erasing takes voxels out of all.
         path : list of [x, y, z]
-            mm: along which the brush is drawn; of a fill, the first is where it begins.
+            mm: along which the brush is drawn; of a fill, and of growing, the first is where it begins. An outline is
+            filled by all within it. A sphere reaches from the first to the last, or as far as the brush.
         radius : float
             Of the brush, mm.
         plane : {0, 1, 2}, optional
             Only within the slice across this axis of voxels.
         gesture : str, optional
             Strokes of one gesture are one step to undo.
+        share : float, default: 0.1
+            Of growing: how far values may be from the first one's, as a share of the image's window. The image is the
+            highest that is visible and lies on the voxels that are painted.
 
         Returns
         -------
@@ -151,14 +158,112 @@ class ScenePainting:
         target = None if tool == "erase" else painting.region(name).name
         if tool == "fill":
             stroke = painter.fill(target, places[0], plane=plane)
+        elif tool == "outline":
+            if plane is None or len(places) < 3:
+                raise ValueError("an outline is of one slice, and goes through three places or more")
+            stroke = painter.polygon(target, places, plane)
+        elif tool == "sphere":
+            apart = float(np.linalg.norm(places[-1] - places[0]))
+            stroke = painter.sphere(target, places[0], min(apart, WIDEST) if apart > 0.0 else reach)
+        elif tool == "grow":
+            stroke = self._grown(painter, name, places[0], number(share, "share of the window", 0.0, 1.0), plane)
         else:
             stroke = painter.paint(target, places, reach, plane=plane)
         if len(stroke):
-            what = {"brush": f"paint {target}", "erase": "erase", "fill": f"fill {target}"}[tool]
+            what = {"erase": "erase", "fill": f"fill {target}", "grow": f"grow {target}"}.get(tool, f"paint {target}")
             key = None if gesture is None else ("paint", str(gesture))
             wanted = replace(painting, strokes=self.canvas.painted(stroke))
             self.become(replace(self.state, painting=wanted), what, key)
         return len(stroke)
+
+    def _grown(self, painter: RegionPainter, name: str, seed: np.ndarray, share: float, plane: int | None) -> Stroke:
+        painting = self._painting
+        images = [(layer, self.data(layer).data) for layer in reversed(self.state.layers) if layer.kind == "image"]
+        fitting = [
+            (layer, image) for layer, image in images
+            if image.shape == painting.shape and np.allclose(image.affine, painting.matrix, atol=1e-4)
+        ]  # fmt: skip
+        if not fitting:
+            raise ValueError("no image lies on the voxels that are painted; open the one that painting began on")
+        layer, image = next((one for one in fitting if one[0].visible), fitting[0])
+        shown_layer = self.actor(layer.id)
+        values = image.values[..., layer.settings["index"] if image.n_volumes > 1 else 0]
+        low, high = shown_layer.window
+        at = image.voxel_at(seed)
+        if at is None or not np.isfinite(values[at]):
+            raise ValueError("there is no value of the image; begin within it")
+        reach = share * (high - low)
+        return painter.grow(name, seed, values, float(values[at]) - reach, float(values[at]) + reach, plane=plane)
+
+    def move_painted(self, name: str, by: int) -> None:
+        """Move a region up (-1) or down in the list, which is the order in which waypoints are passed."""
+        painting = self._painting
+        at = painting.regions.index(painting.region(name))
+        to = min(max(at + by, 0), len(painting.regions) - 1)
+        rows = list(painting.regions)
+        rows.insert(to, rows.pop(at))
+        if to != at:
+            self.become(replace(self.state, painting=replace(painting, regions=tuple(rows))), f"order of {name}")
+
+    def add_labels(self, loaded: Loaded) -> list[Painted]:
+        """Take the labels of an image as painted regions, by their names and colours.
+
+        Parameters
+        ----------
+        loaded : Loaded
+            Of the kind ``"image"``.
+
+        Raises
+        ------
+        ValueError
+            If it holds no labels, more than there may be regions, or lies on other voxels than what is painted.
+        """
+        image = loaded.data
+        found = self._labels_in(loaded)
+        painting = self.state.painting
+        if painting is None:
+            painting = Painting(image.shape, tuple(float(part) for part in image.affine.ravel()))
+        elif image.shape != painting.shape or not np.allclose(image.affine, painting.matrix, atol=1e-4):
+            raise ValueError(
+                f"{loaded.name} has {image.shape} voxels that lie elsewhere than those that are painted, "
+                f"{painting.shape}; remove these regions first"
+            )
+        if len(painting.regions) + len(found) > MOST_REGIONS:
+            raise ValueError(
+                f"{loaded.name} has {len(found)} labels; {MOST_REGIONS} painted regions are the most: open it as an "
+                "image and ask for its labels"
+            )
+        first = max((one.label for one in painting.regions), default=0) + 1
+        names, table = [one.name for one in painting.regions], image.table
+        made, labels = [], np.zeros(image.shape, np.uint16)
+        for new, old in enumerate(found, first):
+            called = (table.name(old) if table is not None else str(old))[:60].strip() or str(old)
+            name = unique_name(names, called) if called in names else called
+            colours = None if table is None else table.colours.get(old)
+            rgb = distinct_colour(new - 1) if colours is None else tuple(part / 255.0 for part in colours[:3])
+            color = hex_colour(rgb)
+            names.append(name)
+            made.append(Painted(name, new, color))
+            labels[image.values[..., 0] == old] = new
+        wanted = replace(painting, regions=(*painting.regions, *made))
+        places = np.flatnonzero(labels.reshape(-1))
+        before = np.zeros(len(places), np.uint16)
+        if (painter := self.canvas.painter) is not None:
+            before = painter.labels.reshape(-1)[places].copy()
+        stroke = Stroke(places, before, labels.reshape(-1)[places])
+        wanted = replace(wanted, strokes=Strokes.after(painting.strokes, stroke))
+        self.become(replace(self.state, painting=wanted), f"regions of {loaded.name}")
+        return made
+
+    @staticmethod
+    def _labels_in(loaded: Loaded) -> list[int]:
+        """Return the labels of an image but 0."""
+        image = loaded.data
+        values = np.unique(image.values)
+        whole = np.isfinite(values).all() and (values == np.rint(values)).all()
+        if image.n_volumes != 1 or not whole or not len(found := values[values != 0]):
+            raise ValueError(f"{loaded.name} holds no labels; regions are whole numbers, one per voxel, 0 for none")
+        return [int(one) for one in found]
 
     def voxels_of(self, name: str) -> int:
         """Return how many voxels a region has."""

@@ -72,7 +72,10 @@ def painting_lines(scene: Scene, names: Mapping[str, str], ids: Callable[[Any], 
             continue
         found += [f"live = regions.LiveRegions({names[layer.id]}.fiblets, painter)"]
         for name, use in used:
-            found += [f"{names[layer.id]}.include_painted(live, {_WORDS[use]}={name!r})"]
+            if use != "in_order":
+                found += [f"{names[layer.id]}.include_painted(live, {_WORDS[use]}={name!r})"]
+        if waypoints := [name for name, use in used if use == "in_order"]:
+            found += [f"{names[layer.id]}.include_painted(live, in_order={waypoints})"]
     if has_images(scene):
         shown = {k: (one.name, one.color if one.visible else "#00000000") for k, one in enumerate(painting.regions, 1)}
         found += ["workspace.slices.add((painter.labels, painter.grid.affine), name='painted', opacity=0.55,"]

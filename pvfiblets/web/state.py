@@ -36,6 +36,7 @@ class Page:
     show_regions: bool = True
     brush: float = 3.0  # radius, mm
     brush_deep: bool = False  # beyond the slice
+    grow_share: float = 10.0  # per cent of the image's window
     painting_name: str = ""
     like_mm: str = "8"  # distances of the tab Bundles, as they were typed
     cluster_mm: str = "10"
@@ -110,6 +111,7 @@ WRITABLE: dict[str, type] = {
     "show_regions": bool,
     "brush": float,
     "brush_deep": bool,
+    "grow_share": float,
     "painting_name": str,
     "like_mm": str,
     "cluster_mm": str,

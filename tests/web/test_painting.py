@@ -135,3 +135,79 @@ def test_sessions_and_scripts_have_the_regions(painted, folder):
         with pytest.raises(session.SessionError, match=said):
             session.from_dict(painted, {**told, "painting": {**told["painting"], **wrong}})
     assert shown(painted).tolist() == wanted.tolist()
+
+
+def test_outlines_balls_and_growing(painted):
+    # The image falls off from its middle, voxel (7.5, 7.5, 7.5) of 4 mm, so that values of a range are shells.
+    around = [[18.0, 18.0, 32.0], [42.0, 18.0, 32.0], [42.0, 42.0, 32.0], [18.0, 42.0, 32.0]]
+    painted.paint("outline", "region 1", around, 1.0, 2)
+    labels = painted.canvas.painter.labels
+    wanted = np.zeros((16, 16, 16), bool)
+    wanted[5:11, 5:11, 8] = True
+    np.testing.assert_array_equal(labels > 0, wanted)
+    painted.add_painted()
+    painted.paint("sphere", "region 2", [[30.0, 30.0, 30.0], [30.0, 30.0, 39.0]], 1.0)
+    at = np.stack(np.meshgrid(*[np.arange(16)] * 3, indexing="ij"), axis=-1) * 4.0 - 30.0
+    np.testing.assert_array_equal(labels == 2, np.linalg.norm(at, axis=-1) <= 9.0)
+    painted.add_painted()
+    image = next(layer for layer in painted.layers if layer.kind == "image")
+    values = painted.data(image).data.values[..., 0]
+    painted.set(image.id, "clim", [-1.0, 1.0])
+    painted.paint("grow", "region 3", [[32.0, 32.0, 32.0]], 1.0, share=0.1)
+    near = abs(values - values[8, 8, 8]) <= 0.2  # of a window of 2
+    np.testing.assert_array_equal(labels == 3, near)
+    with pytest.raises(ValueError, match="three places"):
+        painted.paint("outline", "region 1", around[:2], 1.0, 2)
+    painted.remove(image.id)
+    with pytest.raises(ValueError, match="no image lies on the voxels"):
+        painted.paint("grow", "region 3", [[32.0, 32.0, 32.0]], 1.0)
+
+
+def test_waypoints_are_passed_in_the_order_of_the_list(painted):
+    for y in (0, 1):
+        painted.paint("brush", "region 1", [[4.0, 4.0 * y, 0.0]], 1.0)
+    painted.add_painted()
+    painted.paint("brush", "region 2", [[8.0, 0.0, 0.0], [8.0, 4.0, 0.0]], 1.0)
+    painted.add_painted()
+    painted.paint("brush", "region 3", [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]], 1.0)
+    history = History(painted, together=0.0)
+    for name in ("region 1", "region 2", "region 3"):
+        painted.set_painted(name, use="in_order")
+    assert not len(shown(painted))  # 4, 8, 0 mm is no way along x
+    painted.move_painted("region 3", -1)
+    painted.move_painted("region 3", -1)
+    assert [one.name for one in painted.state.painting.regions] == ["region 3", "region 1", "region 2"]
+    assert shown(painted).tolist() == [0, 1]
+    text = as_script(painted)
+    assert "include_painted(live, in_order=['region 3', 'region 1', 'region 2'])" in text
+    kept = session.to_dict(painted)
+    history.undo()
+    history.undo()
+    assert not len(shown(painted))
+    session.from_dict(painted, kept)
+    assert shown(painted).tolist() == [0, 1]
+
+
+def test_labels_of_a_file_become_regions(painted, folder):
+    (folder / "atlas.tsv").write_text("index\tname\tcolor\n3\tputamen\t#ff0000\n5\tinsula\t#00ff00\n")
+    affine = np.diag([4.0, 4.0, 4.0, 1.0])
+    labels = np.zeros((16, 16, 16), np.int16)
+    labels[:2], labels[12:] = 3, 5
+    nibabel.save(nibabel.Nifti1Image(labels, affine), folder / "atlas.nii.gz")
+    history = History(painted)
+    made = painted.add_labels(painted.load("atlas.nii.gz", "image"))
+    assert [(one.name, one.color) for one in made] == [("putamen", "#ff0000"), ("insula", "#00ff00")]
+    found = painted.canvas.painter.labels
+    np.testing.assert_array_equal(found == made[0].label, labels == 3)
+    np.testing.assert_array_equal(found == made[1].label, labels == 5)
+    painted.set_painted("insula", use="ends_in")
+    assert shown(painted)[-15:].tolist() == list(range(37, 52))  # those that end at x from 46 to 62 mm
+    assert len(shown(painted)) <= 16  # one ends on the face
+    history.undo()
+    history.undo()
+    assert not painted.canvas.painter.labels.any()
+    nibabel.save(nibabel.Nifti1Image(labels[:8], affine), folder / "other.nii.gz")
+    with pytest.raises(ValueError, match="remove these regions first"):
+        painted.add_labels(painted.load("other.nii.gz", "image"))
+    with pytest.raises(ValueError, match="holds no labels"):
+        painted.add_labels(painted.load("head.nii.gz", "image"))
